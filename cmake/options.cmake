@@ -1,0 +1,19 @@
+# Compile options of asperity's own targets. Nothing here reaches a consumer: link it PRIVATE.
+add_library(asperity_build_options INTERFACE)
+target_compile_options(asperity_build_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Wold-style-cast -Wnon-virtual-dtor -Wcast-qual
+  $<$<BOOL:${ASPERITY_WERROR}>:-Werror>)
+if(ASPERITY_SANITIZE)
+  list(JOIN ASPERITY_SANITIZE "," _sanitizers)
+  target_compile_options(asperity_build_options INTERFACE
+    -fsanitize=${_sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(asperity_build_options INTERFACE -fsanitize=${_sanitizers})
+endif()
+
+# Same inputs, same bits between build types and compilers: no fused multiply-add that the source does not ask for.
+# A consumer who wants our golden digests links asperity::reproducible; nobody gets the flag without asking.
+add_library(asperity_reproducible INTERFACE)
+add_library(asperity::reproducible ALIAS asperity_reproducible)
+set_target_properties(asperity_reproducible PROPERTIES EXPORT_NAME reproducible)
+target_compile_options(asperity_reproducible INTERFACE -ffp-contract=off)
+target_link_libraries(asperity_build_options INTERFACE asperity_reproducible)

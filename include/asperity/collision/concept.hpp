@@ -1,0 +1,32 @@
+// The first of the three policies: who touches whom.
+//
+// Contract of a collision finder
+// - find() reports the contacts between the coarse convex pieces of the probe and of every fixed body that are closer
+//   than its tolerance, overlapping ones included, clustered into contact patches.
+// - n_ab is a unit vector from A towards B; a gap has separation > 0, an overlap < 0.
+// - A patch lists coarse triangles that can hold a point of the contact inside its window, each once; a superset is
+//   allowed. The window is in the world and centred between the witness points.
+// - The same poses after the same history give the same bits. State between ticks (cached simplices, contact ids,
+//   window axes) may change the cost and the frame {u, v}, never whether two pieces touch.
+// - Nothing in find() allocates, locks, throws, prints or reads a clock. Poses are finite; T_wb has one pose per fixed
+//   body. What does not fit is dropped, counted in contact_set::dropped(), and answered with capacity_reached.
+#pragma once
+
+#include <concepts>
+
+#include "asperity/collision/contact.hpp"
+#include "asperity/core/status.hpp"
+#include "asperity/model/scene.hpp"
+
+namespace asperity {
+
+/// Base of a finder's `policy_tag`: naming it says "I keep the contract above", which a signature alone cannot.
+struct collision_tag {};
+
+template <class P>
+concept collision_finder = std::derived_from<typename P::policy_tag, collision_tag> &&
+                           requires(P& finder, const scene_pose& at, contact_set& out) {
+                             { finder.find(at, out) } noexcept -> std::same_as<status>;
+                           };
+
+}  // namespace asperity

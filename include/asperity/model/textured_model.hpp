@@ -1,0 +1,49 @@
+// A textured model: coarse mesh, haptic texture, convex pieces and what the bake knows about them.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/coarse_mesh.hpp"
+#include "asperity/model/convex_piece.hpp"
+#include "asperity/model/haptic_texture.hpp"
+#include "asperity/model/mass_properties.hpp"
+
+namespace asperity {
+
+/// What the bake measured. Distances in metres, between the textured surface and the full-resolution original.
+struct bake_report {
+  double rms_error_m = 0.0;         ///< root mean square over both directions (texture to original and back)
+  double max_error_m = 0.0;         ///< largest of either direction
+  double relief_m = 0.0;            ///< peak to valley of the displacement along the coarse normal
+  double max_displacement_m = 0.0;  ///< largest distance between a texel and its coarse surface point
+  std::size_t full_triangles = 0;
+  std::size_t fallback_texels = 0;  ///< texels projected to the closest point because their ray met no front face
+  std::size_t texels = 0;           ///< texels inside a chart
+};
+
+struct bounds {
+  vec3 low{0.0};
+  vec3 high{0.0};
+  [[nodiscard]] double diagonal() const noexcept { return std::sqrt(glm::dot(high - low, high - low)); }
+};
+
+/// Everything that a tick needs to know about one body, in its body frame, metres. Immutable once loaded.
+struct textured_model {
+  std::string name;
+  coarse_mesh mesh;
+  haptic_texture texture;
+  std::vector<convex_piece> pieces;
+  mass_properties mass;  ///< of the coarse mesh
+  bounds box;            ///< of the coarse mesh
+  bake_report report;
+};
+
+/// A model is shared by finder, depth backend and force model, and never changes.
+using model_ptr = std::shared_ptr<const textured_model>;
+
+}  // namespace asperity
