@@ -1,0 +1,30 @@
+// From a full-resolution mesh to a textured model. Component asperity::bake.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/textured_model.hpp"
+#include "asperity/model/triangle_mesh.hpp"
+
+namespace asperity::bake {
+
+struct bake_options {
+  std::string name;                          ///< name of the model, kept in the file
+  std::size_t triangles = 600;               ///< coarse triangles to aim for; ignored where `coarse` is given
+  std::optional<triangle_mesh> coarse;       ///< a coarse mesh to use instead of simplifying
+  std::uint32_t texture_size = 1024;         ///< texels per side
+  unsigned threads = 0;                      ///< 0: as many as the machine has; the result does not depend on it
+  /// Told of every stage and its share done, 0 to 1; returning false cancels the bake.
+  std::function<bool(std::string_view stage, double done)> progress;
+};
+
+/// The textured model of a full-resolution mesh.
+/// @return bad_mesh | invalid_argument | limit_exceeded | cancelled, with the fault, its place and the mend
+[[nodiscard]] result<textured_model> bake(const triangle_mesh& full, const bake_options& options);
+
+}  // namespace asperity::bake

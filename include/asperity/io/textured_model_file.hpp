@@ -1,0 +1,18 @@
+// Reading and writing textured models: .glb with the extension ASPERITY_mesh_haptic_texture. Component asperity::io.
+#pragma once
+
+#include <filesystem>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/textured_model.hpp"
+
+namespace asperity::io {
+
+/// Loads and checks a textured model; everything that a tick relies on is true of what comes back.
+/// @return io_failed | bad_format | bad_mesh | bad_texture | unsupported | limit_exceeded, with the place and the mend
+[[nodiscard]] result<textured_model> load_textured_model(const std::filesystem::path& file);
+
+/// Writes a valid glTF 2.0 .glb that any viewer opens as the coarse mesh; appears whole or not at all.
+[[nodiscard]] result<void> save_textured_model(const textured_model& model, const std::filesystem::path& file);
+
+}  // namespace asperity::io
