@@ -23,13 +23,20 @@ enum class status : std::uint8_t {
 /// The status in words.
 [[nodiscard]] constexpr const char* to_string(status s) noexcept {
   switch (s) {
-    case status::ok: return "ok";
-    case status::capacity_reached: return "capacity reached";
-    case status::invalid_pose: return "invalid pose";
-    case status::not_finite: return "not finite";
-    case status::stale_input: return "stale input";
-    case status::not_ready: return "not ready";
-    case status::backend_failed: return "backend failed";
+    case status::ok:
+      return "ok";
+    case status::capacity_reached:
+      return "capacity reached";
+    case status::invalid_pose:
+      return "invalid pose";
+    case status::not_finite:
+      return "not finite";
+    case status::stale_input:
+      return "stale input";
+    case status::not_ready:
+      return "not ready";
+    case status::backend_failed:
+      return "backend failed";
   }
   return "unknown status";
 }
@@ -49,14 +56,22 @@ enum class error_code : std::uint8_t {
 /// The code as it stands in JSON documents.
 [[nodiscard]] constexpr const char* to_string(error_code c) noexcept {
   switch (c) {
-    case error_code::invalid_argument: return "invalid_argument";
-    case error_code::io_failed: return "io_failed";
-    case error_code::bad_format: return "bad_format";
-    case error_code::unsupported: return "unsupported";
-    case error_code::bad_mesh: return "bad_mesh";
-    case error_code::bad_texture: return "bad_texture";
-    case error_code::limit_exceeded: return "limit_exceeded";
-    case error_code::cancelled: return "cancelled";
+    case error_code::invalid_argument:
+      return "invalid_argument";
+    case error_code::io_failed:
+      return "io_failed";
+    case error_code::bad_format:
+      return "bad_format";
+    case error_code::unsupported:
+      return "unsupported";
+    case error_code::bad_mesh:
+      return "bad_mesh";
+    case error_code::bad_texture:
+      return "bad_texture";
+    case error_code::limit_exceeded:
+      return "limit_exceeded";
+    case error_code::cancelled:
+      return "cancelled";
   }
   return "unknown_error";
 }

@@ -13,10 +13,11 @@ namespace asperity {
 /// A piece may be flat (a single triangle is common in concave areas): then `hull` triangulates the convex polygon on
 /// the outward side only.
 struct convex_piece {
-  std::vector<vec3> vertices;                       ///< hull vertices, body frame, metres
-  std::vector<std::array<std::uint32_t, 3>> hull;   ///< hull faces: indices into vertices, counter-clockwise from outside
-  std::vector<std::uint32_t> triangles;             ///< coarse triangles that this piece covers
-  bool flat = false;                                ///< all vertices in one plane within the decomposition's tolerance
+  std::vector<vec3> vertices;  ///< hull vertices, body frame, metres
+  std::vector<std::array<std::uint32_t, 3>>
+      hull;                              ///< hull faces: indices into vertices, counter-clockwise from outside
+  std::vector<std::uint32_t> triangles;  ///< coarse triangles that this piece covers
+  bool flat = false;                     ///< all vertices in one plane within the decomposition's tolerance
 };
 
 }  // namespace asperity

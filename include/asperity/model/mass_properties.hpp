@@ -8,8 +8,8 @@ namespace asperity {
 
 struct mass_properties {
   double volume_m3 = 0.0;
-  vec3 centre_of_mass{0.0};        ///< body frame, metres
-  mat3 inertia_per_mass{0.0};      ///< about the centre of mass, body axes, m^2 (multiply by the mass)
+  vec3 centre_of_mass{0.0};    ///< body frame, metres
+  mat3 inertia_per_mass{0.0};  ///< about the centre of mass, body axes, m^2 (multiply by the mass)
 };
 
 /// Mass properties of the solid that the mesh encloses, of uniform density, by summing signed tetrahedra.
@@ -31,8 +31,8 @@ struct mass_properties {
     const vec3 s = a + b + d;
     volume += v;
     first += v / 4.0 * s;
-    second += v / 20.0 * (glm::outerProduct(s, s) + glm::outerProduct(a, a) + glm::outerProduct(b, b) +
-                          glm::outerProduct(d, d));
+    second += v / 20.0 *
+              (glm::outerProduct(s, s) + glm::outerProduct(a, a) + glm::outerProduct(b, b) + glm::outerProduct(d, d));
   }
   out.volume_m3 = volume;
   if (!(volume > 0.0)) return out;
