@@ -1,0 +1,114 @@
+// The renderer alone, with policies that answer what the test tells them to.
+#include "asperity/render/renderer.hpp"
+
+#include <array>
+#include <gtest/gtest.h>
+#include <limits>
+
+namespace {
+
+using namespace asperity;
+
+struct script {
+  std::size_t contacts = 1;
+  status found = status::ok;
+  status measured = status::ok;
+  status summed = status::ok;
+  vec3 force{0, 0, 1};
+  int finds = 0, measures = 0, sums = 0;
+};
+
+struct scripted_finder {
+  using policy_tag = collision_tag;
+  script* s;
+  status find(const scene_pose&, contact_set& out) noexcept {
+    ++s->finds;
+    for (std::size_t i = 0; i < s->contacts; ++i) out.add({}, {}, {});
+    return s->found;
+  }
+};
+struct scripted_depth {
+  using policy_tag = depth_tag;
+  script* s;
+  status measure(const scene_pose&, const contact_set& c, std::span<penetration> out) noexcept {
+    ++s->measures;
+    EXPECT_EQ(c.size(), out.size());
+    return s->measured;
+  }
+};
+struct scripted_force {
+  using policy_tag = force_tag;
+  script* s;
+  status accumulate(const contact_set&, std::span<const penetration>, contact_force& out) const noexcept {
+    ++s->sums;
+    out.on_probe_w.force = s->force;
+    return s->summed;
+  }
+};
+
+scene one_fixed_body() {
+  auto probe = std::make_shared<textured_model>();
+  probe->mass.centre_of_mass = {0.1, 0.0, 0.0};
+  return {probe, {std::make_shared<textured_model>()}};
+}
+
+struct renderer_test : testing::Test {
+  script s;
+  basic_renderer<scripted_finder, scripted_depth, scripted_force> renderer{
+      one_fixed_body(), scripted_finder{&s}, scripted_depth{&s}, scripted_force{&s}, contact_limits{4, 16}};
+  std::array<pose, 1> fixed{};
+  tick out;
+};
+
+TEST_F(renderer_test, runs_the_stages_in_order_and_hands_out_what_they_found) {
+  s.contacts = 3;
+  const pose T_wa{exp_rotation({0, 0, 1}), {1, 2, 3}};
+  ASSERT_EQ(renderer.step({T_wa, fixed}, out), status::ok);
+  EXPECT_EQ(s.finds + s.measures + s.sums, 3);
+  EXPECT_EQ(out.contacts.size(), 3U);
+  EXPECT_EQ(out.depths.size(), 3U);
+  EXPECT_EQ(out.force.on_probe_w.force.z, 1.0);
+  EXPECT_LE(glm::length(out.centre_of_mass_w - T_wa * vec3(0.1, 0, 0)), 1e-15);
+}
+
+TEST_F(renderer_test, invalid_poses_stop_before_any_stage) {
+  pose bad;
+  bad.position.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(renderer.step({bad, fixed}, out), status::invalid_pose);
+  fixed[0].rotation = quat(0, 0, 0, 0);
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::invalid_pose);
+  EXPECT_EQ(s.finds, 0);
+}
+
+TEST_F(renderer_test, a_wrong_number_of_poses_is_not_ready) {
+  EXPECT_EQ(renderer.step({{}, {}}, out), status::not_ready);
+}
+
+TEST_F(renderer_test, contacts_that_do_not_fit_are_counted_and_the_rest_is_used) {
+  s.contacts = 6;
+  s.found = status::capacity_reached;
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::capacity_reached);
+  EXPECT_EQ(out.contacts.size(), 4U);
+  EXPECT_EQ(out.dropped_contacts, 2U);
+  EXPECT_EQ(out.force.on_probe_w.force.z, 1.0);
+}
+
+TEST_F(renderer_test, any_failing_stage_leaves_a_zero_wrench) {
+  s.found = status::backend_failed;
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::backend_failed);
+  EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
+  s.found = status::ok;
+  s.measured = status::backend_failed;
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::backend_failed);
+  EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
+  s.measured = status::ok;
+  s.summed = status::not_finite;
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::not_finite);
+  EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
+  s.summed = status::ok;
+  s.force.y = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::not_finite);
+  EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
+}
+
+}  // namespace
