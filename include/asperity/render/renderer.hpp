@@ -14,11 +14,11 @@ namespace asperity {
 
 /// What one tick found. The spans point into the renderer and live until its next step.
 struct tick {
-  contact_force force{};                   ///< on the probe; zero where the status is not ok or capacity_reached
-  vec3 centre_of_mass_w{0.0};              ///< c_A, the point the torque is about
-  std::span<const contact> contacts;       ///< what the finder reported
-  std::span<const penetration> depths;     ///< one per contact
-  std::size_t dropped_contacts = 0;        ///< contacts that did not fit: raise contact_limits
+  contact_force force{};                ///< on the probe; zero where the status is not ok or capacity_reached
+  vec3 centre_of_mass_w{0.0};           ///< c_A, the point the torque is about
+  std::span<const contact> contacts;    ///< what the finder reported
+  std::span<const penetration> depths;  ///< one per contact
+  std::size_t dropped_contacts = 0;     ///< contacts that did not fit: raise contact_limits
 };
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
