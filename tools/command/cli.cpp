@@ -1,0 +1,97 @@
+#include "cli.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string_view>
+
+#include "interrupt.hpp"
+#include "text.hpp"
+
+namespace asperity::command {
+namespace {
+
+// False where stdout did not take everything, for example a full disk behind a redirection.
+bool print(std::string_view text) {
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+}
+
+void complain(std::string_view message) {
+  const std::string line = "asperity: " + one_line(message) + '\n';
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+std::string serialise(const json& document) {
+  // File names need not be UTF-8; JSON must be.
+  return document.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
+}
+
+int fail(std::string_view code, std::string_view message, bool as_json, int exit_status) {
+  complain(message);
+  if (as_json) {
+    print(serialise({{"schema", "asperity.error/1"}, {"error", {{"code", code}, {"message", one_line(message)}}}}));
+  }
+  return exit_status;
+}
+
+}  // namespace
+
+command_line::command_line() : app_("Haptic rendering of contact between textured objects", "asperity") {
+  app_.set_version_flag("--version", "asperity " ASPERITY_VERSION);
+  app_.require_subcommand(1);
+  app_.get_formatter()->column_width(32);
+}
+
+CLI::App& command_line::add(const std::string& name, const std::string& purpose, action run) {
+  CLI::App* sub = app_.add_subcommand(name, purpose);
+  sub->set_version_flag("--version", "asperity " ASPERITY_VERSION);
+  sub->add_flag("--json", common_.json, "Print one JSON document on stdout and nothing else there");
+  sub->add_flag("--quiet", common_.quiet, "Print no report and no progress");
+  sub->parse_complete_callback([this, name, run = std::move(run)] {
+    chosen_ = name;
+    action_ = run;
+  });
+  return *sub;
+}
+
+int command_line::run(int argc, const char* const* argv) {
+  // Parsing may stop before it reaches --json, and the error has to be a document all the same.
+  const bool json_wanted =
+      std::any_of(argv, argv + argc, [](const char* word) { return std::string_view(word) == "--json"; });
+  try {
+    app_.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return app_.exit(help_or_version) == 0 && std::fflush(stdout) == 0 ? exit_ok : exit_failed;
+  } catch (const CLI::ParseError& e) {
+    const auto chosen = app_.get_subcommands();
+    const std::string page = chosen.empty() ? "asperity --help" : "asperity " + chosen.front()->get_name() + " --help";
+    return fail("usage", std::string(e.what()) + "; see " + page, json_wanted, exit_usage);
+  }
+
+  try {
+    const result<answer> done = action_(common_);
+    if (!done) {
+      const bool cancelled = done.error().code == error_code::cancelled && interrupted();
+      return fail(to_string(done.error().code), done.error().message, common_.json,
+                  cancelled ? exit_interrupted : exit_failed);
+    }
+    std::string out;
+    if (common_.json) {
+      json document = {{"schema", "asperity." + chosen_ + "/1"}};
+      document.update(done->document);
+      out = serialise(document);
+    } else if (!common_.quiet) {
+      out = done->text;
+    }
+    if (!print(out)) {
+      complain("stdout could not be written: free space or redirect it elsewhere");
+      return exit_failed;
+    }
+    return done->exit_status;
+  } catch (const std::bad_alloc&) {
+    return fail("limit_exceeded", "out of memory: use smaller models or free memory", common_.json, exit_failed);
+  }
+}
+
+}  // namespace asperity::command

@@ -1,0 +1,16 @@
+// The asperity command: see docs/reference/command.md.
+#include "cli.hpp"
+#include "interrupt.hpp"
+
+int main(int argc, char** argv) {
+  asperity::command::catch_interrupts();
+  asperity::command::command_line line;
+  asperity::command::add_bake(line);
+  asperity::command::add_inspect(line);
+  asperity::command::add_query(line);
+  asperity::command::add_run(line);
+  asperity::command::add_models(line);
+  asperity::command::add_devices(line);
+  asperity::command::add_bench(line);
+  return line.run(argc, argv);
+}

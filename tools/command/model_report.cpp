@@ -1,0 +1,116 @@
+#include "model_report.hpp"
+
+#include <algorithm>
+
+#include "text.hpp"
+
+namespace asperity::command {
+namespace {
+
+double percent_of_diagonal(const textured_model& model, double metres) {
+  const double diagonal = model.box.diagonal();
+  return diagonal > 0.0 ? 100.0 * metres / diagonal : 0.0;
+}
+
+std::size_t flat_pieces(const textured_model& model) {
+  return static_cast<std::size_t>(
+      std::count_if(model.pieces.begin(), model.pieces.end(), [](const convex_piece& p) { return p.flat; }));
+}
+
+double share(std::size_t part, std::size_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string error_text(const textured_model& model, double metres) {
+  return length_text(metres) + "  (" + brief(percent_of_diagonal(model, metres)) + " % of the diagonal)";
+}
+
+}  // namespace
+
+json describe(const textured_model& model) {
+  const bake_report& r = model.report;
+  const mat3& inertia = model.mass.inertia_per_mass;
+  const std::size_t image = std::size_t{model.texture.width} * model.texture.height;
+  json inertia_rows = json::array();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) inertia_rows.push_back(inertia[j][i]);
+  }
+  return {
+      {"name", model.name},
+      {"full_triangles", r.full_triangles},
+      {"coarse", {{"vertices", model.mesh.positions.size()}, {"triangles", model.mesh.triangles.size()}}},
+      {"pieces", {{"count", model.pieces.size()}, {"flat", flat_pieces(model)}}},
+      {"texture",
+       {{"width", model.texture.width},
+        {"height", model.texture.height},
+        {"texels", r.texels},
+        {"coverage", share(r.texels, image)},
+        {"fallback_texels", r.fallback_texels}}},
+      {"size",
+       {{"low", to_json(model.box.low)}, {"high", to_json(model.box.high)}, {"diagonal", model.box.diagonal()}}},
+      {"mass_properties",
+       {{"volume", model.mass.volume_m3},
+        {"centre_of_mass", to_json(model.mass.centre_of_mass)},
+        {"inertia_per_mass", inertia_rows}}},
+      {"bake",
+       {{"rms_error", r.rms_error_m},
+        {"max_error", r.max_error_m},
+        {"rms_error_percent", percent_of_diagonal(model, r.rms_error_m)},
+        {"max_error_percent", percent_of_diagonal(model, r.max_error_m)},
+        {"relief", r.relief_m},
+        {"max_displacement", r.max_displacement_m}}},
+  };
+}
+
+std::string describe_text(const textured_model& model) {
+  const bake_report& r = model.report;
+  const vec3 size = model.box.high - model.box.low;
+  const std::size_t image = std::size_t{model.texture.width} * model.texture.height;
+  std::string out;
+  out += row("name", model.name);
+  out += row("size", length_text(size.x) + " x " + length_text(size.y) + " x " + length_text(size.z) + ", diagonal " +
+                         length_text(model.box.diagonal()));
+  out += row("full mesh", std::to_string(r.full_triangles) + " triangles");
+  out += row("coarse mesh", std::to_string(model.mesh.triangles.size()) + " triangles, " +
+                                std::to_string(model.mesh.positions.size()) + " vertices");
+  out +=
+      row("convex pieces", std::to_string(model.pieces.size()) + ", " + std::to_string(flat_pieces(model)) + " flat");
+  out += row("haptic texture", std::to_string(model.texture.width) + " x " + std::to_string(model.texture.height) +
+                                   " texels, " + brief(100.0 * share(r.texels, image)) + " % used");
+  out += row("relief", length_text(r.relief_m) + " peak to valley, at most " + length_text(r.max_displacement_m) +
+                           " from the coarse mesh");
+  out += row("RMS error", error_text(model, r.rms_error_m));
+  out += row("maximum error", error_text(model, r.max_error_m));
+  out += row("volume", brief(model.mass.volume_m3 * 1e6) + " cm^3");
+  const vec3& c = model.mass.centre_of_mass;
+  out += row("centre of mass", length_text(c.x) + ", " + length_text(c.y) + ", " + length_text(c.z));
+  return out;
+}
+
+std::vector<std::string> warnings(const textured_model& model) {
+  const double diagonal = model.box.diagonal();
+  std::vector<std::string> out;
+  if (diagonal < 1e-3 || diagonal > 10.0) {
+    out.push_back("the diagonal is " + length_text(diagonal) +
+                  ", outside 1 mm to 10 m: if the source is not in metres, bake it again with --scale (0.001 for "
+                  "millimetres)");
+  }
+  if (model.report.max_error_m > 0.01 * diagonal) {
+    out.push_back("the textured surface misses the original by up to " + length_text(model.report.max_error_m) +
+                  ", more than 1 % of the diagonal: bake with more --triangles");
+  }
+  const double fallback = share(model.report.fallback_texels, model.report.texels);
+  if (fallback > 0.05) {
+    out.push_back(brief(100.0 * fallback) +
+                  " % of the texels found the surface only by its closest point: bake with more --triangles");
+  }
+  return out;
+}
+
+std::string warnings_text(const std::vector<std::string>& warnings) {
+  std::string out;
+  for (const std::string& w : warnings) out += "  warning: " + w + '\n';
+  return out;
+}
+
+}  // namespace asperity::command

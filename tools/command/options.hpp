@@ -1,0 +1,37 @@
+// Checks of option values that CLI11 does not have. Each returns an empty string, or what is wrong.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+namespace asperity::command {
+
+/// A finite number greater than zero.
+[[nodiscard]] inline std::string positive_number_error(const std::string& text) {
+  double value = 0.0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = failed == std::errc() && end == text.data() + text.size();
+  if (whole && std::isfinite(value) && value > 0.0) return {};
+  return "'" + text + "' is not a finite number greater than zero";
+}
+
+/// A file name with one of these extensions, lower or upper case.
+[[nodiscard]] inline std::string extension_error(const std::string& text,
+                                                 std::initializer_list<std::string_view> allowed) {
+  std::string extension = std::filesystem::path(text).extension().string();
+  std::string list;
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  for (const std::string_view one : allowed) {
+    if (extension == one) return {};
+    list += (list.empty() ? "" : " or ") + std::string(one);
+  }
+  return "'" + text + "' has to end in " + list;
+}
+
+}  // namespace asperity::command

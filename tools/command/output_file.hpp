@@ -1,0 +1,41 @@
+// A result that appears whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "asperity/core/status.hpp"
+
+namespace asperity::command {
+
+/// A file that is written under a temporary name beside its destination and moved there by commit(); without a commit
+/// nothing remains. A destination that is a device or a pipe is written directly, for it cannot be replaced.
+class output_file {
+ public:
+  /// Opens it now, so that an unwritable destination is found before the work and not after it.
+  /// @return io_failed with the path and the reason
+  [[nodiscard]] static result<output_file> create(const std::filesystem::path& destination);
+
+  output_file(output_file&& other) noexcept;
+  output_file& operator=(output_file&&) = delete;
+  ~output_file();
+
+  /// @return io_failed, for example where the disk is full
+  [[nodiscard]] result<void> write(std::string_view bytes);
+
+  /// Makes the file appear under its name. @return io_failed
+  [[nodiscard]] result<void> commit();
+
+ private:
+  output_file(int descriptor, std::filesystem::path destination, std::filesystem::path temporary);
+
+  int descriptor_;
+  std::filesystem::path destination_;
+  std::filesystem::path temporary_;  // empty where the destination is written directly
+};
+
+/// Proves that a regular file can be made at the destination, and leaves nothing there.
+/// For results that a library function writes: it opens the file only when the long work is done.
+[[nodiscard]] result<void> check_writable(const std::filesystem::path& destination);
+
+}  // namespace asperity::command

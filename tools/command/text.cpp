@@ -1,0 +1,62 @@
+#include "text.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace asperity::command {
+namespace {
+
+struct scale {
+  double factor;
+  const char* unit;
+};
+
+template <std::size_t N>
+std::string scaled(double value, const std::array<scale, N>& units) {
+  const double size = std::fabs(value);
+  for (const scale& s : units) {
+    if (size >= s.factor) return brief(value / s.factor) + ' ' + s.unit;
+  }
+  return brief(value / units.back().factor) + ' ' + units.back().unit;
+}
+
+}  // namespace
+
+std::string one_line(std::string_view message) {
+  std::string line(message);
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
+  }
+  return line;
+}
+
+std::string brief(double value) {
+  char text[32];
+  const double size = std::fabs(value);
+  // %g would print 1234 as 1.23e+03.
+  const bool whole = size >= 1000.0 && size < 1e7;
+  std::snprintf(text, sizeof text, whole ? "%.0f" : "%.3g", value);
+  return text;
+}
+
+std::string length_text(double metres) {
+  if (metres == 0.0) return "0 m";
+  return scaled(metres, std::array<scale, 4>{{{1.0, "m"}, {1e-3, "mm"}, {1e-6, "um"}, {1e-9, "nm"}}});
+}
+
+std::string time_text(double seconds) {
+  if (seconds == 0.0) return "0 s";
+  return scaled(seconds, std::array<scale, 4>{{{1.0, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}}});
+}
+
+std::string row(std::string_view label, std::string_view value) {
+  std::string line = "  ";
+  line += label;
+  line.append(label.size() < 24 ? 24 - label.size() : 1, ' ');
+  line += value;
+  line += '\n';
+  return line;
+}
+
+}  // namespace asperity::command

@@ -1,0 +1,33 @@
+// Numbers and lines for people and for recordings.
+#pragma once
+
+#include <charconv>
+#include <string>
+#include <string_view>
+
+namespace asperity::command {
+
+/// Appends the shortest decimal that reads back as the same double: recordings are exact and compare byte by byte.
+inline void append_number(std::string& out, double value) {
+  char digits[32];
+  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
+  out.append(digits, end);
+}
+
+/// The message without line breaks and other control characters, so that an error is one line whatever a file is
+/// called.
+[[nodiscard]] std::string one_line(std::string_view message);
+
+/// Three significant digits.
+[[nodiscard]] std::string brief(double value);
+
+/// A length in metres in the unit that suits its size, as in "12.3 mm".
+[[nodiscard]] std::string length_text(double metres);
+
+/// A duration in seconds in the unit that suits its size, as in "12.3 us".
+[[nodiscard]] std::string time_text(double seconds);
+
+/// "  label ........ value" with the values in one column.
+[[nodiscard]] std::string row(std::string_view label, std::string_view value);
+
+}  // namespace asperity::command
