@@ -1,0 +1,43 @@
+# The package: find_package(asperity [COMPONENTS io bake]), pkg-config for the header-only core, the command.
+include(CMakePackageConfigHelpers)
+
+set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
+
+# Core. Each component below has an export file of its own, so that find_package(asperity) asks for GLM and nothing else.
+install(TARGETS asperity asperity_reproducible EXPORT asperity-core FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT asperity-core NAMESPACE asperity:: FILE asperity-core.cmake DESTINATION ${_config_dir})
+
+foreach(_component io bake)
+  if(TARGET asperity_${_component})
+    set_target_properties(asperity_${_component} PROPERTIES EXPORT_NAME ${_component})
+    install(TARGETS asperity_${_component} EXPORT asperity-${_component}
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+            FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+    install(EXPORT asperity-${_component} NAMESPACE asperity:: FILE asperity-${_component}.cmake
+            DESTINATION ${_config_dir})
+  endif()
+endforeach()
+
+# What find_dependency has to find before a component is used; the core needs GLM only.
+set(ASPERITY_PACKAGES_io TinyGLTF nlohmann_json)
+set(ASPERITY_PACKAGES_bake meshoptimizer)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/asperity-config.cmake.in
+                              ${PROJECT_BINARY_DIR}/asperity-config.cmake INSTALL_DESTINATION ${_config_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/asperity-config-version.cmake
+                                 VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/asperity-config.cmake ${PROJECT_BINARY_DIR}/asperity-config-version.cmake
+        DESTINATION ${_config_dir})
+
+# Paths in the .pc file are relative to it, so that an installed tree can be moved.
+set(_pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
+file(RELATIVE_PATH _pc_prefix ${CMAKE_INSTALL_PREFIX}/${_pkgconfig_dir} ${CMAKE_INSTALL_PREFIX})
+configure_file(${CMAKE_CURRENT_LIST_DIR}/asperity.pc.in ${PROJECT_BINARY_DIR}/asperity.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/asperity.pc DESTINATION ${_pkgconfig_dir})
+
+if(TARGET asperity_command)
+  install(TARGETS asperity_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+file(GLOB _schemas CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/reference/*.schema.json)
+install(FILES ${_schemas} DESTINATION ${CMAKE_INSTALL_DATADIR}/asperity/schema)

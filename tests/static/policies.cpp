@@ -1,0 +1,121 @@
+// Each policy concept accepts the least that keeps its contract, and rejects what only looks like it.
+#include <gtest/gtest.h>
+
+#include <asperity/render/renderer.hpp>
+
+namespace {
+
+using namespace asperity;
+
+struct finder {
+  using policy_tag = collision_tag;
+  status find(const scene_pose&, contact_set&) noexcept { return status::ok; }
+};
+struct finder_may_throw {
+  using policy_tag = collision_tag;
+  status find(const scene_pose&, contact_set&) { return status::ok; }
+};
+struct finder_answers_bool {
+  using policy_tag = collision_tag;
+  bool find(const scene_pose&, contact_set&) noexcept { return true; }
+};
+struct finder_without_tag {
+  status find(const scene_pose&, contact_set&) noexcept { return status::ok; }
+};
+struct finder_with_wrong_tag {
+  using policy_tag = depth_tag;
+  status find(const scene_pose&, contact_set&) noexcept { return status::ok; }
+};
+struct finder_wants_to_change_poses {
+  using policy_tag = collision_tag;
+  status find(scene_pose&, contact_set&) noexcept { return status::ok; }
+};
+static_assert(collision_finder<finder>);
+static_assert(!collision_finder<finder_may_throw>);
+static_assert(!collision_finder<finder_answers_bool>);
+static_assert(!collision_finder<finder_without_tag>);
+static_assert(!collision_finder<finder_with_wrong_tag>);
+static_assert(!collision_finder<finder_wants_to_change_poses>);
+static_assert(!collision_finder<int>);
+
+struct depth {
+  using policy_tag = depth_tag;
+  status measure(const scene_pose&, const contact_set&, std::span<penetration>) noexcept { return status::ok; }
+};
+struct depth_may_throw {
+  using policy_tag = depth_tag;
+  status measure(const scene_pose&, const contact_set&, std::span<penetration>) { return status::ok; }
+};
+struct depth_answers_nothing {
+  using policy_tag = depth_tag;
+  void measure(const scene_pose&, const contact_set&, std::span<penetration>) noexcept {}
+};
+struct depth_without_tag {
+  status measure(const scene_pose&, const contact_set&, std::span<penetration>) noexcept { return status::ok; }
+};
+struct depth_one_at_a_time {
+  using policy_tag = depth_tag;
+  status measure(const scene_pose&, const contact&, penetration&) noexcept { return status::ok; }
+};
+struct depth_changes_contacts {
+  using policy_tag = depth_tag;
+  status measure(const scene_pose&, contact_set&, std::span<penetration>) noexcept { return status::ok; }
+};
+static_assert(depth_backend<depth>);
+static_assert(!depth_backend<depth_may_throw>);
+static_assert(!depth_backend<depth_answers_nothing>);
+static_assert(!depth_backend<depth_without_tag>);
+static_assert(!depth_backend<depth_one_at_a_time>);
+static_assert(!depth_backend<depth_changes_contacts>);
+static_assert(!depth_backend<finder>);
+
+struct force {
+  using policy_tag = force_tag;
+  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) const noexcept {
+    return status::ok;
+  }
+};
+struct force_may_throw {
+  using policy_tag = force_tag;
+  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) const { return status::ok; }
+};
+struct force_without_tag {
+  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) const noexcept {
+    return status::ok;
+  }
+};
+// A model that changes itself from call to call cannot promise to keep nothing between them.
+struct force_with_memory {
+  using policy_tag = force_tag;
+  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) noexcept { return status::ok; }
+};
+struct force_without_stiffness {
+  using policy_tag = force_tag;
+  status accumulate(const contact_set&, std::span<const penetration>, wrench&) const noexcept { return status::ok; }
+};
+struct force_changes_depths {
+  using policy_tag = force_tag;
+  status accumulate(const contact_set&, std::span<penetration>, contact_force&) const noexcept { return status::ok; }
+};
+static_assert(force_model<force>);
+static_assert(!force_model<force_may_throw>);
+static_assert(!force_model<force_without_tag>);
+static_assert(!force_model<force_with_memory>);
+static_assert(!force_model<force_without_stiffness>);
+static_assert(!force_model<force_changes_depths>);
+static_assert(!force_model<depth>);
+
+// The renderer takes exactly three policies, each in its place.
+template <class... Policies>
+concept makes_a_renderer = requires {
+  typename basic_renderer<Policies...>;
+};
+static_assert(makes_a_renderer<finder, depth, force>);
+static_assert(!makes_a_renderer<depth, finder, force>);
+static_assert(!makes_a_renderer<finder, depth, force_may_throw>);
+static_assert(noexcept(std::declval<basic_renderer<finder, depth, force>&>().step(std::declval<const scene_pose&>(),
+                                                                                  std::declval<tick&>())));
+
+TEST(static_policies, hold_because_this_file_was_compiled) { SUCCEED(); }
+
+}  // namespace

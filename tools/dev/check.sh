@@ -1,0 +1,158 @@
+# shellcheck shell=bash
+# The check matrix: every step runs, even after a failure; a table of results and times comes last. Sourced by ./dev.
+
+check_names=()
+check_results=()
+check_seconds=()
+check_tests=()
+
+# check_step NAME FUNCTION: runs FUNCTION with its output in build/check/NAME.log, and shows the log where it fails.
+# build/check/NAME.counts receives "N passed, N failed, N skipped": from the step where it runs tests, else of itself.
+check_step() {
+  local name=$1 function=$2 log=build/check/$1.log counts=build/check/$1.counts start=$SECONDS status tests=""
+  step "check: $name"
+  rm -f "$counts"
+  set +e
+  (
+    set -e
+    "$function"
+  ) > "$log" 2>&1
+  status=$?
+  set -e
+  check_names+=("$name")
+  check_seconds+=($((SECONDS - start)))
+  grep -E '^(skipped|left out): ' "$log" || true
+  if [[ -e $counts ]]; then
+    tests=$(cat "$counts")
+    say "$tests"
+  fi
+  check_tests+=("$tests")
+  if [[ $status -eq 0 ]]; then
+    check_results+=(passed)
+    [[ -n $tests ]] || say "1 passed, 0 failed, 0 skipped" > "$counts"
+  else
+    check_results+=(FAILED)
+    [[ -n $tests && $tests != *" 0 failed"* ]] || say "0 passed, 1 failed, 0 skipped" >> "$counts"
+    tail -n 100 "$log"
+    say "check: $name failed; its whole output is in $log"
+  fi
+}
+
+# test_preset PRESET STEP [CTEST ARGUMENT...]: runs the tests of a built preset, whose counts become the step's.
+test_preset() {
+  local preset=$1 name=$2 status=0
+  shift 2
+  run_ctest "$preset" "$@" || status=1
+  cp "build/$preset/test-summary" "build/check/$name.counts"
+  return "$status"
+}
+
+check_format() {
+  git ls-files '*.hpp' '*.h' '*.cpp' | xargs clang-format --dry-run -Werror
+}
+
+# Every header of the core in one translation unit, without exceptions, and compiled to the end by both compilers.
+check_no_exceptions() {
+  local source=build/check/core.cpp compiler
+  core_headers | sed 's/.*/#include "&"/' > "$source"
+  for compiler in g++ clang++; do
+    "$compiler" -std=c++20 -fno-exceptions -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion \
+      -Wold-style-cast -Werror -Iinclude -c "$source" -o "build/check/core-$compiler.o"
+    "$compiler" -std=c++20 -fno-exceptions -O1 -Iinclude tests/static/no_exceptions.cpp -o "build/check/no-exceptions-$compiler"
+    "build/check/no-exceptions-$compiler"
+  done
+}
+
+# The headers that belong to asperity::asperity, as they are included.
+core_headers() {
+  git ls-files include | sed -n 's|^include/\(asperity/.*\.h\(pp\)\{0,1\}\)$|\1|p' | grep -vE '^asperity/(io|bake)/'
+}
+
+check_gcc_debug() {
+  left_out long "they take minutes without optimisation"
+  configure_and_build debug
+  test_preset debug gcc-debug -LE long
+}
+
+check_header_sets() { cmake --build build/debug --target all_verify_interface_header_sets; }
+
+check_clang_release() {
+  configure_and_build clang
+  test_preset clang clang-release
+}
+
+check_asan_ubsan() {
+  left_out long "too slow under the address sanitizer"
+  left_out install "a consumer's program is not built with sanitizers"
+  configure_and_build asan-ubsan
+  test_preset asan-ubsan asan-ubsan -LE 'long|install'
+}
+
+# ThreadSanitizer sees only what runs in two threads at once; everything else is covered by the other builds.
+# A test's program has the name of its CTest entry, so the entries labelled `threads` are also the targets to build.
+check_tsan() {
+  local targets
+  configure tsan
+  mapfile -t targets < <(ctest --test-dir build/tsan -N -L threads | sed -n 's/^ *Test *#[0-9]*: //p')
+  build tsan "${targets[@]}"
+  test_preset tsan tsan -L threads
+}
+
+left_out() { say "left out: tests labelled '$1' ($2)"; }
+
+check_tidy() {
+  # One translation unit shows every header of the core to clang-tidy; the compiled components show the rest.
+  local flags
+  cmake --preset clang > /dev/null
+  git ls-files 'tools/*.cpp' 'examples/*.cpp' | tee build/check/tidy-files
+  say build/check/core.cpp >> build/check/tidy-files
+  core_headers | sed 's/.*/#include "&"/' > build/check/core.cpp
+  flags=(-std=c++20 -Iinclude)
+  xargs -P "$(nproc)" -I{} clang-tidy --quiet -p build/clang {} < <(grep -v '^build/' build/check/tidy-files)
+  clang-tidy --quiet build/check/core.cpp -- "${flags[@]}"
+}
+
+# The same session, bit for bit, whoever compiled it.
+check_determinism() {
+  local build
+  for build in release debug clang; do
+    configure_and_build "$build" bin/asperity
+    tests/golden/session.sh "build/$build/bin/asperity" "build/check/golden-$build"
+    (cd "build/check/golden-$build" && sha256sum -- *) > "build/check/golden-$build.sha256"
+    say "$build:"
+    cat "build/check/golden-$build.sha256"
+  done
+  cmp build/check/golden-release.sha256 build/check/golden-debug.sha256
+  cmp build/check/golden-release.sha256 build/check/golden-clang.sha256
+}
+
+run_check() {
+  setup
+  mkdir -p build/check
+  rm -f build/check/*.counts
+  check_step format check_format
+  check_step no-exceptions check_no_exceptions
+  check_step gcc-debug check_gcc_debug
+  check_step header-sets check_header_sets
+  check_step clang-release check_clang_release
+  check_step clang-tidy check_tidy
+  check_step asan-ubsan check_asan_ubsan
+  check_step tsan check_tsan
+  check_step determinism check_determinism
+  check_table
+}
+
+check_table() {
+  local i failed=0
+  printf '\n%-16s %-7s %7s  %s\n' step result time tests
+  for i in "${!check_names[@]}"; do
+    printf '%-16s %-7s %5d s  %s\n' "${check_names[i]}" "${check_results[i]}" "${check_seconds[i]}" "${check_tests[i]}"
+    [[ ${check_results[i]} == passed ]] || failed=$((failed + 1))
+  done
+  say
+  if [[ $failed -gt 0 ]]; then
+    say "check: $failed of ${#check_names[@]} steps failed"
+    return 1
+  fi
+  say "check: all ${#check_names[@]} steps passed"
+}
