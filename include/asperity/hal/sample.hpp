@@ -1,0 +1,42 @@
+// What a device reports.
+#pragma once
+
+#include <cstdint>
+
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+
+namespace asperity {
+
+/// Which fields of a device_sample the device really measured.
+enum class sample_field : std::uint8_t {
+  none = 0,
+  position = 1,
+  rotation = 2,
+  linear_velocity = 4,
+  angular_velocity = 8,
+  buttons = 16,
+};
+
+[[nodiscard]] constexpr sample_field operator|(sample_field a, sample_field b) noexcept {
+  return static_cast<sample_field>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
+}
+/// True where every bit of `bits` is in `set`.
+[[nodiscard]] constexpr bool has_all(sample_field set, sample_field bits) noexcept {
+  return (static_cast<std::uint8_t>(set) & static_cast<std::uint8_t>(bits)) == static_cast<std::uint8_t>(bits);
+}
+
+/// One measurement of a device: where its handle is, and when.
+/// A device that lacks an axis reports the constant value of that axis and leaves the field's bit unset.
+struct device_sample {
+  std::int64_t host_time_ns = 0;    ///< when the host received it, on the clock of the session
+  std::int64_t device_time_ns = 0;  ///< when the device measured it, on the device's own clock
+  std::uint64_t sequence = 0;       ///< grows by one with every new measurement; equal means nothing new came
+  std::uint64_t lost = 0;           ///< measurements that the transport is known to have lost so far
+  pose T_dh{};                      ///< handle h in the device's base frame d, metres
+  twist velocity_d{};               ///< of the handle's origin, base frame, m/s and rad/s
+  std::uint32_t buttons = 0;        ///< one bit per button, pressed = 1
+  sample_field valid = sample_field::none;
+};
+
+}  // namespace asperity
