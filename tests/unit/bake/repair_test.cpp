@@ -1,0 +1,88 @@
+#include "asperity/bake/repair.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace {
+
+using namespace asperity;
+
+// Upright tube of `sides` quads, open at both ends.
+triangle_mesh open_tube(std::uint32_t sides) {
+  triangle_mesh m;
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const double a = 2 * std::numbers::pi * i / sides;
+    m.positions.emplace_back(std::cos(a), std::sin(a), -1.0);
+    m.positions.emplace_back(std::cos(a), std::sin(a), 1.0);
+  }
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const std::uint32_t j = (i + 1) % sides;
+    m.triangles.push_back({2 * i, 2 * j, 2 * j + 1});
+    m.triangles.push_back({2 * i, 2 * j + 1, 2 * i + 1});
+  }
+  return m;
+}
+
+bool is_closed_and_oriented(const triangle_mesh& m) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed;
+  for (const auto& t : m.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) ++directed[{t[k], t[(k + 1) % 3]}];
+  }
+  for (const auto& [edge, count] : directed) {
+    if (count != 1 || directed.count({edge.second, edge.first}) == 0) return false;
+  }
+  return true;
+}
+
+double volume(const triangle_mesh& m) {
+  double v = 0.0;
+  for (const auto& t : m.triangles) {
+    v += glm::dot(m.positions[t[0]], glm::cross(m.positions[t[1]], m.positions[t[2]])) / 6.0;
+  }
+  return v;
+}
+
+TEST(close_holes, closes_both_ends_of_a_tube_with_its_lids) {
+  triangle_mesh m = open_tube(24);
+  const auto report = bake::close_holes(m);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->holes, 2U);
+  EXPECT_EQ(report->triangles_added, 2U * (24 - 2));
+  EXPECT_TRUE(is_closed_and_oriented(m));
+  const double lid = 0.5 * 24 * std::sin(2 * std::numbers::pi / 24);
+  EXPECT_NEAR(report->area_added_m2, 2 * lid, 1e-12);
+  EXPECT_NEAR(volume(m), 2 * lid, 1e-12);  // outward, and the lids are flat
+  EXPECT_NEAR(report->largest_m, 2.0, 1e-12);
+}
+
+TEST(close_holes, leaves_a_closed_mesh_as_it_is) {
+  triangle_mesh m = open_tube(8);
+  ASSERT_TRUE(bake::close_holes(m));
+  const auto triangles = m.triangles;
+  const auto again = bake::close_holes(m);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->holes, 0U);
+  EXPECT_EQ(m.triangles, triangles);
+}
+
+TEST(close_holes, refuses_a_hole_too_large_to_guess_and_changes_nothing) {
+  triangle_mesh m = open_tube(static_cast<std::uint32_t>(bake::largest_hole_edges) + 1);
+  const auto triangles = m.triangles;
+  const auto report = bake::close_holes(m);
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().code, error_code::bad_mesh);
+  EXPECT_EQ(m.triangles, triangles);
+}
+
+TEST(close_holes, refuses_edges_with_three_triangles) {
+  triangle_mesh m = open_tube(6);
+  m.triangles.push_back(m.triangles.front());
+  EXPECT_FALSE(bake::close_holes(m));
+}
+
+}  // namespace
