@@ -38,16 +38,20 @@ int fail(std::string_view code, std::string_view message, bool as_json, int exit
 }  // namespace
 
 command_line::command_line() : app_("Haptic rendering of contact between textured objects", "asperity") {
-  app_.set_version_flag("--version", "asperity " ASPERITY_VERSION);
   app_.require_subcommand(1);
   app_.get_formatter()->column_width(32);
+  add_common_switches(app_);
+}
+
+void command_line::add_common_switches(CLI::App& to) {
+  to.set_version_flag("--version", "asperity " ASPERITY_VERSION, "Print the version and exit");
+  to.add_flag("--json", common_.json, "Print one JSON document on stdout and nothing else there");
+  to.add_flag("--quiet", common_.quiet, "Print no report and no progress");
 }
 
 CLI::App& command_line::add(const std::string& name, const std::string& purpose, action run) {
   CLI::App* sub = app_.add_subcommand(name, purpose);
-  sub->set_version_flag("--version", "asperity " ASPERITY_VERSION);
-  sub->add_flag("--json", common_.json, "Print one JSON document on stdout and nothing else there");
-  sub->add_flag("--quiet", common_.quiet, "Print no report and no progress");
+  add_common_switches(*sub);
   sub->parse_complete_callback([this, name, run = std::move(run)] {
     chosen_ = name;
     action_ = run;

@@ -48,6 +48,8 @@ class command_line {
   int run(int argc, const char* const* argv);
 
  private:
+  void add_common_switches(CLI::App& to);  // before and after the subcommand's name they mean the same
+
   CLI::App app_;
   common_options common_;
   std::string chosen_;

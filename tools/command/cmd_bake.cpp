@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "asperity/bake/bake.hpp"
+#include "asperity/bake/repair.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "cli.hpp"
@@ -29,6 +30,7 @@ struct bake_command {
   std::uint32_t texture = 1024;
   unsigned threads = 0;
   double scale = 1.0;
+  bool close_holes = false;
 };
 
 // Wall time of each stage, told apart by the names that the work reports.
@@ -67,11 +69,16 @@ result<void> check_paths(const bake_command& options) {
   return check_writable(options.out);
 }
 
-answer report(const bake_command& options, const textured_model& model, const stage_clock& clock) {
+answer report(const bake_command& options, const textured_model& model, const bake::hole_report& holes,
+              const stage_clock& clock) {
   const std::vector<std::string> notes = warnings(model);
   answer out;
   out.document = {{"file", options.out}, {"source", options.full}, {"scale", options.scale}};
   out.document.update(describe(model));
+  out.document["repair"] = {{"holes_closed", holes.holes},
+                            {"triangles_added", holes.triangles_added},
+                            {"area_added", holes.area_added_m2},
+                            {"largest_hole", holes.largest_m}};
   json stages = json::array();
   std::string times;
   double total = 0.0;
@@ -84,8 +91,12 @@ answer report(const bake_command& options, const textured_model& model, const st
   out.document["seconds"] = total;
   out.document["warnings"] = notes;
   out.document["units"] = "SI";
-  out.text = options.full + " -> " + options.out + '\n' + describe_text(model) +
-             row("time", time_text(total) + "  (" + times + ')') + warnings_text(notes);
+  out.text = options.full + " -> " + options.out + '\n' + describe_text(model);
+  if (holes.holes > 0) {
+    out.text +=
+        row("holes closed", std::to_string(holes.holes) + ", the largest " + length_text(holes.largest_m) + " across");
+  }
+  out.text += row("time", time_text(total) + "  (" + times + ')') + warnings_text(notes);
   return out;
 }
 
@@ -104,6 +115,12 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   result<triangle_mesh> full = io::load_mesh(options.full);
   if (!full) return full.error();
   scale_mesh(*full, options.scale);
+  bake::hole_report holes;
+  if (options.close_holes) {
+    const result<bake::hole_report> closed = bake::close_holes(*full);
+    if (!closed) return closed.error();
+    holes = *closed;
+  }
 
   bake::bake_options settings;
   settings.name = options.name.empty() ? fs::path(options.full).stem().string() : options.name;
@@ -123,7 +140,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!enter("write", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
   if (const result<void> saved = io::save_textured_model(*model, options.out); !saved) return saved.error();
   clock.leave();
-  return report(options, *model, clock);
+  return report(options, *model, holes, clock);
 }
 
 }  // namespace
@@ -147,6 +164,7 @@ void add_bake(command_line& line) {
   sub.add_option("--scale", o->scale, "Metres per unit of the meshes (0.001 for millimetres)")
       ->check(positive_number_error, "NUMBER > 0")
       ->capture_default_str();
+  sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
   sub.add_option("--threads", o->threads, "Threads to use; 0 takes all. The result does not depend on it")
       ->check(CLI::Range(0, 1024))

@@ -1,0 +1,99 @@
+// Meshes that cannot become a textured model.
+#include "command_process.hpp"
+
+namespace fault {
+namespace {
+
+class bad_mesh : public command_test {
+ protected:
+  // Bakes a mesh of this text and expects exit status 1 and no output file. @return the message
+  std::string expect_refused(const std::string& name, const std::string& text, const std::string& code) const {
+    write(name, text);
+    return expect_failure({"bake", path(name), "-o", path("out.glb"), "--texture", "64"}, 1, code);
+  }
+};
+
+std::string ply(const std::string& vertices, int vertex_count, const std::string& faces, int face_count) {
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(face_count) +
+         "\nproperty list uchar int vertex_indices\nend_header\n" + vertices + faces;
+}
+
+const char* const cube_vertices =
+    "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv 0 0 0.1\nv 0.1 0 0.1\nv 0.1 0.1 0.1\nv 0 0.1 0.1\n";
+const char* const cube_without_lid = "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+TEST_F(bad_mesh, file_that_is_not_there) {
+  const std::string message = expect_failure({"bake", path("absent.ply"), "-o", path("out.glb")}, 1, "io_failed");
+  EXPECT_NE(message.find("absent.ply"), std::string::npos);
+}
+
+TEST_F(bad_mesh, folder_instead_of_a_file) {
+  expect_failure({"bake", path("."), "-o", path("out.glb")}, 1, "unsupported");
+  std::filesystem::create_directory(path("mesh.ply"));
+  expect_failure({"bake", path("mesh.ply"), "-o", path("out.glb")}, 1, "io_failed");
+}
+
+TEST_F(bad_mesh, unknown_format) { expect_refused("mesh.xyz", "0 0 0\n", "unsupported"); }
+
+TEST_F(bad_mesh, empty_files) {
+  for (const char* name : {"mesh.ply", "mesh.stl", "mesh.glb", "mesh.gltf"}) expect_refused(name, "", "bad_format");
+}
+
+TEST_F(bad_mesh, empty_mesh) {
+  expect_refused("mesh.ply", ply("", 0, "", 0), "bad_mesh");
+  expect_refused("mesh.obj", "# nothing\n", "bad_mesh");
+}
+
+TEST_F(bad_mesh, one_triangle) {
+  expect_refused("mesh.ply", ply("0 0 0\n0.1 0 0\n0 0.1 0\n", 3, "3 0 1 2\n", 1), "bad_mesh");
+}
+
+TEST_F(bad_mesh, zero_area_triangles) {
+  // Closed and manifold by its indices, but every vertex lies on one line.
+  const std::string needle = ply("0 0 0\n0.1 0 0\n0.2 0 0\n0.3 0 0\n", 4, "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n", 4);
+  expect_refused("mesh.ply", needle, "bad_mesh");
+}
+
+TEST_F(bad_mesh, all_vertices_in_one_point) {
+  const std::string point = ply("1 1 1\n1 1 1\n1 1 1\n1 1 1\n", 4, "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n", 4);
+  expect_refused("mesh.ply", point, "bad_mesh");
+}
+
+TEST_F(bad_mesh, open_surface) {
+  const std::string message = expect_refused("mesh.obj", std::string(cube_vertices) + cube_without_lid, "bad_mesh");
+  EXPECT_TRUE(message.find("open") != std::string::npos || message.find("boundary") != std::string::npos) << message;
+}
+
+TEST_F(bad_mesh, nan_and_infinite_vertices) {
+  for (const char* number : {"nan", "inf", "-inf", "1e999"}) {
+    write("mesh.obj", "v 0 0 " + std::string(number) + "\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\n" +
+                          "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    const outcome refused = run({"bake", path("mesh.obj"), "-o", path("out.glb")});
+    EXPECT_EQ(refused.exit_status, 1) << number;
+    EXPECT_EQ(files(), std::set<std::string>{"mesh.obj"});
+  }
+}
+
+TEST_F(bad_mesh, index_that_points_nowhere) {
+  expect_refused("mesh.ply", ply("0 0 0\n0.1 0 0\n0 0.1 0\n0 0 0.1\n", 4, "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 9\n", 4),
+                 "bad_format");
+}
+
+TEST_F(bad_mesh, truncated_binary_ply) {
+  std::filesystem::copy_file(small_models() / "block.ply", path("whole.ply"));
+  const std::string whole = read("whole.ply");
+  for (const std::size_t kept : {std::size_t{3}, std::size_t{100}, whole.size() / 2, whole.size() - 1}) {
+    expect_refused("mesh.ply", whole.substr(0, kept), "bad_format");
+  }
+}
+
+TEST_F(bad_mesh, coarse_mesh_is_checked_too) {
+  write("low.obj", std::string(cube_vertices) + cube_without_lid);
+  expect_failure({"bake", (small_models() / "block.ply").string(), "--coarse", path("low.obj"), "-o", path("out.glb"),
+                  "--texture", "64"},
+                 1, "bad_mesh");
+}
+
+}  // namespace
+}  // namespace fault

@@ -1,0 +1,100 @@
+// Outputs that cannot be written: found early, one sentence, nothing left behind.
+#include <unistd.h>
+
+#include "command_process.hpp"
+
+namespace fault {
+namespace {
+
+class output : public command_test {
+ protected:
+  output() { write("file", "not a folder"); }
+
+  [[nodiscard]] static std::string block(const char* file) { return (small_models() / file).string(); }
+  [[nodiscard]] static arguments bake_to(const std::string& out) {
+    return {"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture", "64", "-o", out};
+  }
+  [[nodiscard]] static arguments run_with(const char* option, const std::string& out) {
+    return {"run", "--probe", block("block.glb"), "--fixed", block("block.glb"), "--seconds", "0.05", option, out};
+  }
+};
+
+TEST_F(output, folder_that_is_not_there) {
+  EXPECT_NE(expect_failure(bake_to(path("absent/model.glb")), 1, "io_failed").find("absent/model.glb"),
+            std::string::npos);
+  expect_failure(run_with("--record", path("absent/session.csv")), 1, "io_failed");
+  expect_failure(run_with("--plot", path("absent/plot.png")), 1, "io_failed");
+}
+
+TEST_F(output, parent_that_is_a_file) {
+  expect_failure(bake_to(path("file/model.glb")), 1, "io_failed");
+  expect_failure(run_with("--record", path("file/session.csv")), 1, "io_failed");
+  expect_failure(run_with("--plot", path("file/plot.svg")), 1, "io_failed");
+  expect_failure({"models", "--only", "block", "-o", path("file/models")}, 1, "io_failed");
+  expect_failure({"models", "--only", "block", "-o", path("file")}, 1, "io_failed");
+}
+
+TEST_F(output, folder_in_the_place_of_the_file) {
+  std::filesystem::create_directory(path("model.glb"));
+  std::filesystem::create_directory(path("session.csv"));
+  expect_failure(bake_to(path("model.glb")), 1, "io_failed");
+  expect_failure(run_with("--record", path("session.csv")), 1, "io_failed");
+}
+
+TEST_F(output, unwritable_place_is_found_before_the_input_is_read) {
+  const std::string message =
+      expect_failure({"bake", path("absent.ply"), "-o", path("absent/model.glb")}, 1, "io_failed");
+  EXPECT_NE(message.find("absent/model.glb"), std::string::npos) << message;
+}
+
+TEST_F(output, full_disk) {
+  // Every write to /dev/full fails as on a full disk. A device is written in place, so its name needs no extension.
+  std::filesystem::create_symlink("/dev/full", path("session.csv"));
+  std::filesystem::create_symlink("/dev/full", path("plot.png"));
+  expect_failure(run_with("--record", path("session.csv")), 1, "io_failed");
+  expect_failure(run_with("--plot", path("plot.png")), 1, "io_failed");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
+}
+
+TEST_F(output, disk_that_fills_up_while_writing) {
+  process_options options;
+  options.file_size_limit = 4096;
+  expect_failure(bake_to(path("model.glb")), 1, "io_failed", options);
+  expect_failure(run_with("--record", path("session.csv")), 1, "io_failed", options);
+  expect_failure(run_with("--plot", path("plot.png")), 1, "io_failed", options);
+  expect_failure({"models", "--only", "block", "-o", path("")}, 1, "io_failed", options);
+}
+
+TEST_F(output, stdout_that_takes_nothing) {
+  process_options options;
+  options.stdout_to = "/dev/full";
+  const outcome lost = run({"devices", "--json"}, options);
+  EXPECT_EQ(lost.exit_status, 1);
+  EXPECT_EQ(lost.err.rfind("asperity: stdout", 0), 0U) << lost.err;
+}
+
+TEST_F(output, mesh_that_would_replace_itself) {
+  std::filesystem::copy_file(block("block.glb"), path("mesh.glb"));
+  const std::string before = read("mesh.glb");
+  expect_failure({"bake", path("mesh.glb"), "-o", path("mesh.glb")}, 1, "invalid_argument");
+  EXPECT_EQ(read("mesh.glb"), before);
+}
+
+TEST_F(output, failed_bake_keeps_the_old_model) {
+  write("model.glb", "an older model");
+  write("mesh.ply", "ply\n");
+  expect_failure({"bake", path("mesh.ply"), "-o", path("model.glb")}, 1, "bad_format");
+  EXPECT_EQ(read("model.glb"), "an older model");
+}
+
+TEST_F(output, interrupted_bake_leaves_nothing) {
+  process_options options;
+  options.interrupt_after_s = 0.05;
+  const outcome stopped = run({"bake", block("block.ply"), "-o", path("model.glb"), "--texture", "4096"}, options);
+  EXPECT_EQ(stopped.exit_status, 130);
+  EXPECT_EQ(stopped.err.rfind("asperity: ", 0), 0U) << stopped.err;
+  EXPECT_EQ(files(), std::set<std::string>{"file"});
+}
+
+}  // namespace
+}  // namespace fault
