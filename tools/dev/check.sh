@@ -117,13 +117,13 @@ check_determinism() {
   local build
   for build in release debug clang; do
     configure_and_build "$build" bin/asperity
-    tests/golden/session.sh "build/$build/bin/asperity" "build/check/golden-$build"
-    (cd "build/check/golden-$build" && sha256sum -- *) > "build/check/golden-$build.sha256"
+    tests/golden/session.sh "build/$build/bin/asperity" "build/check/$build"
+    (cd "build/check/$build/golden" && sha256sum -- *) > "build/check/$build.sha256"
     say "$build:"
-    cat "build/check/golden-$build.sha256"
+    cat "build/check/$build.sha256"
   done
-  cmp build/check/golden-release.sha256 build/check/golden-debug.sha256
-  cmp build/check/golden-release.sha256 build/check/golden-clang.sha256
+  cmp build/check/release.sha256 build/check/debug.sha256
+  cmp build/check/release.sha256 build/check/clang.sha256
 }
 
 run_check() {
