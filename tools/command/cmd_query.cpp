@@ -1,0 +1,135 @@
+// asperity query: contacts, depths and the wrench at one pair of poses.
+#include <optional>
+#include <utility>
+
+#include "cli.hpp"
+#include "model_report.hpp"
+#include "poses.hpp"
+#include "render_options.hpp"
+#include "scene_loading.hpp"
+#include "text.hpp"
+
+namespace asperity::command {
+namespace {
+
+struct query_command {
+  std::string probe;
+  std::string fixed;
+  std::string probe_pose;
+  std::string fixed_pose = "0 0 0 0 0 0 1";
+  render_options render;
+};
+
+json flag_names(depth_flag flags) {
+  json names = json::array();
+  const std::pair<depth_flag, const char*> all[] = {{depth_flag::no_overlap, "no_overlap"},
+                                                    {depth_flag::window_too_small, "window_too_small"},
+                                                    {depth_flag::saturated, "saturated"},
+                                                    {depth_flag::bad_texel, "bad_texel"}};
+  for (const auto& [flag, name] : all) {
+    if (has(flags, flag)) names.push_back(name);
+  }
+  return names;
+}
+
+json to_json(const vec6& v) {
+  json out = json::array();
+  for (std::size_t i = 0; i < 6; ++i) out.push_back(v[i]);
+  return out;
+}
+
+json contact_json(const contact& c, const penetration& p) {
+  const contact_window& w = c.window;
+  return {{"p_a", command::to_json(c.p_a_w)},
+          {"p_b", command::to_json(c.p_b_w)},
+          {"n_ab", command::to_json(w.n_ab_w)},
+          {"centre", command::to_json(w.centre_w)},
+          {"u", command::to_json(w.u_w)},
+          {"half_size", w.half_size_m},
+          {"separation", c.separation_m},
+          {"depth", p.depth_m},
+          {"soft_depth", p.soft_depth_m},
+          {"gradient", to_json(p.gradient)},
+          {"witness", command::to_json(p.witness_w)},
+          {"samples", p.samples},
+          {"flags", flag_names(p.flags)}};
+}
+
+std::string contact_text(std::size_t i, const contact& c, const penetration& p) {
+  const vec3& n = c.window.n_ab_w;
+  std::string flags;
+  for (const json& name : flag_names(p.flags)) flags += ", " + name.get<std::string>();
+  const std::string what = p.depth_m > 0.0 ? "overlap " : "gap ";
+  return row("contact " + std::to_string(i + 1), what + length_text(std::fabs(p.depth_m)) + " along (" + brief(n.x) +
+                                                     ", " + brief(n.y) + ", " + brief(n.z) + "), window " +
+                                                     length_text(2.0 * c.window.half_size_m) + ", " +
+                                                     std::to_string(p.samples) + " samples" + flags);
+}
+
+answer report(const query_command& options, const tick& found, status answered) {
+  answer out;
+  json contacts = json::array();
+  for (std::size_t i = 0; i < found.contacts.size(); ++i) {
+    contacts.push_back(contact_json(found.contacts[i], found.depths[i]));
+    out.text += contact_text(i, found.contacts[i], found.depths[i]);
+  }
+  const wrench& w = found.force.on_probe_w;
+  out.document = {{"contacts", std::move(contacts)},
+                  {"force", command::to_json(w.force)},
+                  {"torque", command::to_json(w.torque)},
+                  {"centre_of_mass", command::to_json(found.centre_of_mass_w)},
+                  {"stiffness", found.force.stiffness.m},
+                  {"backend", options.render.backend},
+                  {"gradient_scheme", options.render.gradient},
+                  {"status", to_string(answered)},
+                  {"dropped_contacts", found.dropped_contacts},
+                  {"units", "SI"}};
+  if (found.contacts.empty()) out.text += row("contacts", "none");
+  out.text += row("force on the probe", brief(w.force.x) + ", " + brief(w.force.y) + ", " + brief(w.force.z) + " N");
+  out.text += row("torque on the probe", brief(w.torque.x) + ", " + brief(w.torque.y) + ", " + brief(w.torque.z) +
+                                             " N m, about its centre of mass");
+  if (found.dropped_contacts > 0) {
+    out.text += "  warning: " + std::to_string(found.dropped_contacts) + " contacts did not fit and were left out\n";
+  }
+  return out;
+}
+
+result<answer> query(const query_command& options) {
+  const result<pose> T_wa = read_pose("--probe-pose", options.probe_pose);
+  if (!T_wa) return T_wa.error();
+  const result<pose> T_wb = read_pose("--fixed-pose", options.fixed_pose);
+  if (!T_wb) return T_wb.error();
+  const result<renderer_settings> settings = chosen_settings(options.render);
+  if (!settings) return settings.error();
+  result<scene> bodies = load_scene(options.probe, {options.fixed}, options.render.allow_scale_mismatch);
+  if (!bodies) return bodies.error();
+  result<renderer> made = make_renderer(std::move(bodies).value(), *settings);
+  if (!made) return made.error();
+
+  tick found;
+  const status answered = made->step({*T_wa, {&*T_wb, 1}}, found);
+  if (answered != status::ok && answered != status::capacity_reached) {
+    return error{error_code::unsupported, std::string("the contact could not be computed at these poses (") +
+                                              to_string(answered) + "): inspect both models"};
+  }
+  return report(options, found, answered);
+}
+
+}  // namespace
+
+void add_query(command_line& line) {
+  const auto o = std::make_shared<query_command>();
+  CLI::App& sub = line.add("query", "Compute contacts and the wrench at given poses",
+                           [o](const common_options&) { return query(*o); });
+  sub.add_option("--probe", o->probe, "Textured model that moves (.glb)")->required();
+  sub.add_option("--fixed", o->fixed, "Textured model that stays (.glb)")->required();
+  sub.add_option("--probe-pose", o->probe_pose, "Pose of the probe in the world, \"x y z qx qy qz qw\" (m)")
+      ->required()
+      ->check(pose_form_error, "POSE");
+  sub.add_option("--fixed-pose", o->fixed_pose, "Pose of the fixed body in the world")
+      ->check(pose_form_error, "POSE")
+      ->capture_default_str();
+  add_render_options(sub, o->render);
+}
+
+}  // namespace asperity::command
