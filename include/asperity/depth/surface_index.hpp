@@ -1,0 +1,91 @@
+// What the depth of one body needs and no pose changes: normals, neighbours, and where each triangle lies in the
+// texture.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "asperity/model/textured_model.hpp"
+
+namespace asperity::detail {
+
+/// A triangle's place in the texture, in texels; texel centres have integer coordinates.
+struct texel_triangle {
+  std::array<vec2, 3> corner;
+  /// Barycentric coordinate k of a texel position z is weight[k].x + weight[k].y * z.x + weight[k].z * z.y.
+  std::array<vec3, 3> weight;
+  /// Height of the triangle over the edge opposite to corner k, texels: turns barycentric coordinates into distances.
+  std::array<double, 3> altitude;
+  bool usable = false;  ///< false where the triangle has no area in the texture
+};
+
+/// Edge k of a triangle runs from corner k to corner k + 1.
+struct surface_index {
+  static constexpr std::uint32_t none = 0xffffffffU;
+
+  std::vector<vec3> normal;                             ///< unit, outward, body frame; zero for a triangle without area
+  std::vector<std::array<std::uint32_t, 3>> neighbour;  ///< triangle across edge k, or none
+  std::vector<texel_triangle> texels;
+
+  explicit surface_index(const textured_model& model) {
+    const std::size_t count = model.mesh.triangles.size();
+    normal.resize(count);
+    texels.resize(count);
+    for (std::size_t t = 0; t < count; ++t) {
+      const vec3 n = area_normal(corners(model.mesh, t));
+      const double length = std::sqrt(glm::dot(n, n));
+      normal[t] = length > 0.0 ? n / length : vec3(0.0);
+      texels[t] = place(model.mesh.triangles[t], model.texture);
+    }
+    find_neighbours(model.mesh);
+  }
+
+ private:
+  [[nodiscard]] static texel_triangle place(const coarse_triangle& t, const haptic_texture& texture) noexcept {
+    texel_triangle out;
+    const vec2 size(texture.width, texture.height);
+    for (std::size_t k = 0; k < 3; ++k) out.corner[k] = t.uv[k] * size - 0.5;
+    const vec2 a = out.corner[1] - out.corner[0];
+    const vec2 b = out.corner[2] - out.corner[0];
+    const double twice_area = a.x * b.y - a.y * b.x;
+    out.usable = std::isfinite(twice_area) && std::fabs(twice_area) > 1e-9;
+    if (!out.usable) return out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const vec2 p = out.corner[(k + 1) % 3];
+      const vec2 d = out.corner[(k + 2) % 3] - p;
+      out.weight[k] = vec3(d.y * p.x - d.x * p.y, -d.y, d.x) / twice_area;
+      out.altitude[k] = std::fabs(twice_area) / std::sqrt(d.x * d.x + d.y * d.y);
+    }
+    return out;
+  }
+
+  void find_neighbours(const coarse_mesh& mesh) {
+    struct half_edge {
+      std::uint32_t low, high, triangle, edge;
+    };
+    std::vector<half_edge> edges;
+    edges.reserve(3 * mesh.triangles.size());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t a = mesh.triangles[t].vertex[k];
+        const std::uint32_t b = mesh.triangles[t].vertex[(k + 1) % 3];
+        edges.push_back({std::min(a, b), std::max(a, b), t, k});
+      }
+    }
+    std::sort(edges.begin(), edges.end(), [](const half_edge& x, const half_edge& y) {
+      return std::array{x.low, x.high, x.triangle, x.edge} < std::array{y.low, y.high, y.triangle, y.edge};
+    });
+    neighbour.assign(mesh.triangles.size(), {none, none, none});
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+      const half_edge& a = edges[i];
+      const half_edge& b = edges[i + 1];
+      if (a.low != b.low || a.high != b.high) continue;
+      neighbour[a.triangle][a.edge] = b.triangle;
+      neighbour[b.triangle][b.edge] = a.triangle;
+    }
+  }
+};
+
+}  // namespace asperity::detail

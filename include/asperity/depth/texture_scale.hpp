@@ -1,0 +1,110 @@
+// Length scales of a textured model, and what follows from them for the settings that choose themselves.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "asperity/depth/settings.hpp"
+#include "asperity/depth/surface_index.hpp"
+#include "asperity/depth/texture_tap.hpp"
+
+namespace asperity::detail {
+
+/// Scales of one model's relief.
+struct texture_scale {
+  double relief_m = 0.0;              ///< peak to valley, from the bake
+  double wavelength_m = 0.0;          ///< of the sine with the same mean square height and slope; 0 without relief
+  double peak_curvature_per_m = 0.0;  ///< of that sine's peaks; at least that of a ball of half the body's diagonal
+  double texel_m = 0.0;               ///< typical distance between texels on the coarse surface
+};
+
+/// Measures a model by some 4000 points spread evenly over its surface. Not for a tick.
+[[nodiscard]] inline texture_scale measure_texture(const textured_model& model, const surface_index& index) {
+  texture_scale out;
+  out.relief_m = std::max(0.0, model.report.relief_m);
+  const double diagonal = model.box.diagonal();
+  double area = 0.0;
+  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+    const vec3 n = area_normal(corners(model.mesh, t));
+    area += 0.5 * std::sqrt(glm::dot(n, n));
+  }
+  double count = 0.0, height = 0.0, height2 = 0.0, slope2 = 0.0, texel2 = 0.0;
+  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+    if (!index.texels[t].usable) continue;
+    const auto c = corners(model.mesh, t);
+    const texel_triangle& z = index.texels[t];
+    const vec3 n = index.normal[t];
+    // Coarse surface per texel: the corners weighted by what a texel step changes in the barycentric coordinates.
+    const vec3 per_x = z.weight[0].y * c[0] + z.weight[1].y * c[1] + z.weight[2].y * c[2];
+    const vec3 per_y = z.weight[0].z * c[0] + z.weight[1].z * c[1] + z.weight[2].z * c[2];
+    const double e = glm::dot(per_x, per_x), f = glm::dot(per_x, per_y), g = glm::dot(per_y, per_y);
+    const double det = e * g - f * f;
+    if (!(det > 0.0)) continue;
+    const vec3 doubled = area_normal(c);
+    const double share = 0.5 * std::sqrt(glm::dot(doubled, doubled)) / area;
+    const int points = 1 + static_cast<int>(4000.0 * share);
+    for (int i = 0; i < points; ++i) {
+      // The R2 sequence, folded into the triangle: even coverage without a generator.
+      double a = std::fmod(0.5 + 0.7548776662466927 * i, 1.0);
+      double b = std::fmod(0.5 + 0.5698402909980532 * i, 1.0);
+      if (a + b > 1.0) {
+        a = 1.0 - a;
+        b = 1.0 - b;
+      }
+      const texture_tap tap = read(model.texture, (1.0 - a - b) * z.corner[0] + a * z.corner[1] + b * z.corner[2]);
+      if (!is_finite(tap.point)) continue;
+      const double h = glm::dot(n, tap.point - ((1.0 - a - b) * c[0] + a * c[1] + b * c[2]));
+      const double hx = glm::dot(n, tap.along_x - per_x), hy = glm::dot(n, tap.along_y - per_y);
+      const double w = share / points;
+      count += w;
+      height += w * h;
+      height2 += w * h * h;
+      slope2 += w * (g * hx * hx - 2.0 * f * hx * hy + e * hy * hy) / det;
+      texel2 += w * std::sqrt(det);
+    }
+  }
+  const double ball = diagonal > 0.0 ? 2.0 / diagonal : 0.0;
+  out.peak_curvature_per_m = ball;
+  if (!(count > 0.0)) return out;
+  out.texel_m = std::sqrt(texel2 / count);
+  const double variance = height2 / count - (height / count) * (height / count);
+  // Relief below a millionth of the body is the rounding of float32 texels.
+  if (!(variance > 1e-12 * diagonal * diagonal) || !(slope2 > 0.0)) return out;
+  const double per_length = std::sqrt(slope2 / count / variance);
+  out.wavelength_m = 2.0 * std::numbers::pi / per_length;
+  out.peak_curvature_per_m = std::max(ball, std::sqrt(2.0 * variance) * per_length * per_length);
+  return out;
+}
+
+/// What the automatic settings come to for a pair of bodies. Constant: it may not depend on any pose.
+struct pair_scale {
+  double tau_m = 0.0;
+  double reference_area_m2 = 0.0;
+  double wavelength_m = 0.0;
+  double texel_m = 0.0;
+};
+
+[[nodiscard]] inline pair_scale scale_of(const depth_settings& s, const texture_scale& a, const texture_scale& b,
+                                         double smaller_diagonal_m) noexcept {
+  pair_scale out;
+  out.tau_m = s.tau_m > 0.0 ? s.tau_m : std::max(0.02 * std::max(a.relief_m, b.relief_m), 2e-5 * smaller_diagonal_m);
+  const double curvature = a.peak_curvature_per_m + b.peak_curvature_per_m;
+  out.reference_area_m2 =
+      s.reference_area_m2 > 0.0 ? s.reference_area_m2 : 2.0 * std::numbers::pi * out.tau_m / curvature;
+  out.wavelength_m = a.wavelength_m > 0.0 && b.wavelength_m > 0.0 ? std::min(a.wavelength_m, b.wavelength_m)
+                                                                  : std::max(a.wavelength_m, b.wavelength_m);
+  out.texel_m = std::max(a.texel_m, b.texel_m);
+  return out;
+}
+
+/// Step of the central differences for a sample pitch p: large enough not to see the grid, small enough not to smear
+/// the texture.
+/// @source spec sections 3.2 and 8
+[[nodiscard]] inline double difference_step(const depth_settings& s, const pair_scale& pair, double pitch_m) noexcept {
+  if (s.difference_step_m > 0.0) return s.difference_step_m;
+  const double wanted = pair.wavelength_m > 0.0 ? std::min(pitch_m, pair.wavelength_m / 20.0) : pitch_m;
+  return std::max({0.5 * pitch_m, wanted, 0.5 * pair.texel_m});
+}
+
+}  // namespace asperity::detail
