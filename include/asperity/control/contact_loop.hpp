@@ -1,0 +1,110 @@
+// The slower of the two rates: from the newest probe pose to a linear contact.
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "asperity/control/exchange.hpp"
+#include "asperity/render/renderer.hpp"
+
+namespace asperity {
+
+/// Anything that turns poses into a tick; basic_renderer is one.
+template <class R>
+concept contact_renderer = requires(R& renderer, const scene_pose& at, tick& out) {
+  { renderer.step(at, out) }
+  noexcept->std::same_as<status>;
+};
+
+/// Where the bodies of a session are. The fixed bodies stay where they are put.
+struct scene_placement {
+  std::vector<pose> T_wb;      ///< one per fixed body
+  vec3 centre_of_mass_a{0.0};  ///< c_A in the probe's body frame, metres (textured_model::mass)
+
+  /// Pose of the probe's centre-of-mass frame c, which has the body's axes, in the body frame.
+  [[nodiscard]] pose T_ac() const noexcept { return {quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}; }
+};
+
+/// Owns the renderer. One tick takes the newest probe pose, renders, and publishes W0, J, q0 and the time of q0.
+/// @tparam Renderer see contact_renderer
+template <contact_renderer Renderer>
+class contact_loop {
+ public:
+  /// @param shared outlives the loop
+  contact_loop(Renderer renderer, scene_placement placement, exchange& shared)
+      : renderer_(std::move(renderer)), placement_(std::move(placement)), shared_(&shared) {}
+
+  /// compute() and publish() in one.
+  /// @return the renderer's answer; ok without work where no new pose came
+  /// @rt as safe as the renderer
+  [[nodiscard]] status tick(std::int64_t now_ns) noexcept {
+    const status s = compute(now_ns);
+    publish();
+    return s;
+  }
+
+  /// Renders at the newest probe pose and keeps the result until publish(). Without a new pose there is nothing to do.
+  /// Where the renderer cannot answer, the result is an empty contact that carries its status: the wrench goes to zero.
+  [[nodiscard]] status compute(std::int64_t now_ns) noexcept {
+    if (!shared_->poses.refresh()) return status::ok;
+    const timed_pose& at = shared_->poses.front();
+    const pose T_wa = at.T_wc * inverse(placement_.T_ac());
+    const status answer = renderer_.step({T_wa, placement_.T_wb}, last_);
+    linearise(answer, at, shared_->contacts.back());
+    pending_ = true;
+    ++computed_;
+    computed_at_ns_ = now_ns;
+    return answer;
+  }
+
+  /// Hands the last result over, if it was not handed over yet.
+  void publish() noexcept {
+    if (!pending_) return;
+    shared_->contacts.publish();
+    pending_ = false;
+  }
+
+  [[nodiscard]] Renderer& renderer() noexcept { return renderer_; }
+  /// What the last compute() found.
+  [[nodiscard]] const asperity::tick& last() const noexcept { return last_; }
+  /// How many poses were rendered.
+  [[nodiscard]] std::uint64_t computed() const noexcept { return computed_; }
+  [[nodiscard]] std::int64_t computed_at_ns() const noexcept { return computed_at_ns_; }
+  [[nodiscard]] const scene_placement& placement() const noexcept { return placement_; }
+
+ private:
+  void linearise(status answer, const timed_pose& at, linear_contact& out) const noexcept {
+    out = {};
+    out.T_wc = at.T_wc;
+    out.time_ns = at.time_ns;
+    out.answer = answer;
+    if (answer != status::ok && answer != status::capacity_reached) return;
+    out.on_probe_w = last_.force.on_probe_w;
+    out.stiffness = last_.force.stiffness;
+    out.dropped = static_cast<std::uint32_t>(last_.dropped_contacts);
+    vec3 direction{0.0};
+    double weight = 0.0;
+    for (std::size_t i = 0; i < std::min(last_.contacts.size(), last_.depths.size()); ++i) {
+      const double depth = last_.depths[i].depth_m;
+      if (!(depth > 0.0)) continue;
+      direction += depth * last_.contacts[i].window.n_ab_w;
+      weight += depth;
+      out.max_depth_m = std::max(out.max_depth_m, depth);
+      ++out.contacts;
+    }
+    if (weight > 0.0) out.direction_ab_w = direction / weight;
+  }
+
+  Renderer renderer_;
+  scene_placement placement_;
+  exchange* shared_;
+  asperity::tick last_{};
+  bool pending_ = false;
+  std::uint64_t computed_ = 0;
+  std::int64_t computed_at_ns_ = 0;
+};
+
+}  // namespace asperity

@@ -1,0 +1,235 @@
+// The faster of the two rates: device pose in, wrench out, every period.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "asperity/control/exchange.hpp"
+#include "asperity/control/passivity_guard.hpp"
+#include "asperity/control/probe.hpp"
+#include "asperity/control/session_record.hpp"
+#include "asperity/control/virtual_coupling.hpp"
+#include "asperity/control/workspace_map.hpp"
+#include "asperity/hal/device.hpp"
+#include "asperity/hal/output_gate.hpp"
+#include "asperity/hal/sample_check.hpp"
+
+namespace asperity {
+
+/// Everything that the device loop can be told. The defaults are those of spec section 8.
+struct control_config {
+  probe_config probe{};
+  coupling_config coupling{};
+  guard_config guard{};
+  contact_ageing ageing{};
+  workspace_map map{};
+  sample_check_config samples{};
+  gate_limits limits{.peak_force_n = 1e6,
+                     .continuous_force_n = 1e6,
+                     .force_slew_n_per_s = 1e6,
+                     .peak_torque_n_m = 1e6,
+                     .continuous_torque_n_m = 1e6,
+                     .torque_slew_n_m_per_s = 1e6};  ///< the application's; the device's own apply where they are lower
+  int substeps = 8;                                  ///< of the probe in one device period
+  std::int64_t longest_step_ns = 5'000'000;          ///< a later tick advances the probe by this much only
+};
+
+/// Owns the stages between one device and the exchange: sample check, probe and coupling, passivity guard, output gate.
+///
+/// Order of one tick: read, judge the sample, book the energy of the last command, step the probe in substeps towards
+/// the device (which moves evenly from its last pose to this one), coupling wrench, guard, gate, write, publish the
+/// probe's pose, tell the observer.
+///
+/// - The probe starts at the device's first good pose, at rest: no jump.
+/// - A rejected sample: the wanted wrench is zero in this tick, and the probe goes on towards the last good pose. After
+///   sample_check_config::reject_limit rejections in a row the gate shuts (bad_samples).
+/// - A device that refuses a command shuts the gate (device_failed). A shut gate disarms the device once the wrench is
+///   zero. Nothing here ever arms.
+/// @tparam Device see haptic_device; not owned, outlives the loop
+template <haptic_device Device, session_observer Observer = no_observer>
+class device_loop {
+ public:
+  /// @param shared outlives the loop
+  device_loop(Device& dev, const control_config& config, const vec3& centre_of_mass_a, exchange& shared,
+              Observer observer = {})
+      : device_(&dev),
+        config_(config),
+        T_hc_(config.map.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}),
+        T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a})),
+        shared_(&shared),
+        observer_(std::move(observer)),
+        check_(config.samples),
+        coupling_(config.coupling, config.probe.mass_kg, mean_inertia(config.probe)),
+        probe_(config.probe),
+        guard_(config.guard),
+        gate_(tighter(limits_of(dev.capabilities()), config.limits)) {}
+
+  /// One period. now_ns never decreases.
+  /// @return ok | stale_input (sample rejected) | not_finite (probe) | not_ready (no good sample yet) |
+  ///         backend_failed (the gate is shut: see gate().fault())
+  /// @rt as safe as the device: no allocation, lock, throw, print or clock here
+  [[nodiscard]] status tick(std::int64_t now_ns) noexcept {
+    const double dt_s = advance_clock(now_ns);
+    device_sample seen = last_seen_;
+    const sample_verdict verdict = check_.judge(now_ns, device_->read(now_ns, seen), seen);
+    if (verdict == sample_verdict::accepted) last_seen_ = seen;
+    unobserved_s_ += dt_s;
+
+    const bool accepted = verdict == sample_verdict::accepted;
+    if (accepted && !placed_) place(last_seen_);
+    status probe_status = status::not_ready;
+    wrench wanted_d;
+    guard_action guarded;
+    if (placed_) {
+      if (accepted) guard_.observe(last_seen_.T_dh, gate_.last(), std::exchange(unobserved_s_, 0.0));
+      probe_status = move_probe(now_ns, dt_s, accepted);
+      // The damping is part of the answer to a pose that was measured; without one nothing is put out at all.
+      if (accepted) {
+        wanted_d = wrench_on_hand();
+        guarded = guard_.adjust(wanted_d);
+      }
+    }
+    const device_command sent =
+        gate_.pass(now_ns, seen, {guarded.on_hand, wrench_frame::device_base, now_ns, ++sequence_});
+    if (check_.exhausted()) gate_.trip(gate_fault::bad_samples);
+    if (device_->write(now_ns, sent) != status::ok) gate_.trip(gate_fault::device_failed);
+    if (gate_.fault() != gate_fault::none && gate_.at_rest() && may_put_out(device_->state())) {
+      static_cast<void>(device_->disarm());
+    }
+    if (placed_) {
+      shared_->poses.back() = {probe_.state().T_wc, now_ns};
+      shared_->poses.publish();
+    }
+    report(now_ns, verdict, probe_status, guarded, sent.on_hand);
+    return answer(verdict, probe_status);
+  }
+
+  [[nodiscard]] const output_gate& gate() const noexcept { return gate_; }
+  [[nodiscard]] const passivity_guard& guard() const noexcept { return guard_; }
+  [[nodiscard]] const asperity::probe& probe() const noexcept { return probe_; }
+  [[nodiscard]] const virtual_coupling& coupling() const noexcept { return coupling_; }
+  [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
+  [[nodiscard]] Observer& observer() noexcept { return observer_; }
+  [[nodiscard]] Device& device() noexcept { return *device_; }
+
+  /// Shuts the gate: the wrench goes to zero at the slew rate and the device is disarmed.
+  void stop() noexcept { gate_.trip(gate_fault::stopped); }
+
+  /// After a person has seen the fault: opens the gate and starts anew from the device's next pose. Arms nothing.
+  /// @return false while the wrench is not zero yet
+  [[nodiscard]] bool clear_fault() noexcept {
+    if (!gate_.clear()) return false;
+    check_.restart();
+    placed_ = false;
+    return true;
+  }
+
+ private:
+  [[nodiscard]] static double mean_inertia(const probe_config& p) noexcept {
+    return (p.inertia_kg_m2[0][0] + p.inertia_kg_m2[1][1] + p.inertia_kg_m2[2][2]) / 3.0;
+  }
+
+  [[nodiscard]] double advance_clock(std::int64_t now_ns) noexcept {
+    const std::int64_t step = started_ ? std::clamp<std::int64_t>(now_ns - last_ns_, 0, config_.longest_step_ns) : 0;
+    started_ = true;
+    last_ns_ = now_ns;
+    return static_cast<double>(step) * 1e-9;
+  }
+
+  void place(const device_sample& s) noexcept {
+    target_T_wc_ = config_.map.to_world(s.T_dh) * T_hc_;
+    target_velocity_w_ = {};
+    probe_.reset(target_T_wc_);
+    guard_.reset();
+    placed_ = true;
+  }
+
+  // Where the target goes in this period: evenly from its last pose to the newest one. A step of the target at the
+  // beginning of the period would be felt as a jerk by a probe that runs at several times the device's rate.
+  [[nodiscard]] status move_probe(std::int64_t now_ns, double dt_s, bool accepted) noexcept {
+    static_cast<void>(shared_->contacts.refresh());
+    const linear_contact& contact = shared_->contacts.front();
+    const double strength = strength_at(now_ns - contact.time_ns, config_.ageing);
+
+    const pose from = target_T_wc_;
+    if (accepted) target_T_wc_ = config_.map.to_world(last_seen_.T_dh) * T_hc_;
+    touched_ = evaluate(contact, probe_.state().T_wc, strength);
+    if (!(dt_s > 0.0)) return status::ok;
+
+    const vec6 way = pose_difference(target_T_wc_, from);
+    target_velocity_w_ = to_twist((1.0 / dt_s) * way);
+    const int substeps = std::max(1, config_.substeps);
+    for (int i = 1; i <= substeps; ++i) {
+      const double part = static_cast<double>(i) / substeps;
+      const pose target{exp_rotation(part * way.angular) * from.rotation, from.position + part * way.linear};
+      const status s = probe_.step(dt_s / substeps, coupling_, target, target_velocity_w_, touched_);
+      touched_ = evaluate(contact, probe_.state().T_wc, strength);
+      if (s != status::ok) return s;
+    }
+    return status::ok;
+  }
+
+  [[nodiscard]] wrench wrench_on_hand() const noexcept {
+    const probe_state& p = probe_.state();
+    const wrench on_probe = coupling_.on_probe(target_T_wc_, target_velocity_w_, p.T_wc, p.velocity_w);
+    const pose T_wh = config_.map.to_world(last_seen_.T_dh);
+    return config_.map.to_device(-1.0 * on_probe, target_T_wc_.position, T_wh.position);
+  }
+
+  void report(std::int64_t now_ns, sample_verdict verdict, status probe_status, const guard_action& guarded,
+              const wrench& sent) noexcept {
+    const linear_contact& contact = shared_->contacts.front();
+    session_record r;
+    r.time_ns = now_ns;
+    r.T_dh = last_seen_.T_dh;
+    r.T_wa_target = target_T_wc_ * T_ca_;
+    r.T_wa = probe_.state().T_wc * T_ca_;
+    r.on_hand_d = sent;
+    r.on_probe_w = touched_.on_probe_w;
+    r.max_depth_m = contact.max_depth_m;
+    r.contacts = contact.contacts;
+    r.contact_age_ns = contact.answer == status::not_ready ? 0 : now_ns - contact.time_ns;
+    r.delivered_j = guard_.delivered_j();
+    r.surplus_j = guard_.surplus_j();
+    r.guard_alpha_per_s = guarded.alpha_per_s;
+    r.guard_scale = guarded.scale;
+    r.pulling = touched_.pulling;
+    r.sample = verdict;
+    r.contact_status = contact.answer;
+    r.probe_status = probe_status;
+    r.device = device_->state();
+    r.fault = gate_.fault();
+    observer_(r);
+  }
+
+  [[nodiscard]] status answer(sample_verdict verdict, status probe_status) const noexcept {
+    if (gate_.fault() != gate_fault::none) return status::backend_failed;
+    if (verdict != sample_verdict::accepted) return status::stale_input;
+    return probe_status;
+  }
+
+  Device* device_;
+  control_config config_;
+  pose T_hc_;
+  pose T_ca_;
+  exchange* shared_;
+  Observer observer_;
+  sample_check check_;
+  virtual_coupling coupling_;
+  asperity::probe probe_;
+  passivity_guard guard_;
+  output_gate gate_;
+
+  device_sample last_seen_{};
+  bool started_ = false;
+  bool placed_ = false;
+  std::int64_t last_ns_ = 0;
+  double unobserved_s_ = 0.0;  // time since the guard saw a pose
+  std::uint64_t sequence_ = 0;
+  pose target_T_wc_{};
+  twist target_velocity_w_{};
+  contact_evaluation touched_{};
+};
+
+}  // namespace asperity

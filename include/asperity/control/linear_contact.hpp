@@ -1,0 +1,74 @@
+// What the contact thread hands to the device thread: a wrench that knows how it changes.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+#include "asperity/core/status.hpp"
+
+namespace asperity {
+
+/// Contact wrench on the probe, linear in the probe's pose: W(q) = W0 + J (q - q0). World axes, torque about c_A.
+/// The probe's frame c here has its origin in the centre of mass c_A and the body's axes.
+/// Held instead of linearised, a wrench one period late is unstable above 70 N/m at 100 Hz; with J no limit was found.
+/// @source spec section 4
+struct linear_contact {
+  wrench on_probe_w{};  ///< W0, N and N m
+  mat6 stiffness{};     ///< J = dW/dq, symmetric negative semidefinite
+  pose T_wc{};          ///< q0: pose of the probe's centre-of-mass frame that W0 belongs to
+  vec3 direction_ab_w{
+      0.0};  ///< mean contact direction, weighted by depth; length 1 where all contacts agree, 0 without
+  std::int64_t time_ns = 0;           ///< time of q0 (not of the end of the computation)
+  double max_depth_m = 0.0;           ///< deepest contact at q0; 0 without contact
+  std::uint32_t contacts = 0;         ///< contacts with depth > 0 at q0
+  std::uint32_t dropped = 0;          ///< contacts that did not fit
+  status answer = status::not_ready;  ///< what the renderer answered at q0
+};
+
+/// How long a contact may be used.
+struct contact_ageing {
+  std::int64_t hold_ns = 50'000'000;  ///< full strength up to this age
+  std::int64_t fade_ns = 50'000'000;  ///< then linearly down to nothing over this time
+};
+
+/// Strength of a contact of this age: 1 up to hold_ns, 0 from hold_ns + fade_ns, linear between.
+/// @rt safe
+[[nodiscard]] inline double strength_at(std::int64_t age_ns, const contact_ageing& ageing) noexcept {
+  if (age_ns <= ageing.hold_ns) return 1.0;
+  if (age_ns >= ageing.hold_ns + ageing.fade_ns) return 0.0;
+  return 1.0 - static_cast<double>(age_ns - ageing.hold_ns) / static_cast<double>(ageing.fade_ns);
+}
+
+/// q - q0: translation of the centre of mass (m) and rotation vector log(R R0^T) (rad), world axes.
+/// @rt safe
+[[nodiscard]] inline vec6 pose_difference(const pose& T_wc, const pose& T_wc0) noexcept {
+  return {T_wc.position - T_wc0.position, log_rotation(T_wc.rotation * glm::conjugate(T_wc0.rotation))};
+}
+
+/// A linear contact at one pose.
+struct contact_evaluation {
+  wrench on_probe_w{};
+  mat6 stiffness{};
+  bool pulling = false;  ///< the linear wrench would have pulled the probe on, and was set to zero
+};
+
+/// Wrench and stiffness at T_wc, faded to `strength`.
+/// Where the linear wrench would pull (n . F > 0) both are zero: a surface pushes only. With contacts that face each
+/// other, as in a slot, there is no common direction (mean shorter than one half) and the test is left out: the wrench
+/// of a slot does change its sign.
+/// @rt safe
+[[nodiscard]] inline contact_evaluation evaluate(const linear_contact& contact, const pose& T_wc,
+                                                 double strength) noexcept {
+  if (!(strength > 0.0)) return {};
+  constexpr double agreement = 0.5;
+  const wrench w = contact.on_probe_w + to_wrench(contact.stiffness * pose_difference(T_wc, contact.T_wc));
+  const vec3& n = contact.direction_ab_w;
+  if (glm::dot(n, n) >= agreement * agreement && glm::dot(n, w.force) > 0.0) return {{}, {}, true};
+  return {strength * w, strength * contact.stiffness, false};
+}
+
+}  // namespace asperity

@@ -1,0 +1,51 @@
+// What one device tick did, as plain numbers for whoever watches.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+#include "asperity/core/status.hpp"
+#include "asperity/hal/device_state.hpp"
+#include "asperity/hal/output_gate.hpp"
+#include "asperity/hal/sample_check.hpp"
+
+namespace asperity {
+
+/// One device tick. Wrenches in world axes unless the name says otherwise; everything SI.
+struct session_record {
+  std::int64_t time_ns = 0;
+  pose T_dh{};                      ///< handle in the device's base frame: the last sample that was accepted
+  pose T_wa_target{};               ///< where the handle wants the probe's body frame
+  pose T_wa{};                      ///< where the probe's body frame is
+  wrench on_hand_d{};               ///< what left the gate: axes of d, torque about the handle's origin
+  wrench on_probe_w{};              ///< contact wrench on the probe, about its centre of mass
+  double max_depth_m = 0.0;         ///< deepest contact of the contact in use
+  std::uint32_t contacts = 0;       ///< contacts with depth > 0 in it
+  std::int64_t contact_age_ns = 0;  ///< age of the contact in use; 0 before the first
+  double delivered_j = 0.0;         ///< energy delivered to the hand since the start
+  double surplus_j = 0.0;           ///< what the passivity guard acts on
+  double guard_alpha_per_s = 0.0;   ///< damping rate that the guard added
+  double guard_scale = 1.0;         ///< factor that the guard put on the wrench
+  bool pulling = false;             ///< the linear contact would have pulled and was set to zero
+  sample_verdict sample = sample_verdict::accepted;
+  status contact_status = status::not_ready;  ///< the renderer's answer behind the contact in use
+  status probe_status = status::ok;
+  device_state device = device_state::absent;
+  gate_fault fault = gate_fault::none;
+};
+
+/// Something that wants to see every device tick. It runs inside the tick and keeps its rules: no allocation, no lock.
+template <class O>
+concept session_observer = requires(O& observer, const session_record& record) {
+  { observer(record) }
+  noexcept;
+};
+
+/// Watches nothing.
+struct no_observer {
+  void operator()(const session_record&) const noexcept {}
+};
+
+}  // namespace asperity

@@ -1,0 +1,66 @@
+// The spring and damper between the device's handle and the probe.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+
+namespace asperity {
+
+/// Stiffness and damping of the virtual coupling. A damping left at zero is made critical for the probe's mass.
+struct coupling_config {
+  double stiffness_n_per_m = 500.0;
+  double stiffness_n_m_per_rad = 3.0;
+  double damping_n_s_per_m = 0.0;
+  double damping_n_m_s_per_rad = 0.0;
+  double max_damping_n_s_per_m = 5.0;       ///< bound of the critical damping; the device's own where strict
+  double max_damping_n_m_s_per_rad = 0.05;  ///< passivity is wanted (b_device > Kt T / 2 + Bt)
+};
+
+/// Isotropic six-dimensional spring and damper.
+/// @source spec section 4
+class virtual_coupling {
+ public:
+  /// @param inertia_kg_m2 a typical moment of inertia of the probe
+  virtual_coupling(const coupling_config& c, double mass_kg, double inertia_kg_m2) noexcept
+      : kt_(c.stiffness_n_per_m),
+        kr_(c.stiffness_n_m_per_rad),
+        bt_(c.damping_n_s_per_m > 0.0 ? c.damping_n_s_per_m
+                                      : std::min(c.max_damping_n_s_per_m, 2.0 * std::sqrt(kt_ * mass_kg))),
+        br_(c.damping_n_m_s_per_rad > 0.0
+                ? c.damping_n_m_s_per_rad
+                : std::min(c.max_damping_n_m_s_per_rad, 2.0 * std::sqrt(kr_ * inertia_kg_m2))) {}
+
+  /// Wrench on the probe, about its centre of mass, world axes. The device feels the negative.
+  /// @param target_T_wc, target_velocity_w where the device wants the probe's centre-of-mass frame
+  /// @rt safe
+  [[nodiscard]] wrench on_probe(const pose& target_T_wc, const twist& target_velocity_w, const pose& T_wc,
+                                const twist& velocity_w) const noexcept {
+    const vec3 stretch = target_T_wc.position - T_wc.position;
+    const vec3 turn = log_rotation(target_T_wc.rotation * glm::conjugate(T_wc.rotation));
+    return {kt_ * stretch + bt_ * (target_velocity_w.linear - velocity_w.linear),
+            kr_ * turn + br_ * (target_velocity_w.angular - velocity_w.angular)};
+  }
+
+  /// Energy stored in the two springs, J.
+  [[nodiscard]] double stored_j(const pose& target_T_wc, const pose& T_wc) const noexcept {
+    const vec3 stretch = target_T_wc.position - T_wc.position;
+    const vec3 turn = log_rotation(target_T_wc.rotation * glm::conjugate(T_wc.rotation));
+    return 0.5 * kt_ * glm::dot(stretch, stretch) + 0.5 * kr_ * glm::dot(turn, turn);
+  }
+
+  [[nodiscard]] double stiffness_n_per_m() const noexcept { return kt_; }
+  [[nodiscard]] double stiffness_n_m_per_rad() const noexcept { return kr_; }
+  [[nodiscard]] double damping_n_s_per_m() const noexcept { return bt_; }
+  [[nodiscard]] double damping_n_m_s_per_rad() const noexcept { return br_; }
+
+ private:
+  double kt_;
+  double kr_;
+  double bt_;
+  double br_;
+};
+
+}  // namespace asperity

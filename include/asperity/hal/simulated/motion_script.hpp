@@ -1,0 +1,125 @@
+// What the simulated hand means to do.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <random>
+
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+
+namespace asperity {
+
+enum class motion_kind : std::uint8_t {
+  press,  ///< approach along a direction, then hold
+  scrub,  ///< approach, then to and fro sideways
+  twist,  ///< approach, then turn to and fro about the direction
+  free,   ///< wander in a box, seeded, without a direction
+};
+
+/// One motion of the hand, in the device's base frame. Times count from the script's beginning.
+struct motion_config {
+  motion_kind kind = motion_kind::press;
+  pose T_dh{};                       ///< pose at the beginning
+  vec3 direction_d{0.0, 0.0, -1.0};  ///< of the approach; unit
+  vec3 sideways_d{1.0, 0.0, 0.0};    ///< of scrub; unit
+  double depth_m = 0.01;             ///< length of the approach
+  double approach_s = 0.5;           ///< time of the approach, smooth at both ends
+  double amplitude_m = 0.01;         ///< of scrub, and half the box's size of free
+  double amplitude_rad = 0.2;        ///< of twist and free
+  double frequency_hz = 1.0;         ///< of scrub and twist, and typical of free
+};
+
+/// Where the hand wants the handle, and how fast it means to move.
+struct hand_target {
+  pose T_dh{};
+  twist velocity_d{};
+};
+
+/// Target of the hand as a function of time: smooth, without state, the same for the same seed.
+class motion_script {
+ public:
+  explicit motion_script(const motion_config& config = {}, std::uint64_t seed = 0) : config_(config) {
+    std::mt19937_64 bits(seed);
+    for (wave& w : waves_) {
+      // Rates around the typical one, without a common period within a session.
+      w.rate_rad_per_s = two_pi * config.frequency_hz * (0.5 + unit(bits));
+      w.phase_rad = two_pi * unit(bits);
+    }
+  }
+
+  /// @rt safe
+  [[nodiscard]] hand_target at(double t_s) const noexcept {
+    return config_.kind == motion_kind::free ? wander(t_s) : approach_and_move(t_s);
+  }
+
+  [[nodiscard]] const motion_config& config() const noexcept { return config_; }
+
+ private:
+  struct wave {
+    double rate_rad_per_s = 0.0;
+    double phase_rad = 0.0;
+  };
+  static constexpr double two_pi = 6.283185307179586;
+  static constexpr double ramp_s = 0.25;  // the motion after the approach grows to its amplitude over this time
+
+  [[nodiscard]] static double unit(std::mt19937_64& bits) noexcept {
+    return static_cast<double>(bits() >> 11) * 0x1.0p-53;
+  }
+
+  [[nodiscard]] hand_target approach_and_move(double t_s) const noexcept {
+    const double x = t_s / config_.approach_s;
+    hand_target out;
+    out.T_dh = config_.T_dh;
+    out.T_dh.position += config_.depth_m * smoothstep(x) * config_.direction_d;
+    out.velocity_d.linear = config_.depth_m * smoothstep_slope(x) / config_.approach_s * config_.direction_d;
+
+    const double since = t_s - config_.approach_s;
+    if (config_.kind == motion_kind::press || since <= 0.0) return out;
+    const double w = two_pi * config_.frequency_hz;
+    const double grown = smoothstep(since / ramp_s);
+    const double sway = grown * std::sin(w * since);
+    const double rate =
+        grown * w * std::cos(w * since) + smoothstep_slope(since / ramp_s) / ramp_s * std::sin(w * since);
+    if (config_.kind == motion_kind::scrub) {
+      out.T_dh.position += config_.amplitude_m * sway * config_.sideways_d;
+      out.velocity_d.linear += config_.amplitude_m * rate * config_.sideways_d;
+    } else {
+      out.T_dh.rotation = exp_rotation(config_.amplitude_rad * sway * config_.direction_d) * config_.T_dh.rotation;
+      out.velocity_d.angular = config_.amplitude_rad * rate * config_.direction_d;
+    }
+    return out;
+  }
+
+  [[nodiscard]] hand_target wander(double t_s) const noexcept {
+    const double grown = smoothstep(t_s / config_.approach_s);
+    const double growth = smoothstep_slope(t_s / config_.approach_s) / config_.approach_s;
+    vec6 way;
+    vec6 rate;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double amplitude = i < 3 ? config_.amplitude_m : config_.amplitude_rad;
+      const double angle = waves_[i].rate_rad_per_s * t_s + waves_[i].phase_rad;
+      way[i] = amplitude * grown * std::sin(angle);
+      rate[i] = amplitude * (growth * std::sin(angle) + grown * waves_[i].rate_rad_per_s * std::cos(angle));
+    }
+    const pose T{exp_rotation(way.angular) * config_.T_dh.rotation, config_.T_dh.position + way.linear};
+    return {T, {rate.linear, angular_velocity(way.angular, rate.angular)}};
+  }
+
+  // Angular velocity of exp(phi(t)) from phi and its rate.
+  [[nodiscard]] static vec3 angular_velocity(const vec3& phi, const vec3& rate) noexcept {
+    const double a2 = glm::dot(phi, phi);
+    const double a = std::sqrt(a2);
+    const double first = a < 1e-3 ? 0.5 - a2 / 24.0 : (1.0 - std::cos(a)) / a2;
+    const double second = a < 1e-3 ? 1.0 / 6.0 - a2 / 120.0 : (a - std::sin(a)) / (a2 * a);
+    const vec3 turned = glm::cross(phi, rate);
+    return rate + first * turned + second * glm::cross(phi, turned);
+  }
+
+  motion_config config_;
+  std::array<wave, 6> waves_{};
+};
+
+}  // namespace asperity

@@ -1,0 +1,344 @@
+// A device made of numbers: a plant, a hand and a script of faults on a virtual clock.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "asperity/hal/device.hpp"
+#include "asperity/hal/simulated/motion_script.hpp"
+
+namespace asperity {
+
+/// What can go wrong with a simulated device.
+enum class device_fault : std::uint8_t {
+  nan_pose,       ///< a coordinate is NaN
+  infinite_pose,  ///< a coordinate is infinite
+  bad_rotation,   ///< the quaternion has length 2
+  stale,          ///< the last measurement is repeated: an encoder or a link that stands still
+  drop,           ///< read() has no answer
+  jump,           ///< the position is half a metre off
+  refuse_write,   ///< write() fails
+  depart,         ///< the device leaves its bus, and stays away after until_ns as well
+};
+
+/// One fault and when.
+struct scripted_fault {
+  device_fault kind = device_fault::drop;
+  std::int64_t from_ns = 0;
+  std::int64_t until_ns = 0;  ///< not included
+};
+
+/// The hand as a spring and damper to where it wants to be, and a tremor.
+struct hand_config {
+  double stiffness_n_per_m = 300.0;
+  double damping_n_s_per_m = 4.0;
+  double stiffness_n_m_per_rad = 2.0;
+  double damping_n_m_s_per_rad = 0.02;
+  double tremor_m = 2e-5;  ///< amplitude of each of three seeded waves between 8 and 12 Hz, along each axis
+};
+
+/// A light arm with six free axes, gravity balanced.
+struct plant_config {
+  double mass_kg = 0.15;
+  double damping_n_s_per_m = 1.0;
+  double inertia_kg_m2 = 2e-4;
+  double damping_n_m_s_per_rad = 2e-3;
+};
+
+/// How the measurement reaches the host.
+struct measurement_config {
+  double position_resolution_m = 1e-6;    ///< 0 for none
+  double rotation_resolution_rad = 1e-5;  ///< of each component of the rotation vector; 0 for none
+  std::int64_t delay_ns = 0;              ///< age of a measurement when the host receives it; at most 20 ms with jitter
+  std::int64_t jitter_ns = 0;             ///< added to the delay, seeded, uniform
+};
+
+/// Properties of the simulated device in the words of a data sheet.
+[[nodiscard]] inline device_capabilities simulated_capabilities() noexcept {
+  return {.name = "simulated",
+          .maturity = driver_maturity::simulated,
+          .sensed = all_axes,
+          .actuated = all_axes,
+          .continuous_force_n = 8.0,
+          .peak_force_n = 20.0,
+          .continuous_torque_n_m = 0.5,
+          .peak_torque_n_m = 1.0,
+          .force_slew_n_per_s = 5000.0,
+          .torque_slew_n_m_per_s = 250.0,
+          .max_stiffness_n_per_m = 3000.0,
+          .max_stiffness_n_m_per_rad = 10.0,
+          .max_stiffness_rate_hz = 1000.0,
+          .workspace_low_d = {-0.2, -0.2, -0.2},
+          .workspace_high_d = {0.2, 0.2, 0.2},
+          .position_resolution_m = 1e-6,
+          .rotation_resolution_rad = 1e-5,
+          .nominal_rate_hz = 1000.0,
+          .minimum_rate_hz = 100.0,
+          .worst_latency_ns = 20'000'000,
+          .moving_mass_kg = 0.15,
+          .moving_inertia_kg_m2 = 2e-4,
+          .needs_homing = false,
+          .device_side_watchdog = true};
+}
+
+struct simulated_config {
+  std::uint64_t seed = 1;
+  motion_config motion{};
+  hand_config hand{};
+  plant_config plant{};
+  measurement_config measurement{};
+  device_capabilities capabilities = simulated_capabilities();
+  std::vector<scripted_fault> faults{};
+};
+
+/// Driver of a device that does not exist, under the contract of a real one.
+///
+/// read(now) integrates plant and hand up to now in steps of 50 us with the last command (zero after its
+/// valid_until_ns, which is the device's own watchdog), so that the session's clock is the only clock. The motion
+/// script begins with the first read(). The same configuration and the same calls give the same bits.
+class simulated_device {
+ public:
+  using policy_tag = device_tag;
+
+  explicit simulated_device(simulated_config config = {})
+      : config_(std::move(config)), motion_(config_.motion, config_.seed), bits_(config_.seed ^ 0x9e3779b97f4a7c15ULL) {
+    for (tremor_wave& w : tremor_) {
+      w.rate_rad_per_s = 2.0 * 3.141592653589793 * (8.0 + 4.0 * unit());
+      w.phase_rad = 2.0 * 3.141592653589793 * unit();
+    }
+    const hand_target start = motion_.at(0.0);
+    plant_ = {start.T_dh, {}};
+    past_.fill({plant_, 0});
+  }
+
+  [[nodiscard]] const device_capabilities& capabilities() const noexcept { return config_.capabilities; }
+  [[nodiscard]] device_state state() const noexcept { return machine_.state(); }
+
+  [[nodiscard]] result<void> open() {
+    if (departed_) {
+      return error{error_code::io_failed, "the simulated device has left its bus; call plug_in() before open()"};
+    }
+    if (machine_.state() == device_state::absent || machine_.state() == device_state::closed) {
+      machine_.apply(device_event::arrived);
+    }
+    if (!machine_.apply(device_event::opened)) return refused("open");
+    machine_.apply(device_event::prepared);
+    return {};
+  }
+
+  [[nodiscard]] result<void> arm() {
+    if (!machine_.apply(device_event::armed)) return refused("arm");
+    return {};
+  }
+
+  [[nodiscard]] result<void> clear_fault() {
+    if (!machine_.apply(device_event::cleared)) return refused("clear_fault");
+    return {};
+  }
+
+  status disarm() noexcept {
+    command_ = {};
+    return machine_.apply(device_event::disarmed) ? status::ok : status::not_ready;
+  }
+
+  void close() noexcept {
+    command_ = {};
+    machine_.apply(device_event::closed);
+  }
+
+  /// @return ok | backend_failed (a scripted drop) | not_ready (not open, or departed)
+  [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
+    advance(now_ns);
+    if (fault_at(device_fault::depart, now_ns)) depart();
+    if (!measures()) return status::not_ready;
+    if (fault_at(device_fault::drop, now_ns)) return status::backend_failed;
+    if (!fault_at(device_fault::stale, now_ns) || sequence_ == 0) measure(now_ns);
+    in = newest_;
+    spoil(now_ns, in);
+    return status::ok;
+  }
+
+  /// @return ok | backend_failed (a scripted refusal) | not_ready (not open, or departed)
+  [[nodiscard]] status write(std::int64_t now_ns, const device_command& out) noexcept {
+    advance(now_ns);
+    if (!measures()) return status::not_ready;
+    if (fault_at(device_fault::refuse_write, now_ns)) return status::backend_failed;
+    if (!may_put_out(machine_.state())) {
+      command_ = {};
+      return status::ok;
+    }
+    if (out.frame != wrench_frame::device_base || !is_finite(out.on_hand)) {
+      command_ = {};
+      machine_.apply(device_event::failed);
+      return status::not_finite;
+    }
+    const bool zero = out.on_hand.force == vec3(0.0) && out.on_hand.torque == vec3(0.0);
+    machine_.apply(zero ? device_event::released : device_event::engaged);
+    command_ = out;
+    return status::ok;
+  }
+
+  /// Puts a departed device back on its bus: present, or still in its fault until clear_fault().
+  void plug_in() noexcept {
+    departed_ = false;
+    machine_.apply(device_event::arrived);
+  }
+
+  /// What the hand feels and does now, for tests and recordings: the truth behind the measurements.
+  [[nodiscard]] const pose& true_T_dh() const noexcept { return plant_.T_dh; }
+  [[nodiscard]] const twist& true_velocity_d() const noexcept { return plant_.velocity_d; }
+  /// Work of the device's wrench on the hand's side of the port since the first read(), J.
+  [[nodiscard]] double delivered_j() const noexcept { return delivered_j_; }
+  [[nodiscard]] const simulated_config& config() const noexcept { return config_; }
+
+ private:
+  static constexpr std::int64_t plant_step_ns = 50'000;
+  static constexpr std::size_t past_size = 512;  // 25.6 ms of plant states for the delay
+
+  struct plant_state {
+    pose T_dh{};
+    twist velocity_d{};
+  };
+  struct past_state {
+    plant_state plant{};
+    std::int64_t time_ns = 0;
+  };
+  struct tremor_wave {
+    double rate_rad_per_s = 0.0;
+    double phase_rad = 0.0;
+  };
+
+  [[nodiscard]] double unit() noexcept { return static_cast<double>(bits_() >> 11) * 0x1.0p-53; }
+
+  [[nodiscard]] bool measures() const noexcept {
+    return machine_.state() == device_state::ready || may_put_out(machine_.state());
+  }
+
+  [[nodiscard]] bool fault_at(device_fault kind, std::int64_t now_ns) const noexcept {
+    for (const scripted_fault& f : config_.faults) {
+      if (f.kind == kind && now_ns >= f.from_ns && now_ns < f.until_ns) return true;
+    }
+    return false;
+  }
+
+  void depart() noexcept {
+    departed_ = true;
+    command_ = {};
+    machine_.apply(device_event::departed);
+  }
+
+  [[nodiscard]] error refused(const char* what) const {
+    return {error_code::invalid_argument,
+            std::string(what) + "() is not possible while the simulated device is " + to_string(machine_.state())};
+  }
+
+  void advance(std::int64_t now_ns) noexcept {
+    if (!started_) {
+      started_ = true;
+      origin_ns_ = now_ns;
+      plant_ns_ = now_ns;
+      past_.fill({plant_, now_ns});
+    }
+    while (plant_ns_ + plant_step_ns <= now_ns) step();
+  }
+
+  // Semi-implicit Euler: the dampers are taken at the end of the step, so that a firm grip cannot blow up.
+  void step() noexcept {
+    const double h = static_cast<double>(plant_step_ns) * 1e-9;
+    const double t = static_cast<double>(plant_ns_ - origin_ns_) * 1e-9;
+    const hand_target hand = motion_.at(t);
+    const hand_config& g = config_.hand;
+    const plant_config& p = config_.plant;
+    const wrench put_out = plant_ns_ <= command_.valid_until_ns ? command_.on_hand : wrench{};
+
+    const vec3 pull = g.stiffness_n_per_m * (hand.T_dh.position + tremor(t) - plant_.T_dh.position) +
+                      g.damping_n_s_per_m * hand.velocity_d.linear + put_out.force;
+    const vec3 turn =
+        g.stiffness_n_m_per_rad * log_rotation(hand.T_dh.rotation * glm::conjugate(plant_.T_dh.rotation)) +
+        g.damping_n_m_s_per_rad * hand.velocity_d.angular + put_out.torque;
+    const double b = g.damping_n_s_per_m + p.damping_n_s_per_m;
+    const double br = g.damping_n_m_s_per_rad + p.damping_n_m_s_per_rad;
+    twist& v = plant_.velocity_d;
+    v.linear = (p.mass_kg * v.linear + h * pull) / (p.mass_kg + h * b);
+    v.angular = (p.inertia_kg_m2 * v.angular + h * turn) / (p.inertia_kg_m2 + h * br);
+    plant_.T_dh.position += h * v.linear;
+    plant_.T_dh.rotation = glm::normalize(exp_rotation(h * v.angular) * plant_.T_dh.rotation);
+    delivered_j_ += h * (glm::dot(put_out.force, v.linear) + glm::dot(put_out.torque, v.angular));
+
+    plant_ns_ += plant_step_ns;
+    past_next_ = (past_next_ + 1) % past_size;
+    past_[past_next_] = {plant_, plant_ns_};
+  }
+
+  [[nodiscard]] vec3 tremor(double t_s) const noexcept {
+    vec3 out{0.0};
+    for (std::size_t i = 0; i < tremor_.size(); ++i) {
+      out[static_cast<int>(i % 3)] += std::sin(tremor_[i].rate_rad_per_s * t_s + tremor_[i].phase_rad);
+    }
+    return config_.hand.tremor_m * out;
+  }
+
+  void measure(std::int64_t now_ns) noexcept {
+    const measurement_config& m = config_.measurement;
+    const std::int64_t delay = m.delay_ns + static_cast<std::int64_t>(unit() * static_cast<double>(m.jitter_ns));
+    const std::size_t back = std::min<std::size_t>(
+        static_cast<std::size_t>(std::max<std::int64_t>(0, delay) / plant_step_ns), past_size - 1);
+    const past_state& then = past_[(past_next_ + past_size - back) % past_size];
+    newest_.host_time_ns = now_ns;
+    newest_.device_time_ns = then.time_ns;
+    newest_.sequence = ++sequence_;
+    newest_.T_dh = quantised(then.plant.T_dh);
+    newest_.velocity_d = then.plant.velocity_d;
+    newest_.valid = sample_field::position | sample_field::rotation | sample_field::linear_velocity |
+                    sample_field::angular_velocity;
+  }
+
+  [[nodiscard]] pose quantised(const pose& T) const noexcept {
+    const auto grid = [](vec3 v, double q) {
+      return q > 0.0 ? vec3(q * std::round(v.x / q), q * std::round(v.y / q), q * std::round(v.z / q)) : v;
+    };
+    const measurement_config& m = config_.measurement;
+    pose out{T.rotation, grid(T.position, m.position_resolution_m)};
+    if (m.rotation_resolution_rad > 0.0) {
+      out.rotation = exp_rotation(grid(log_rotation(T.rotation), m.rotation_resolution_rad));
+    }
+    return out;
+  }
+
+  void spoil(std::int64_t now_ns, device_sample& s) const noexcept {
+    if (fault_at(device_fault::nan_pose, now_ns)) s.T_dh.position.x = std::numeric_limits<double>::quiet_NaN();
+    if (fault_at(device_fault::infinite_pose, now_ns)) s.T_dh.position.y = std::numeric_limits<double>::infinity();
+    if (fault_at(device_fault::bad_rotation, now_ns)) s.T_dh.rotation = 2.0 * s.T_dh.rotation;
+    if (fault_at(device_fault::jump, now_ns)) s.T_dh.position.z += 0.5;
+  }
+
+  simulated_config config_;
+  motion_script motion_;
+  std::mt19937_64 bits_;
+  std::array<tremor_wave, 9> tremor_{};
+  device_state_machine machine_{};
+  bool departed_ = false;
+
+  bool started_ = false;
+  std::int64_t origin_ns_ = 0;
+  std::int64_t plant_ns_ = 0;
+  plant_state plant_{};
+  std::array<past_state, past_size> past_{};
+  std::size_t past_next_ = 0;
+  device_command command_{};
+  device_sample newest_{};
+  std::uint64_t sequence_ = 0;
+  double delivered_j_ = 0.0;
+};
+
+static_assert(haptic_device<simulated_device>);
+
+}  // namespace asperity
