@@ -62,10 +62,10 @@ struct surface_index {
   }
 
   void find_neighbours(const coarse_mesh& mesh) {
-    struct half_edge {
+    struct corner_edge {
       std::uint32_t low, high, triangle, edge;
     };
-    std::vector<half_edge> edges;
+    std::vector<corner_edge> edges;
     edges.reserve(3 * mesh.triangles.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       for (std::uint32_t k = 0; k < 3; ++k) {
@@ -74,13 +74,13 @@ struct surface_index {
         edges.push_back({std::min(a, b), std::max(a, b), t, k});
       }
     }
-    std::sort(edges.begin(), edges.end(), [](const half_edge& x, const half_edge& y) {
+    std::sort(edges.begin(), edges.end(), [](const corner_edge& x, const corner_edge& y) {
       return std::array{x.low, x.high, x.triangle, x.edge} < std::array{y.low, y.high, y.triangle, y.edge};
     });
     neighbour.assign(mesh.triangles.size(), {none, none, none});
     for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-      const half_edge& a = edges[i];
-      const half_edge& b = edges[i + 1];
+      const corner_edge& a = edges[i];
+      const corner_edge& b = edges[i + 1];
       if (a.low != b.low || a.high != b.high) continue;
       neighbour[a.triangle][a.edge] = b.triangle;
       neighbour[b.triangle][b.edge] = a.triangle;

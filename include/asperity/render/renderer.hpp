@@ -23,9 +23,9 @@ struct tick {
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
 ///
-///     auto renderer = asperity::renderer(scene);            // the default policies, see asperity/fwd.hpp
+///     auto made = asperity::make_renderer(scene);            // the default policies, see default_renderer.hpp
 ///     asperity::tick tick;
-///     if (renderer.step({T_wa, T_wb}, tick) == asperity::status::ok) send(tick.force.on_probe_w);
+///     if (made && made->step({T_wa, T_wb}, tick) == asperity::status::ok) send(tick.force.on_probe_w);
 ///
 /// Data goes forward only; no stage knows the next. All memory is taken by the constructor.
 /// @tparam Finder  who touches whom          (asperity/collision/concept.hpp)
