@@ -25,8 +25,9 @@ struct collision_tag {};
 
 template <class P>
 concept collision_finder = std::derived_from<typename P::policy_tag, collision_tag> &&
-                           requires(P& finder, const scene_pose& at, contact_set& out) {
-                             { finder.find(at, out) } noexcept -> std::same_as<status>;
-                           };
+    requires(P& finder, const scene_pose& at, contact_set& out) {
+  { finder.find(at, out) }
+  noexcept->std::same_as<status>;
+};
 
 }  // namespace asperity

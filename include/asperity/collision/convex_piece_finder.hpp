@@ -1,0 +1,224 @@
+// The paper's collision finder: close pairs of convex pieces, clustered into contacts.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "asperity/collision/close_pair.hpp"
+#include "asperity/collision/clustering.hpp"
+#include "asperity/collision/concept.hpp"
+#include "asperity/collision/contact_builder.hpp"
+#include "asperity/collision/finder_settings.hpp"
+
+namespace asperity {
+
+/// Finds contacts between the convex pieces of the probe and of every fixed body.
+///
+/// Broad phase: boxes of B's pieces, moved into A's frame and grown by the tolerance, against a static tree over A's.
+/// Narrow phase: GJK with cached simplices; for overlaps, separating axes of the real surface (close_pair.hpp).
+/// Clusters (clustering.hpp) become contacts with a window and patches (contact_builder.hpp). Contacts are ordered by
+/// body and id. docs/explanation/collision.md says what is continuous in the pose and what is known to jump.
+/// @source paper sections 3.3 and 6.1 (after Kim et al. 2003)
+class convex_piece_finder {
+ public:
+  using policy_tag = collision_tag;
+
+  /// Takes all memory that find() needs. Offline.
+  /// @pre the scene's models are set and valid
+  explicit convex_piece_finder(const scene& s, const finder_settings& settings = {}) : probe_(s.probe) {
+    for (const model_ptr& m : s.fixed) sides_.emplace_back(probe_, m, settings);
+  }
+
+  /// Contacts at these poses; `out` is cleared first.
+  /// @return ok | capacity_reached (statistics() says which) | not_ready (number of poses) | invalid_pose
+  /// @rt safe
+  status find(const scene_pose& at, contact_set& out) noexcept {
+    out.clear();
+    statistics_ = {};
+    if (at.T_wb.size() != sides_.size()) return status::not_ready;
+    if (!is_valid(at.T_wa) || !std::all_of(at.T_wb.begin(), at.T_wb.end(), is_valid)) return status::invalid_pose;
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      find_pairs(sides_[i], inverse(at.T_wa) * at.T_wb[i]);
+      if (!sides_[i].clustering.build(sides_[i].pairs, std::cos(sides_[i].settings.merge_angle_rad))) {
+        statistics_.dropped_clusters += sides_[i].clustering.left_out();
+      }
+      identify(sides_[i], at.T_wa);
+      report(sides_[i], static_cast<std::uint32_t>(i), at.T_wa, at.T_wb[i], out);
+    }
+    const bool complete = statistics_.dropped_pairs == 0 && statistics_.dropped_clusters == 0 && out.dropped() == 0;
+    return complete ? status::ok : status::capacity_reached;
+  }
+
+  /// Counters of the last find().
+  [[nodiscard]] const finder_statistics& statistics() const noexcept { return statistics_; }
+  /// Settings for one fixed body, automatic ones filled in. @pre body < number of fixed bodies
+  [[nodiscard]] const finder_settings& settings(std::size_t body) const noexcept { return sides_[body].settings; }
+
+ private:
+  /// A cached simplex and the pair it belongs to. Pairs share slots: losing one costs a cold start.
+  struct cache_slot {
+    std::uint32_t a = 0, b = 0;
+    gjk_cache simplex;
+  };
+
+  /// A contact of the last tick, to know it again.
+  struct track {
+    std::uint32_t id = 0;
+    std::uint32_t cluster = 0;
+    vec3 place_w{0.0};
+    vec3 n_ab_w{0.0};
+    vec3 u_w{0.0};
+    double reach_m = 0.0;
+  };
+
+  /// Everything between the probe and one fixed body.
+  struct side {
+    collision_body body;
+    finder_settings settings;
+    std::vector<cache_slot> cache;
+    std::vector<close_pair> pairs;
+    pair_clustering clustering;
+    contact_builder builder;
+    std::vector<track> previous, current;
+
+    side(const collision_body& probe, const model_ptr& m, const finder_settings& s)
+        : body(m),
+          settings(resolve(s, *probe.model, *m)),
+          cache(slots(probe.shapes.size() * body.shapes.size())),
+          clustering(settings.close_pairs, settings.clusters),
+          builder(probe.model->mesh.triangles.size(), m->mesh.triangles.size(), probe.shapes.size(),
+                  body.shapes.size()) {
+      pairs.reserve(settings.close_pairs);
+      previous.reserve(settings.clusters);
+      current.reserve(settings.clusters);
+    }
+
+    static std::size_t slots(std::size_t pairs) noexcept {
+      constexpr std::size_t most = std::size_t{1} << 16;
+      std::size_t n = 1;
+      while (n < pairs && n < most) n *= 2;
+      return n;
+    }
+    cache_slot& slot(std::uint32_t a, std::uint32_t b) noexcept {
+      const std::size_t n = std::size_t{b} * 2654435761U + a;
+      cache_slot& s = cache[n & (cache.size() - 1)];
+      if (s.a != a || s.b != b) s = {a, b, {}};
+      return s;
+    }
+  };
+
+  void find_pairs(side& s, const pose& T) noexcept {
+    const placement T_ab(T);
+    const double tolerance = s.settings.tolerance_m;
+    const narrow_phase_limits limits{tolerance, s.settings.max_depth_m};
+    const mat3 size(glm::abs(T_ab.rotation[0]), glm::abs(T_ab.rotation[1]), glm::abs(T_ab.rotation[2]));
+    s.pairs.clear();
+    for (std::uint32_t j = 0; j < s.body.shapes.size(); ++j) {
+      const convex_shape& B = s.body.shapes[j];
+      const vec3 centre = T_ab * (0.5 * (B.box.low + B.box.high));
+      const vec3 extent = size * (0.5 * (B.box.high - B.box.low));
+      const bounds box_b{centre - extent, centre + extent};
+      probe_.piece_tree.query({box_b.low - tolerance, box_b.high + tolerance}, [&](std::uint32_t i) {
+        const convex_shape& A = probe_.shapes[i];
+        const vec3 apart = centre - A.centre;
+        const double reach = A.radius + B.radius + tolerance;
+        if (glm::dot(apart, apart) > reach * reach) return;
+        ++statistics_.candidate_pairs;
+        close_pair pair;
+        pair.a = i;
+        pair.b = j;
+        bool overlapping = false;
+        evaluate_pair(A, B, T_ab, limits, s.slot(i, j).simplex, pair, statistics_.gjk_iterations, overlapping);
+        if (overlapping) ++statistics_.penetrating_pairs;
+        if (pair.kind == pair_kind::apart) return;
+        if (pair.kind == pair_kind::rejected) {
+          ++statistics_.rejected_pairs;
+          return;
+        }
+        ++statistics_.close_pairs;
+        if (pair.kind == pair_kind::passive) ++statistics_.passive_pairs;
+        if (s.pairs.size() == s.settings.close_pairs) {
+          ++statistics_.dropped_pairs;
+          return;
+        }
+        pair.region = {glm::max(A.box.low, box_b.low) - 0.5 * tolerance,
+                       glm::min(A.box.high, box_b.high) + 0.5 * tolerance};
+        s.pairs.push_back(pair);
+      });
+    }
+  }
+
+  /// Gives every cluster the id and axes of the contact that was nearest to it in the last tick, or new ones.
+  void identify(side& s, const pose& T_wa) noexcept {
+    constexpr double same_direction = 0.5;  // 60 degrees
+    constexpr auto unknown = std::numeric_limits<std::uint32_t>::max();
+    const auto clusters = s.clustering.clusters();
+    std::swap(s.previous, s.current);
+    s.current.clear();
+    for (std::uint32_t i = 0; i < clusters.size(); ++i) {
+      s.current.push_back({unknown, i, T_wa * clusters[i].place, T_wa.rotation * clusters[i].n_ab, vec3(0.0), 0.0});
+    }
+    for (;;) {
+      track* best = nullptr;
+      std::size_t best_old = 0;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (track& now : s.current) {
+        if (now.id != unknown) continue;
+        for (std::size_t k = 0; k < s.previous.size(); ++k) {
+          const track& old = s.previous[k];
+          const double distance = glm::distance(now.place_w, old.place_w);
+          if (distance > old.reach_m || glm::dot(now.n_ab_w, old.n_ab_w) < same_direction || distance >= nearest) {
+            continue;
+          }
+          best = &now;
+          best_old = k;
+          nearest = distance;
+        }
+      }
+      if (best == nullptr) break;
+      best->id = s.previous[best_old].id;
+      best->u_w = s.previous[best_old].u_w;
+      s.previous.erase(s.previous.begin() + static_cast<std::ptrdiff_t>(best_old));
+    }
+    for (track& now : s.current) {
+      if (now.id == unknown) now.id = next_id_++;
+      const vec3 u = now.u_w - glm::dot(now.u_w, now.n_ab_w) * now.n_ab_w;
+      const double length = std::sqrt(glm::dot(u, u));
+      now.u_w = length > 1e-3 ? u / length : any_orthogonal(now.n_ab_w);
+    }
+    std::sort(s.current.begin(), s.current.end(), [](const track& x, const track& y) { return x.id < y.id; });
+  }
+
+  void report(side& s, std::uint32_t body, const pose& T_wa, const pose& T_wb, contact_set& out) noexcept {
+    for (track& now : s.current) {
+      const pair_cluster& cluster = s.clustering.clusters()[now.cluster];
+      contact c;
+      c.body = body;
+      c.id = now.id;
+      c.window.u_w = now.u_w;
+      if (!s.builder.build(probe_, s.body, T_wa, T_wb, s.settings, s.pairs, s.clustering.members(cluster), cluster,
+                           c)) {
+        ++statistics_.empty_clusters;
+        continue;
+      }
+      // A contact that moved no further than across its window is the same one.
+      now.reach_m = 2.0 * c.window.half_size_m + s.settings.tolerance_m;
+      (void)out.add(c, s.builder.patch_a(), s.builder.patch_b());  // a refusal is counted in out.dropped()
+    }
+  }
+
+  collision_body probe_;
+  std::vector<side> sides_;
+  std::uint32_t next_id_ = 0;
+  finder_statistics statistics_;
+};
+
+static_assert(collision_finder<convex_piece_finder>);
+
+}  // namespace asperity
