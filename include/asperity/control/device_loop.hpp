@@ -62,7 +62,7 @@ class device_loop {
         check_(config.samples),
         coupling_(config.coupling, config.probe.mass_kg, mean_inertia(config.probe)),
         probe_(config.probe),
-        guard_(config.guard),
+        guard_(guard_for(config.guard, dev.capabilities())),
         gate_(tighter(limits_of(dev.capabilities()), config.limits)) {}
 
   /// One period. now_ns never decreases.
@@ -128,6 +128,14 @@ class device_loop {
  private:
   [[nodiscard]] static double mean_inertia(const probe_config& p) noexcept {
     return (p.inertia_kg_m2[0][0] + p.inertia_kg_m2[1][1] + p.inertia_kg_m2[2][2]) / 3.0;
+  }
+
+  [[nodiscard]] static guard_config guard_for(guard_config g, const device_capabilities& c) noexcept {
+    if (!(g.mass_kg > 0.0) && !(g.inertia_kg_m2 > 0.0)) {
+      g.mass_kg = c.moving_mass_kg;
+      g.inertia_kg_m2 = c.moving_inertia_kg_m2;
+    }
+    return g;
   }
 
   [[nodiscard]] double advance_clock(std::int64_t now_ns) noexcept {

@@ -11,8 +11,11 @@ namespace asperity {
 
 struct guard_config {
   bool enabled = true;
-  double mass_kg = 0.1;  ///< apparent mass of the device's handle: bounds the damping
-  double inertia_kg_m2 = 1e-4;
+  /// Apparent mass and inertia of the device's handle: they set and bound the damping. Where both are zero a
+  /// device_loop takes what the device states of itself; a guard by itself then adds no damping and only scales.
+  double mass_kg = 0.0;
+  double inertia_kg_m2 = 0.0;
+  double tolerance_j = 1e-5;    ///< surplus that is left alone: one newton over one hundredth of a millimetre
   double credit_j = 0.1;        ///< most of the hand's energy that counts as lent to the loop
   double soft_limit_j = 0.005;  ///< surplus at which the wrench begins to be scaled down ...
   double hard_limit_j = 0.02;   ///< ... and at which only damping is left
@@ -33,9 +36,9 @@ struct guard_action {
 /// surplus() is the sum; it may not go below -credit_j. Without that floor an hour of scraping, which puts joules in,
 /// would allow a vibration to give all of them back. credit_j covers what springs hold at full force and so costs a
 /// passive loop nothing.
-/// Controller: with a surplus, damping in proportion to the device's inertia, at the rate
-/// alpha = min(surplus / (h v.M v), 0.5 / h), so that one sample takes out the surplus and the damping itself stays
-/// stable. Past soft_limit_j the wanted wrench is scaled down as well, to zero at hard_limit_j.
+/// Controller: with a surplus over tolerance_j (rounding, the encoder's steps), damping in proportion to the device's
+/// inertia, at the rate alpha = min(surplus / (h v.M v), 0.5 / h), so that one sample takes out the surplus and the
+/// damping itself stays stable. Past soft_limit_j the wanted wrench is scaled down as well, to zero at hard_limit_j.
 ///
 /// Bound: surplus() <= hard_limit_j + max(|F| |dx| + |T| |dphi|) over the samples that the gate's slew rate needs to
 /// take the wrench from its limit to zero. Hence over any interval the hand receives at most that plus credit_j. It is
@@ -70,7 +73,7 @@ class passivity_guard {
   /// The wrench that may go on to the gate.
   /// @rt safe
   [[nodiscard]] guard_action adjust(const wrench& wanted) const noexcept {
-    if (!config_.enabled || !(surplus_j_ > 0.0)) return {wanted, 0.0, 1.0};
+    if (!config_.enabled || !(surplus_j_ > config_.tolerance_j)) return {wanted, 0.0, 1.0};
     const double over = (surplus_j_ - config_.soft_limit_j) / (config_.hard_limit_j - config_.soft_limit_j);
     const double scale = 1.0 - std::clamp(over, 0.0, 1.0);
     const double power_per_rate = config_.mass_kg * glm::dot(velocity_.linear, velocity_.linear) +

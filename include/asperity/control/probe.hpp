@@ -8,6 +8,7 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/model/mass_properties.hpp"
 
 namespace asperity {
 
@@ -16,6 +17,11 @@ struct probe_config {
   double mass_kg = 0.01;
   mat3 inertia_kg_m2{1e-5};  ///< about the centre of mass, body axes; symmetric positive definite
 };
+
+/// A virtual tool of this mass with the shape of a model: the inertia of a body of uniform density.
+[[nodiscard]] inline probe_config solid_probe(const mass_properties& shape, double mass_kg = 0.01) noexcept {
+  return {mass_kg, mass_kg * shape.inertia_per_mass};
+}
 
 /// Motion of the probe's centre-of-mass frame c (origin c_A, body axes).
 struct probe_state {
