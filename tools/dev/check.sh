@@ -51,21 +51,22 @@ check_format() {
   git ls-files '*.hpp' '*.h' '*.cpp' | xargs clang-format --dry-run -Werror
 }
 
-# Every header of the core in one translation unit, without exceptions, and compiled to the end by both compilers.
+# Without exceptions: every header of the core in one translation unit, and a program that presses a box onto another.
 check_no_exceptions() {
-  local source=build/check/core.cpp compiler
-  core_headers | sed 's/.*/#include "&"/' > "$source"
+  local compiler flags=(-std=c++20 -fno-exceptions -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+    -Wold-style-cast -Werror -Iinclude)
+  all_core_headers > build/check/core.cpp
   for compiler in g++ clang++; do
-    "$compiler" -std=c++20 -fno-exceptions -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion \
-      -Wold-style-cast -Werror -Iinclude -c "$source" -o "build/check/core-$compiler.o"
-    "$compiler" -std=c++20 -fno-exceptions -O1 -Iinclude tests/static/no_exceptions.cpp -o "build/check/no-exceptions-$compiler"
+    "$compiler" "${flags[@]}" -c build/check/core.cpp -o "build/check/core-$compiler.o"
+    "$compiler" "${flags[@]}" -Itests tests/static/no_exceptions.cpp -o "build/check/no-exceptions-$compiler"
     "build/check/no-exceptions-$compiler"
   done
 }
 
-# The headers that belong to asperity::asperity, as they are included.
-core_headers() {
-  git ls-files include | sed -n 's|^include/\(asperity/.*\.h\(pp\)\{0,1\}\)$|\1|p' | grep -vE '^asperity/(io|bake)/'
+# A translation unit that includes every header of asperity::asperity.
+all_core_headers() {
+  git ls-files include | sed -n 's|^include/\(asperity/.*\.h\(pp\)\{0,1\}\)$|\1|p' | grep -vE '^asperity/(io|bake)/' |
+    sed 's/.*/#include "&"/'
 }
 
 check_gcc_debug() {
@@ -100,16 +101,12 @@ check_tsan() {
 
 left_out() { say "left out: tests labelled '$1' ($2)"; }
 
+# The compiled rooms by their compile commands, and one translation unit that shows it every header of the core.
 check_tidy() {
-  # One translation unit shows every header of the core to clang-tidy; the compiled components show the rest.
-  local flags
-  cmake --preset clang > /dev/null
-  git ls-files 'tools/*.cpp' 'examples/*.cpp' | tee build/check/tidy-files
-  say build/check/core.cpp >> build/check/tidy-files
-  core_headers | sed 's/.*/#include "&"/' > build/check/core.cpp
-  flags=(-std=c++20 -Iinclude)
-  xargs -P "$(nproc)" -I{} clang-tidy --quiet -p build/clang {} < <(grep -v '^build/' build/check/tidy-files)
-  clang-tidy --quiet build/check/core.cpp -- "${flags[@]}"
+  configure clang
+  all_core_headers > build/check/core.cpp
+  clang-tidy --quiet build/check/core.cpp -- -std=c++20 -Iinclude
+  git ls-files 'tools/*.cpp' 'examples/*.cpp' | xargs -P "$(nproc)" -n 1 clang-tidy --quiet -p build/clang
 }
 
 # The same session, bit for bit, whoever compiled it.
