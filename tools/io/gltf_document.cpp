@@ -1,0 +1,200 @@
+#include "gltf_document.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "file_bytes.hpp"
+#include "text_cursor.hpp"
+
+namespace asperity::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string accessor_name(int accessor) { return "accessors[" + std::to_string(accessor) + "]"; }
+
+/// A URI's %20 and the like as characters. Throws rejection.
+std::string percent_decoded(const std::string& uri, const std::string& place) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] != '%') {
+      out += uri[i];
+      continue;
+    }
+    unsigned code = 0;
+    const char* first = uri.data() + i + 1;
+    if (i + 2 >= uri.size() || std::from_chars(first, first + 2, code, 16).ptr != first + 2) {
+      reject(place + " has a broken % code");
+    }
+    out += static_cast<char>(code);
+    i += 2;
+  }
+  return out;
+}
+
+/// The file that a relative URI names, if it lies in the document's own folder or below. Throws rejection.
+fs::path beside(const fs::path& file, const std::string& uri, const std::string& place) {
+  const fs::path name(percent_decoded(uri, place));
+  std::error_code ec;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(file).parent_path(), ec);
+  const fs::path target = fs::weakly_canonical(folder / name, ec);  // follows links and ".."
+  const auto [end_of_folder, rest] = std::mismatch(folder.begin(), folder.end(), target.begin(), target.end());
+  const bool has_scheme = uri.find(':') != std::string::npos;
+  if (ec || has_scheme || name.is_absolute() || end_of_folder != folder.end() || rest == target.end()) {
+    reject(place + " leads out of the document's folder; put the buffer beside it");
+  }
+  return target;
+}
+
+/// Refuses every file: the guard has read what may be read.
+tinygltf::FsCallbacks no_files() {
+  return {[](const std::string&, void*) { return false; }, [](const std::string& name, void*) { return name; },
+          [](std::vector<unsigned char>*, std::string*, const std::string&, void*) { return false; },
+          [](std::string*, const std::string&, const std::vector<unsigned char>&, void*) { return false; }, nullptr};
+}
+
+}  // namespace
+
+gltf_document::gltf_document(std::string_view bytes, const fs::path& file, buffer_policy policy,
+                             const gltf_limits& limits) {
+  glb_chunks chunks;
+  if (policy == buffer_policy::own_folder && !bytes.starts_with("glTF")) {
+    chunks.json = bytes;
+  } else {
+    chunks = split_glb(bytes);
+  }
+  source_ = parse_bounded(chunks.json, limits);
+  collect_buffers(chunks.bin, file, policy);
+  std::vector<std::size_t> sizes;
+  for (const std::string_view b : buffers_) sizes.push_back(b.size());
+  const std::string checked = checked_geometry(source_, sizes).dump();
+
+  tinygltf::TinyGLTF parser;
+  parser.SetFsCallbacks(no_files());
+  parser.RemoveImageLoader();
+  std::string problem;
+  std::string warning;
+  if (!parser.LoadASCIIFromString(&geometry_, &problem, &warning, checked.data(), static_cast<unsigned>(checked.size()),
+                                  "")) {
+    reject("is not accepted by the glTF parser: " + problem.substr(0, problem.find('\n')));
+  }
+}
+
+void gltf_document::collect_buffers(std::string_view bin, const fs::path& file, buffer_policy policy) {
+  const json_object root(source_, "the document");
+  const std::size_t count = root.array("buffers").size();
+  owned_.reserve(count);  // views into these strings must not move
+  for (std::size_t i = 0; i < count; ++i) {
+    const json_object buffer = root.element("buffers", i);
+    const std::uint64_t length = buffer.whole("byteLength");
+    std::string_view bytes = bin;
+    if (buffer.has("uri")) {
+      if (policy == buffer_policy::own_chunk_only) {
+        reject(buffer.path("uri") + " names data outside the file, which a textured model never does");
+      }
+      bytes = owned_.emplace_back(outside_buffer(buffer.text("uri"), buffer.path("uri"), file));
+    } else if (i != 0) {
+      reject(buffer.path() + " has no uri, and only the first buffer may be the BIN chunk");
+    }
+    if (length == 0 || length > bytes.size()) {
+      reject(buffer.path("byteLength") + " is " + std::to_string(length) + ", but there are " +
+             std::to_string(bytes.size()) + " bytes");
+    }
+    buffers_.push_back(bytes.substr(0, static_cast<std::size_t>(length)));
+  }
+}
+
+std::string gltf_document::outside_buffer(const std::string& uri, const std::string& place,
+                                          const fs::path& file) const {
+  if (uri.starts_with("data:")) {
+    std::vector<unsigned char> decoded;
+    std::string mime_type;
+    if (!tinygltf::DecodeDataURI(&decoded, mime_type, uri, 0, false))
+      reject(place + " is no base64 data URI of a buffer");
+    return {decoded.begin(), decoded.end()};
+  }
+  auto bytes = read_file(beside(file, uri, place), max_mesh_bytes);
+  if (!bytes) throw rejection{bytes.error().code, place + " names " + bytes.error().message};
+  return std::move(bytes).value();
+}
+
+std::string_view gltf_document::view_bytes(std::size_t view) const {
+  const tinygltf::BufferView& v = geometry_.bufferViews[view];
+  return buffers_[static_cast<std::size_t>(v.buffer)].substr(v.byteOffset, v.byteLength);
+}
+
+const char* gltf_document::element(const tinygltf::Accessor& a, std::size_t i) const {
+  const tinygltf::BufferView& v = geometry_.bufferViews[static_cast<std::size_t>(a.bufferView)];
+  const auto stride = static_cast<std::size_t>(a.ByteStride(v));
+  return buffers_[static_cast<std::size_t>(v.buffer)].data() + v.byteOffset + a.byteOffset + i * stride;
+}
+
+std::vector<vec3> gltf_document::positions(int accessor) const {
+  const tinygltf::Accessor& a = geometry_.accessors[static_cast<std::size_t>(accessor)];
+  if (a.type != TINYGLTF_TYPE_VEC3 || a.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
+    throw rejection{error_code::unsupported, accessor_name(accessor) + " holds positions that are not float32 VEC3"};
+  }
+  std::vector<vec3> out;
+  out.reserve(a.count);
+  for (std::size_t i = 0; i < a.count; ++i) {
+    out.emplace_back(load_number<glm::vec3>(element(a, i)));
+    if (!is_finite(out.back())) {
+      reject(accessor_name(accessor) + " has a coordinate that is not finite at vertex " + std::to_string(i));
+    }
+  }
+  return out;
+}
+
+std::vector<vec2> gltf_document::uvs(int accessor) const {
+  const tinygltf::Accessor& a = geometry_.accessors[static_cast<std::size_t>(accessor)];
+  const bool single = a.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
+  const bool bytes = a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+  if (a.type != TINYGLTF_TYPE_VEC2 ||
+      !(single || ((bytes || a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT) && a.normalized))) {
+    throw rejection{error_code::unsupported,
+                    accessor_name(accessor) + " holds texture coordinates that are neither float32 nor normalised"};
+  }
+  std::vector<vec2> out;
+  out.reserve(a.count);
+  for (std::size_t i = 0; i < a.count; ++i) {
+    const char* at = element(a, i);
+    const vec2 uv = single  ? vec2(load_number<glm::vec2>(at))
+                    : bytes ? vec2(load_number<std::uint8_t>(at), load_number<std::uint8_t>(at + 1)) / 255.0
+                            : vec2(load_number<std::uint16_t>(at), load_number<std::uint16_t>(at + 2)) / 65535.0;
+    if (!std::isfinite(uv.x) || !std::isfinite(uv.y)) {
+      reject(accessor_name(accessor) + " has a texture coordinate that is not finite at vertex " + std::to_string(i));
+    }
+    out.push_back(uv);
+  }
+  return out;
+}
+
+std::vector<std::uint32_t> gltf_document::indices(int accessor, std::size_t vertex_count) const {
+  std::vector<std::uint32_t> out;
+  if (accessor < 0) {
+    out.resize(vertex_count);
+    for (std::size_t i = 0; i < vertex_count; ++i) out[i] = static_cast<std::uint32_t>(i);
+    return out;
+  }
+  const tinygltf::Accessor& a = geometry_.accessors[static_cast<std::size_t>(accessor)];
+  const bool known = a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+                     a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+                     a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+  if (a.type != TINYGLTF_TYPE_SCALAR || !known) reject(accessor_name(accessor) + " holds indices of a wrong type");
+  out.reserve(a.count);
+  for (std::size_t i = 0; i < a.count; ++i) {
+    const char* at = element(a, i);
+    const std::uint32_t v = a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? load_number<std::uint8_t>(at)
+                            : a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+                                ? load_number<std::uint16_t>(at)
+                                : load_number<std::uint32_t>(at);
+    if (v >= vertex_count) {
+      reject(accessor_name(accessor) + " entry " + std::to_string(i) + " names vertex " + std::to_string(v) + " of " +
+             std::to_string(vertex_count));
+    }
+    out.push_back(v);
+  }
+  return out;
+}
+
+}  // namespace asperity::io

@@ -1,0 +1,69 @@
+#include "asperity/io/mesh_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+#include "file_bytes.hpp"
+#include "mesh_formats.hpp"
+
+namespace asperity::io {
+namespace {
+
+std::string lower_case_extension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool fits_float32(const vec3& p) { return vec3(glm::vec3(p)) == p; }
+
+}  // namespace
+
+result<triangle_mesh> load_mesh(const std::filesystem::path& file) {
+  return without_exceptions(file, [&]() -> result<triangle_mesh> {
+    const std::string extension = lower_case_extension(file);
+    const auto reader = extension == ".ply"                           ? read_ply
+                        : extension == ".obj"                         ? read_obj
+                        : extension == ".stl"                         ? read_stl
+                        : extension == ".glb" || extension == ".gltf" ? read_gltf
+                                                                      : nullptr;
+    if (reader == nullptr) {
+      return fault(error_code::unsupported, file,
+                   "has an unknown extension '" + extension + "'; use .ply, .obj, .stl, .gltf or .glb");
+    }
+    const auto bytes = read_file(file, max_mesh_bytes);
+    if (!bytes) return bytes.error();
+    return reader(*bytes, file);
+  });
+}
+
+result<void> save_ply(const triangle_mesh& mesh, const std::filesystem::path& file) {
+  return without_exceptions(file, [&]() -> result<void> {
+    // float32 where it loses nothing, which is what most tools expect; double otherwise.
+    const bool single = std::all_of(mesh.positions.begin(), mesh.positions.end(), fits_float32);
+    const std::string type = single ? "float" : "double";
+    std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment asperity, metres\nelement vertex " +
+                        std::to_string(mesh.positions.size()) + "\nproperty " + type + " x\nproperty " + type +
+                        " y\nproperty " + type + " z\nelement face " + std::to_string(mesh.triangles.size()) +
+                        "\nproperty list uchar uint vertex_indices\nend_header\n";
+    bytes.reserve(bytes.size() + (single ? 12 : 24) * mesh.positions.size() + 13 * mesh.triangles.size());
+    for (const vec3& p : mesh.positions) {
+      for (const double x : {p.x, p.y, p.z}) {
+        if (single) {
+          append_number(bytes, static_cast<float>(x));
+        } else {
+          append_number(bytes, x);
+        }
+      }
+    }
+    for (const auto& t : mesh.triangles) {
+      bytes += '\3';
+      for (const std::uint32_t v : t) append_number(bytes, v);
+    }
+    return write_file(file, {bytes});
+  });
+}
+
+}  // namespace asperity::io

@@ -1,0 +1,18 @@
+// One reader per mesh format. Each gets the file's bytes and its name for messages.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/triangle_mesh.hpp"
+
+namespace asperity::io {
+
+[[nodiscard]] result<triangle_mesh> read_ply(std::string_view bytes, const std::filesystem::path& file);
+[[nodiscard]] result<triangle_mesh> read_obj(std::string_view bytes, const std::filesystem::path& file);
+[[nodiscard]] result<triangle_mesh> read_stl(std::string_view bytes, const std::filesystem::path& file);
+/// .glb and .gltf; buffers of the latter are read from the file's own folder only.
+[[nodiscard]] result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file);
+
+}  // namespace asperity::io

@@ -1,0 +1,140 @@
+// glTF and GLB: the triangles of all nodes of the scene, in the scene's frame.
+#include <array>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat4x4.hpp>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "file_bytes.hpp"
+#include "gltf_document.hpp"
+#include "mesh_builder.hpp"
+#include "mesh_formats.hpp"
+
+namespace asperity::io {
+namespace {
+
+constexpr gltf_limits limits{.json_bytes = max_mesh_bytes, .json_items = 1'000'000};
+/// Limits for triangles and for vertices. A scene can place one mesh many times over, so the file's size bounds
+/// neither.
+constexpr std::size_t max_triangles = 20'000'000;
+constexpr std::size_t max_vertices = 20'000'000;
+
+glm::dmat4 local_transform(const tinygltf::Node& node) {
+  glm::dmat4 m(1.0);
+  if (node.matrix.size() == 16) {
+    for (int column = 0; column < 4; ++column) {
+      for (int row = 0; row < 4; ++row) m[column][row] = node.matrix[static_cast<std::size_t>(4 * column + row)];
+    }
+    return m;
+  }
+  const auto& r = node.rotation;
+  if (r.size() == 4) m = glm::mat4_cast(glm::dquat(r[3], r[0], r[1], r[2]));  // glTF stores x y z w
+  if (const auto& s = node.scale; s.size() == 3) {
+    for (int axis = 0; axis < 3; ++axis) m[axis] *= s[static_cast<std::size_t>(axis)];
+  }
+  if (const auto& t = node.translation; t.size() == 3) m[3] = {t[0], t[1], t[2], 1.0};
+  return m;
+}
+
+struct placed_mesh {
+  int mesh;
+  glm::dmat4 transform;
+};
+
+/// Meshes of the default scene; of all nodes without a parent where there is no scene.
+std::vector<placed_mesh> placed_meshes(const tinygltf::Model& model) {
+  std::vector<std::pair<int, glm::dmat4>> open;
+  if (!model.scenes.empty()) {
+    const auto scene = model.defaultScene < 0 ? 0U : static_cast<std::size_t>(model.defaultScene);
+    const auto& roots = model.scenes[scene].nodes;
+    for (auto n = roots.rbegin(); n != roots.rend(); ++n) open.emplace_back(*n, glm::dmat4(1.0));
+  } else {
+    std::vector<bool> child(model.nodes.size());
+    for (const auto& node : model.nodes) {
+      for (const int c : node.children) child[static_cast<std::size_t>(c)] = true;
+    }
+    for (std::size_t n = model.nodes.size(); n-- > 0;) {
+      if (!child[n]) open.emplace_back(static_cast<int>(n), glm::dmat4(1.0));
+    }
+  }
+  std::vector<placed_mesh> out;
+  std::vector<bool> seen(model.nodes.size());
+  while (!open.empty()) {
+    const auto [n, parent] = open.back();
+    open.pop_back();
+    const auto at = static_cast<std::size_t>(n);
+    if (seen[at]) reject("nodes[" + std::to_string(n) + "] has two parents or is its own ancestor");
+    seen[at] = true;
+    const tinygltf::Node& node = model.nodes[at];
+    const glm::dmat4 transform = parent * local_transform(node);
+    if (node.mesh >= 0) out.push_back({node.mesh, transform});
+    for (auto c = node.children.rbegin(); c != node.children.rend(); ++c) open.emplace_back(*c, transform);
+  }
+  return out;
+}
+
+void add_primitive(const gltf_document& document, const tinygltf::Primitive& primitive, const std::string& place,
+                   const glm::dmat4& transform, polygon_soup& soup, bool& all_have_uvs) {
+  if (primitive.mode == TINYGLTF_MODE_POINTS || primitive.mode == TINYGLTF_MODE_LINE ||
+      primitive.mode == TINYGLTF_MODE_LINE_LOOP || primitive.mode == TINYGLTF_MODE_LINE_STRIP) {
+    return;  // no surface
+  }
+  if (primitive.mode != TINYGLTF_MODE_TRIANGLES) {
+    throw rejection{error_code::unsupported, place + " is a strip or fan; export it as a list of triangles"};
+  }
+  const auto positions = document.positions(primitive.attributes.at("POSITION"));
+  const auto indices = document.indices(primitive.indices, positions.size());
+  if (indices.size() % 3 != 0)
+    reject(place + " has " + std::to_string(indices.size()) + " corners, not a multiple of 3");
+  if (indices.size() / 3 > max_triangles - soup.ends.size() ||
+      positions.size() > max_vertices - soup.positions.size()) {
+    throw rejection{error_code::limit_exceeded, "places more than 20 million triangles or vertices in its scene"};
+  }
+  const auto uv = primitive.attributes.find("TEXCOORD_0");
+  all_have_uvs = all_have_uvs && uv != primitive.attributes.end();
+  const auto uvs = all_have_uvs ? document.uvs(uv->second) : std::vector<vec2>();
+  if (all_have_uvs && uvs.size() != positions.size()) {
+    reject(place + " has " + std::to_string(uvs.size()) + " texture coordinates for " +
+           std::to_string(positions.size()) + " vertices");
+  }
+
+  const auto first = static_cast<std::uint32_t>(soup.positions.size());
+  for (const vec3& p : positions) {
+    soup.positions.emplace_back(transform * glm::dvec4(p, 1.0));
+    if (!is_finite(soup.positions.back())) reject(place + " is moved beyond all numbers by its node");
+  }
+  // A mirroring transform turns triangles inside out; glTF says that their winding turns with it.
+  const bool mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
+  for (std::size_t t = 0; t < indices.size(); t += 3) {
+    for (const std::size_t k : mirrored ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2}) {
+      soup.corners.push_back(first + indices[t + k]);
+      if (all_have_uvs) soup.corner_uvs.push_back(uvs[indices[t + k]]);
+    }
+    soup.end_polygon();
+  }
+}
+
+}  // namespace
+
+result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file) {
+  polygon_soup soup;
+  try {
+    const gltf_document document(bytes, file, buffer_policy::own_folder, limits);
+    const tinygltf::Model& model = document.geometry();
+    bool all_have_uvs = true;
+    for (const placed_mesh& placed : placed_meshes(model)) {
+      const auto& primitives = model.meshes[static_cast<std::size_t>(placed.mesh)].primitives;
+      for (std::size_t p = 0; p < primitives.size(); ++p) {
+        const std::string place = "meshes[" + std::to_string(placed.mesh) + "].primitives[" + std::to_string(p) + "]";
+        add_primitive(document, primitives[p], place, placed.transform, soup, all_have_uvs);
+      }
+    }
+    if (!all_have_uvs) soup.corner_uvs.clear();
+  } catch (const rejection& r) {
+    return fault(r.code, file, r.what + "; export the mesh again");
+  }
+  return build_mesh(std::move(soup), file);
+}
+
+}  // namespace asperity::io

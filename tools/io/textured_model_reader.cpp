@@ -1,0 +1,220 @@
+// Textured model from .glb: guard, then the extension, then the model check.
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "asperity/io/textured_model_file.hpp"
+#include "asperity/model/validate.hpp"
+#include "file_bytes.hpp"
+#include "gltf_document.hpp"
+#include "haptic_texture_extension.hpp"
+
+namespace asperity::io {
+namespace {
+
+constexpr gltf_limits limits{.json_bytes = std::size_t{16} << 20, .json_items = 200'000};
+
+/// All numbers of a buffer view. Throws rejection where its length is no multiple of theirs.
+template <class T>
+std::vector<T> numbers(const gltf_document& document, const json_object& from, const char* key) {
+  const std::size_t view = from.index(key, document.geometry().bufferViews.size());
+  const std::string_view bytes = document.view_bytes(view);
+  if (bytes.size() % sizeof(T) != 0) {
+    reject(from.path(key) + " has " + std::to_string(bytes.size()) + " bytes, not a multiple of " +
+           std::to_string(sizeof(T)));
+  }
+  std::vector<T> out(bytes.size() / sizeof(T));
+  std::memcpy(out.data(), bytes.data(), bytes.size());
+  return out;
+}
+
+/// The mesh that carries the extension.
+std::size_t find_mesh(const json_object& root) {
+  std::optional<std::size_t> found;
+  for (std::size_t m = 0; m < root.array("meshes").size(); ++m) {
+    const json_object mesh = root.element("meshes", m);
+    if (!mesh.has("extensions") || !mesh.object("extensions").has(extension::name)) continue;
+    if (found) throw rejection{error_code::unsupported, "has more than one mesh with a haptic texture; split the file"};
+    found = m;
+  }
+  if (!found) {
+    throw rejection{
+        error_code::bad_texture,
+        std::string("has no haptic texture (no mesh has the extension ") + extension::name +
+            "): it was never baked, or another tool rewrote it and dropped the extension; make bake the last step"};
+  }
+  return *found;
+}
+
+coarse_mesh read_mesh(const gltf_document& document, std::size_t m, const json_object& haptic) {
+  const auto& primitives = document.geometry().meshes[m].primitives;
+  if (primitives.size() != 1 || primitives[0].mode != TINYGLTF_MODE_TRIANGLES ||
+      primitives[0].attributes.count("TEXCOORD_0") == 0) {
+    reject("meshes[" + std::to_string(m) + "] is not a single list of triangles with TEXCOORD_0");
+  }
+  const auto positions = document.positions(primitives[0].attributes.at("POSITION"));
+  const auto uvs = document.uvs(primitives[0].attributes.at("TEXCOORD_0"));
+  const auto indices = document.indices(primitives[0].indices, positions.size());
+  const json_object merged = haptic.object("meshVertices");
+  const auto mesh_vertex = numbers<std::uint32_t>(document, merged, "bufferView");
+  const std::uint64_t count = merged.whole("count");
+  if (uvs.size() != positions.size() || mesh_vertex.size() != positions.size() || count > positions.size()) {
+    reject("the mesh has " + std::to_string(positions.size()) + " positions, " + std::to_string(uvs.size()) +
+           " texture coordinates, " + std::to_string(mesh_vertex.size()) + " entries and " + std::to_string(count) +
+           " vertices in " + merged.path());
+  }
+  if (indices.size() % 3 != 0)
+    reject("the mesh has " + std::to_string(indices.size()) + " corners, not a multiple of 3");
+
+  coarse_mesh mesh;
+  mesh.positions.resize(static_cast<std::size_t>(count));
+  std::vector<bool> set(mesh.positions.size());
+  for (std::size_t i = 0; i < mesh_vertex.size(); ++i) {
+    const std::uint32_t v = mesh_vertex[i];
+    if (v >= count || (set[v] && mesh.positions[v] != positions[i])) {
+      reject(merged.path() + " entry " + std::to_string(i) + " merges positions that differ or names vertex " +
+             std::to_string(v) + " of " + std::to_string(count));
+    }
+    mesh.positions[v] = positions[i];
+    set[v] = true;
+  }
+  mesh.triangles.resize(indices.size() / 3);
+  for (std::size_t corner = 0; corner < indices.size(); ++corner) {
+    mesh.triangles[corner / 3].vertex[corner % 3] = mesh_vertex[indices[corner]];
+    mesh.triangles[corner / 3].uv[corner % 3] = uvs[indices[corner]];
+  }
+  return mesh;
+}
+
+haptic_texture read_texture(const gltf_document& document, const json_object& from) {
+  constexpr std::uint64_t largest_side = 16384;
+  haptic_texture texture;
+  const std::uint64_t width = from.whole("width");
+  const std::uint64_t height = from.whole("height");
+  if (width == 0 || height == 0 || width > largest_side || height > largest_side) {
+    reject(from.path() + " is " + std::to_string(width) + " x " + std::to_string(height) +
+           " texels; both must be 1 to " + std::to_string(largest_side));
+  }
+  if (from.whole("componentType") != extension::float32_component || from.whole("components") != 3 ||
+      from.text("rowOrder") != extension::row_order) {
+    throw rejection{error_code::unsupported,
+                    from.path() + " holds texels of another kind than three float32, row v = 0 first"};
+  }
+  texture.width = static_cast<std::uint32_t>(width);
+  texture.height = static_cast<std::uint32_t>(height);
+  texture.texels = numbers<glm::vec3>(document, from, "bufferView");
+  if (texture.texels.size() != width * height) {
+    throw rejection{error_code::bad_texture, from.path("bufferView") + " holds " +
+                                                 std::to_string(texture.texels.size()) + " texels, not " +
+                                                 std::to_string(width * height)};
+  }
+  return texture;
+}
+
+std::vector<convex_piece> read_pieces(const gltf_document& document, const json_object& from, const coarse_mesh& mesh) {
+  const auto table = numbers<std::uint32_t>(document, from, "table");
+  const auto vertices = numbers<std::uint32_t>(document, from, "vertices");
+  const auto hull = numbers<std::array<std::uint32_t, 3>>(document, from, "hull");
+  const auto triangles = numbers<std::uint32_t>(document, from, "triangles");
+  if (table.size() % extension::table_columns != 0 || from.whole("count") != table.size() / extension::table_columns) {
+    reject(from.path("table") + " does not hold four numbers for each piece");
+  }
+  std::vector<convex_piece> pieces;
+  pieces.reserve(table.size() / extension::table_columns);
+  std::size_t vertex = 0;
+  std::size_t face = 0;
+  std::size_t triangle = 0;
+  for (std::size_t row = 0; row < table.size(); row += extension::table_columns) {
+    const std::uint32_t* counts = table.data() + row;
+    if (counts[0] > vertices.size() - vertex || counts[1] > hull.size() - face ||
+        counts[2] > triangles.size() - triangle) {
+      reject(from.path("table") + " row " + std::to_string(pieces.size()) + " takes more than the arrays hold");
+    }
+    convex_piece piece;
+    for (const std::size_t end = vertex + counts[0]; vertex < end; ++vertex) {
+      if (vertices[vertex] >= mesh.positions.size()) {
+        reject(from.path("vertices") + " entry " + std::to_string(vertex) + " names vertex " +
+               std::to_string(vertices[vertex]) + " of " + std::to_string(mesh.positions.size()));
+      }
+      piece.vertices.push_back(mesh.positions[vertices[vertex]]);
+    }
+    const auto offset = [](std::size_t n) { return static_cast<std::ptrdiff_t>(n); };
+    piece.hull.assign(hull.begin() + offset(face), hull.begin() + offset(face + counts[1]));
+    piece.triangles.assign(triangles.begin() + offset(triangle), triangles.begin() + offset(triangle + counts[2]));
+    face += counts[1];
+    triangle += counts[2];
+    piece.flat = (counts[3] & extension::flag_flat) != 0;
+    pieces.push_back(std::move(piece));
+  }
+  if (vertex != vertices.size() || face != hull.size() || triangle != triangles.size()) {
+    reject(from.path("table") + " leaves part of the arrays to no piece");
+  }
+  return pieces;
+}
+
+bake_report read_report(const json_object& from) {
+  bake_report report;
+  report.rms_error_m = from.number("rms_error_m");
+  report.max_error_m = from.number("max_error_m");
+  report.relief_m = from.number("relief_m");
+  report.max_displacement_m = from.number("max_displacement_m");
+  report.full_triangles = static_cast<std::size_t>(from.whole("full_triangles"));
+  report.fallback_texels = static_cast<std::size_t>(from.whole("fallback_texels"));
+  report.texels = static_cast<std::size_t>(from.whole("texels"));
+  return report;
+}
+
+textured_model read_model(const gltf_document& document) {
+  const json_object root(document.source(), "the document");
+  const std::size_t m = find_mesh(root);
+  const json_object mesh = root.element("meshes", m);
+  const json_object haptic(mesh.object("extensions").raw(extension::name), extension::name);
+  if (haptic.whole("version") != extension::version) {
+    throw rejection{error_code::unsupported, haptic.path("version") + " is " + std::to_string(haptic.whole("version")) +
+                                                 ", and this build reads version 1; update asperity or bake again"};
+  }
+  if (haptic.text("units") != extension::units) {
+    throw rejection{error_code::unsupported, haptic.path("units") + " is not m"};
+  }
+  textured_model model;
+  if (mesh.has("name")) model.name = mesh.text("name");
+  model.mesh = read_mesh(document, m, haptic);
+  model.texture = read_texture(document, haptic.object("texture"));
+  model.pieces = read_pieces(document, haptic.object("pieces"), model.mesh);
+  model.report = read_report(haptic.object("report"));
+  return model;
+}
+
+bounds bounds_of(const std::vector<vec3>& positions) {
+  bounds box{positions.front(), positions.front()};
+  for (const vec3& p : positions) {
+    box.low = glm::min(box.low, p);
+    box.high = glm::max(box.high, p);
+  }
+  return box;
+}
+
+result<textured_model> load(const std::filesystem::path& file) {
+  const auto bytes = read_file(file, max_model_bytes);
+  if (!bytes) return bytes.error();
+  textured_model model;
+  try {
+    model = read_model(gltf_document(*bytes, file, buffer_policy::own_chunk_only, limits));
+  } catch (const rejection& r) {
+    return fault(r.code, file, r.what);
+  }
+  if (const auto valid = validate(model); !valid) return fault(valid.error().code, file, valid.error().message);
+  model.mass = compute_mass_properties(model.mesh);
+  model.box = bounds_of(model.mesh.positions);
+  return model;
+}
+
+}  // namespace
+
+result<textured_model> load_textured_model(const std::filesystem::path& file) {
+  return without_exceptions(file, [&] { return load(file); });
+}
+
+}  // namespace asperity::io
