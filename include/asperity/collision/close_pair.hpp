@@ -12,16 +12,15 @@ namespace asperity {
 
 /// What the narrow phase decides about a pair of pieces.
 enum class pair_kind : std::uint8_t {
-  apart,     ///< further apart than the tolerance
-  active,    ///< close, with a direction that leaves the real surface of both pieces
-  passive,   ///< close, but its direction is a ghost: it widens a contact's region and has no say in its direction
-  rejected,  ///< deeper than the limit, or only near through the inside of a body
+  apart,    ///< further apart than the tolerance, and not through the inside of a body either
+  active,   ///< close, with a direction that leaves the real surface of both pieces
+  passive,  ///< close, but only along ghost directions: it widens a contact's region, without a say in its direction
 };
 
 /// A pair in the frame of A. Fields after `weight` are set for active pairs only.
 struct close_pair {
   std::uint32_t a = 0, b = 0;  ///< pieces
-  bounds region;               ///< where the two pieces' boxes, grown by half the tolerance, overlap
+  bounds region;               ///< where the two pieces' boxes overlap, or what lies between them, and half a tolerance
   pair_kind kind = pair_kind::apart;
   double weight = 0.0;  ///< 0 at the tolerance, 1 at touch, growing with depth; continuous in the pose
   vec3 n_ab{0.0};       ///< unit
@@ -42,36 +41,83 @@ struct narrow_phase_limits {
   return x * x;
 }
 
+/// Which pairs a pass over the candidates is after.
+enum class narrow_pass : std::uint8_t {
+  near_pass,  ///< pieces closer than the tolerance
+  deep_pass,  ///< pieces further apart than that, where one body's surface has passed through the other's
+};
+
+/// What a pair cost.
+struct narrow_phase_cost {
+  std::uint32_t gjk_iterations = 0;  ///< most of one call
+  bool overlapping = false;          ///< the hulls share a point
+};
+
+namespace detail {
+
+/// Sine of the angle outside a normal cone at which a direction has lost all its weight: pieces are convex within a
+/// tolerance, so neighbouring real directions may miss each other by a little.
+inline constexpr double cone_slack = 0.1;
+
+/// The least depth among directions that leave the real surface of both pieces and along which the pieces meet: moved
+/// a tolerance apart along the direction, GJK must find them a tolerance apart. Everything else would push sideways
+/// out of a cut between two pieces.
+inline bool find_penetration(const convex_shape& A, const convex_shape& B, const placement& T_ab,
+                             const narrow_phase_limits& limits, close_pair& pair, narrow_phase_cost& cost) noexcept {
+  const double tolerance = limits.tolerance_m;
+  separating_directions directions;
+  find_separating_directions(A, B, T_ab, directions);
+  for (const separating_direction& d : directions) {
+    if (d.separation_m < -limits.max_depth_m) return false;
+    if (d.separation_m >= tolerance) continue;
+    const double share =
+        normal_cone_share(A, d.n_ab, cone_slack) * normal_cone_share(B, T_ab.to_local(-d.n_ab), cone_slack);
+    if (share <= 0.0) continue;
+    const vec3 shift = (tolerance - d.separation_m) * d.n_ab;
+    placement moved = T_ab;
+    moved.position += shift;
+    gjk_cache cold;
+    const gjk_result meet = gjk_distance(A, B, moved, 1.05 * tolerance, cold);
+    cost.gjk_iterations = std::max(cost.gjk_iterations, meet.iterations);
+    if (meet.outcome != gjk_outcome::separated) continue;
+    pair.kind = pair_kind::active;
+    pair.weight = share * separation_weight(d.separation_m, tolerance);
+    pair.n_ab = d.n_ab;
+    pair.separation_m = d.separation_m;
+    pair.p_a = meet.p_a;
+    pair.p_b = meet.p_b - shift;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace detail
+
 /// Kind, direction, separation and witness points of a pair whose a and b are set.
-/// A gap takes GJK's direction. An overlap, or a gap seen from inside a body, takes the least depth among directions
-/// that leave the real surface of both pieces and along which the pieces meet: moved apart along the direction, GJK
-/// must find them as far apart as they were moved. Everything else would push sideways out of a cut.
-/// @param[out] iterations largest GJK iteration count met
+/// A gap takes GJK's direction where that looks out of both surfaces. An overlap, or a gap seen from inside a body,
+/// takes the least depth of the real surface. The deep pass leaves alone what the near pass answers.
 /// @rt safe
 inline void evaluate_pair(const convex_shape& A, const convex_shape& B, const placement& T_ab,
-                          const narrow_phase_limits& limits, gjk_cache& cache, close_pair& pair,
-                          std::uint32_t& iterations, bool& overlapping) noexcept {
-  // Sine of the angle outside a normal cone at which a direction has lost all its weight: pieces are convex within
-  // a tolerance, so neighbouring real directions may miss each other by a little.
-  constexpr double cone_slack = 0.1;
+                          const narrow_phase_limits& limits, narrow_pass pass, gjk_cache& cache, close_pair& pair,
+                          narrow_phase_cost& cost) noexcept {
   // Closer than this share of the size, the direction of GJK loses digits; faces and edges give it exactly.
   constexpr double direction_limit = 1e-7;
 
-  const double tolerance = limits.tolerance_m;
-  const auto share = [&](const vec3& n) {
-    return normal_cone_share(A, n, cone_slack) * normal_cone_share(B, T_ab.to_local(-n), cone_slack);
-  };
-
-  const gjk_result g = gjk_distance(A, B, T_ab, tolerance, cache);
-  iterations = std::max(iterations, g.iterations);
-  overlapping = false;
+  cost = {};
   pair.kind = pair_kind::apart;
+  pair.weight = 0.0;
+  const bool deep = pass == narrow_pass::deep_pass;
+  const gjk_result g = gjk_distance(A, B, T_ab, deep ? limits.max_depth_m : limits.tolerance_m, cache);
+  cost.gjk_iterations = g.iterations;
   if (g.outcome == gjk_outcome::beyond) return;
+  if (deep && g.distance <= limits.tolerance_m) return;
 
-  overlapping = g.outcome == gjk_outcome::overlapping || g.distance < direction_limit * (A.radius + B.radius);
-  if (!overlapping && A.faces_along(g.n_ab) && B.faces_along(T_ab.to_local(-g.n_ab))) {
-    const double direct = share(g.n_ab);
-    pair.weight = direct * separation_weight(g.distance, tolerance);
+  cost.overlapping = g.outcome == gjk_outcome::overlapping || g.distance < direction_limit * (A.radius + B.radius);
+  if (!cost.overlapping && A.faces_along(g.n_ab) && B.faces_along(T_ab.to_local(-g.n_ab))) {
+    if (deep) return;
+    const double share = normal_cone_share(A, g.n_ab, detail::cone_slack) *
+                         normal_cone_share(B, T_ab.to_local(-g.n_ab), detail::cone_slack);
+    pair.weight = share * separation_weight(g.distance, limits.tolerance_m);
     pair.kind = pair.weight > 0.0 ? pair_kind::active : pair_kind::passive;
     pair.n_ab = g.n_ab;
     pair.separation_m = g.distance;
@@ -79,31 +125,7 @@ inline void evaluate_pair(const convex_shape& A, const convex_shape& B, const pl
     pair.p_b = g.p_b;
     return;
   }
-
-  separating_directions directions;
-  find_separating_directions(A, B, T_ab, directions);
-  for (const separating_direction& d : directions) {
-    if (d.separation_m < -limits.max_depth_m) break;
-    if (d.separation_m >= tolerance) continue;
-    const double direct = share(d.n_ab);
-    if (direct <= 0.0) continue;
-    placement moved = T_ab;
-    const vec3 shift = (tolerance - d.separation_m) * d.n_ab;
-    moved.position += shift;
-    gjk_cache cold;
-    const gjk_result meet = gjk_distance(A, B, moved, 1.05 * tolerance, cold);
-    iterations = std::max(iterations, meet.iterations);
-    if (meet.outcome != gjk_outcome::separated) continue;
-    pair.kind = pair_kind::active;
-    pair.weight = direct * separation_weight(d.separation_m, tolerance);
-    pair.n_ab = d.n_ab;
-    pair.separation_m = d.separation_m;
-    pair.p_a = meet.p_a;
-    pair.p_b = meet.p_b - shift;
-    return;
-  }
-  pair.weight = 0.0;
-  pair.kind = overlapping ? pair_kind::passive : pair_kind::rejected;
+  if (!detail::find_penetration(A, B, T_ab, limits, pair, cost)) pair.kind = pair_kind::passive;
 }
 
 }  // namespace asperity

@@ -5,9 +5,11 @@
 //   than its tolerance, overlapping ones included, clustered into contact patches.
 // - n_ab is a unit vector from A towards B; a gap has separation > 0, an overlap < 0.
 // - A patch lists coarse triangles that can hold a point of the contact inside its window, each once; a superset is
-//   allowed. The window is in the world and centred between the witness points.
+//   allowed. The window is in the world; its centre lies halfway between the surfaces along n and in the middle of
+//   the region of contact, which moves continuously where witness points of parallel faces jump.
 // - The same poses after the same history give the same bits. State between ticks (cached simplices, contact ids,
 //   window axes) may change the cost and the frame {u, v}, never whether two pieces touch.
+// - find() clears the set that it is given.
 // - Nothing in find() allocates, locks, throws, prints or reads a clock. Poses are finite; T_wb has one pose per fixed
 //   body. What does not fit is dropped, counted in contact_set::dropped(), and answered with capacity_reached.
 #pragma once

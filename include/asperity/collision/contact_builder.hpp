@@ -21,9 +21,9 @@ namespace asperity {
 ///
 /// Rules, with t the tolerance, s the cluster's separation along n and d = max(-s, 0):
 /// - A triangle faces the contact where n . N_A > 0.1 or n . N_B < -0.1.
-/// - Region: facing triangles of the cluster's pieces, cut to heights no more than t - s behind the witness height (the
-///   surfaces are closer than t only there) and 2 t + d beyond it. The boxes of A's and B's part along u and v are
-///   intersected.
+/// - Region: facing triangles over the places where the cluster's pairs are near each other, cut to heights no more
+///   than t - s behind the witness height (the surfaces are closer than t only there) and 2 t + d beyond it. The boxes
+///   of A's and B's part along u and v are intersected.
 /// - Window: the square about the region's centre, 5 % larger than its longer side, within the size limits. It moves
 ///   continuously with the pose while the cluster keeps its pieces and even where the witness points jump.
 /// - Patch: every facing triangle of the body, from whatever piece, that may reach into the window grown by a tenth
@@ -33,8 +33,7 @@ namespace asperity {
 ///   region; a tie between parallel faces gives the middle of their overlap, not one of its corners.
 class contact_builder {
  public:
-  contact_builder(std::size_t triangles_a, std::size_t triangles_b, std::size_t pieces_a, std::size_t pieces_b)
-      : seen_a_(pieces_a, 0), seen_b_(pieces_b, 0) {
+  contact_builder(std::size_t triangles_a, std::size_t triangles_b) {
     patch_a_.reserve(triangles_a);
     patch_b_.reserve(triangles_b);
   }
@@ -58,22 +57,13 @@ class contact_builder {
     const double behind = std::max(tolerance - separation, least_share * tolerance);
     const double beyond = 2.0 * tolerance + depth;
 
-    const plane_box all = plane_box::square(vec2(0.0), limits.max_half_size_m);
     const window_projection onto_a(w, T_wa);
     const window_projection onto_b(w, T_wb);
-    ++stamp_;
-    plane_box region_a, region_b;
-    for (const std::uint32_t m : members) {
-      const close_pair& p = pairs[m];
-      if (seen_a_[p.a] != stamp_) {
-        seen_a_[p.a] = stamp_;
-        add_region(a, p.a, onto_a, 1.0, {height_a - behind, height_a + beyond}, all, region_a);
-      }
-      if (seen_b_[p.b] != stamp_) {
-        seen_b_[p.b] = stamp_;
-        add_region(b, p.b, onto_b, -1.0, {height_b - beyond, height_b + behind}, all, region_b);
-      }
-    }
+    plane_box near;
+    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region);
+    near = intersection(near, plane_box::square(vec2(0.0), limits.max_half_size_m));
+    const plane_box region_a = cut_region(a, onto_a, 1.0, {height_a - behind, height_a + beyond}, near, patch_a_);
+    const plane_box region_b = cut_region(b, onto_b, -1.0, {height_b - beyond, height_b + behind}, near, patch_b_);
     plane_box region = intersection(region_a, region_b);
     vec2 centre(0.0);
     w.half_size_m = limits.min_half_size_m;
@@ -113,22 +103,27 @@ class contact_builder {
     return to(corners(body.model->mesh, t));
   }
 
-  static void add_region(const collision_body& body, std::uint32_t piece, const window_projection& to, double side,
-                         const height_slab& slab, const plane_box& all, plane_box& region) noexcept {
-    for (const std::uint32_t t : body.model->pieces[piece].triangles) {
-      if (side * to.along_n(body.triangle_normals[t]) <= facing_limit) continue;
-      const auto uvh = projected(body, t, to);
-      if (!may_reach(uvh, slab, all)) continue;
-      for (const vec3& p : clip(uvh, slab, all)) region.add(p);
+  /// Box of a body's facing surface within a slab and a rectangle; `scratch` is overwritten.
+  static plane_box cut_region(const collision_body& body, const window_projection& to, double side,
+                              const height_slab& slab, const plane_box& near,
+                              std::vector<std::uint32_t>& scratch) noexcept {
+    plane_box region;
+    collect(body, to, side, slab, near, scratch);
+    for (const std::uint32_t t : scratch) {
+      for (const vec3& p : clip(projected(body, t, to), slab, near)) region.add(p);
     }
+    return region;
   }
 
+  /// Facing triangles that may reach into a slab over a rectangle.
   static void collect(const collision_body& body, const window_projection& to, double side, const height_slab& slab,
                       const plane_box& reach, std::vector<std::uint32_t>& patch) noexcept {
     patch.clear();
     const mat3 back = glm::transpose(to.to_uvh);
-    const vec3 centre = back * -to.offset;
-    const vec3 size(reach.high.x, reach.high.y, slab.high);
+    const vec3 low(reach.low, slab.low);
+    const vec3 high(reach.high, slab.high);
+    const vec3 centre = back * (0.5 * (low + high) - to.offset);
+    const vec3 size = 0.5 * (high - low);
     const vec3 extent = glm::abs(back[0]) * size.x + glm::abs(back[1]) * size.y + glm::abs(back[2]) * size.z;
     body.triangle_tree.query({centre - extent, centre + extent}, [&](std::uint32_t t) {
       if (side * to.along_n(body.triangle_normals[t]) <= facing_limit) return;
@@ -186,8 +181,6 @@ class contact_builder {
     return true;
   }
 
-  std::uint32_t stamp_ = 0;
-  std::vector<std::uint32_t> seen_a_, seen_b_;
   std::vector<std::uint32_t> patch_a_, patch_b_;
 };
 

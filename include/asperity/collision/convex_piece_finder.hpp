@@ -92,8 +92,7 @@ class convex_piece_finder {
           settings(resolve(s, *probe.model, *m)),
           cache(slots(probe.shapes.size() * body.shapes.size())),
           clustering(settings.close_pairs, settings.clusters),
-          builder(probe.model->mesh.triangles.size(), m->mesh.triangles.size(), probe.shapes.size(),
-                  body.shapes.size()) {
+          builder(probe.model->mesh.triangles.size(), m->mesh.triangles.size()) {
       pairs.reserve(settings.close_pairs);
       previous.reserve(settings.clusters);
       current.reserve(settings.clusters);
@@ -113,44 +112,59 @@ class convex_piece_finder {
     }
   };
 
+  /// Close pairs of pieces. Where hulls overlap, surfaces may have passed each other by more than the tolerance: then,
+  /// and only then, a second pass looks for such pairs as far as the depth limit.
   void find_pairs(side& s, const pose& T) noexcept {
     const placement T_ab(T);
-    const double tolerance = s.settings.tolerance_m;
-    const narrow_phase_limits limits{tolerance, s.settings.max_depth_m};
-    const mat3 size(glm::abs(T_ab.rotation[0]), glm::abs(T_ab.rotation[1]), glm::abs(T_ab.rotation[2]));
+    const std::size_t overlapping = statistics_.penetrating_pairs;
     s.pairs.clear();
+    visit_candidates(s, T_ab, narrow_pass::near_pass);
+    if (statistics_.penetrating_pairs > overlapping && s.settings.max_depth_m > s.settings.tolerance_m) {
+      visit_candidates(s, T_ab, narrow_pass::deep_pass);
+    }
+  }
+
+  void visit_candidates(side& s, const placement& T_ab, narrow_pass pass) noexcept {
+    const bool deep = pass == narrow_pass::deep_pass;
+    const narrow_phase_limits limits{s.settings.tolerance_m, s.settings.max_depth_m};
+    const double margin = deep ? limits.max_depth_m : limits.tolerance_m;
+    const mat3 size(glm::abs(T_ab.rotation[0]), glm::abs(T_ab.rotation[1]), glm::abs(T_ab.rotation[2]));
     for (std::uint32_t j = 0; j < s.body.shapes.size(); ++j) {
       const convex_shape& B = s.body.shapes[j];
-      const vec3 centre = T_ab * (0.5 * (B.box.low + B.box.high));
+      const vec3 centre = T_ab * B.centre;
       const vec3 extent = size * (0.5 * (B.box.high - B.box.low));
       const bounds box_b{centre - extent, centre + extent};
-      probe_.piece_tree.query({box_b.low - tolerance, box_b.high + tolerance}, [&](std::uint32_t i) {
+      probe_.piece_tree.query({box_b.low - margin, box_b.high + margin}, [&](std::uint32_t i) {
         const convex_shape& A = probe_.shapes[i];
         const vec3 apart = centre - A.centre;
-        const double reach = A.radius + B.radius + tolerance;
+        const double reach = A.radius + B.radius + margin;
         if (glm::dot(apart, apart) > reach * reach) return;
+        if (deep && !may_face(A, B, T_ab.rotation)) return;
         ++statistics_.candidate_pairs;
         close_pair pair;
         pair.a = i;
         pair.b = j;
-        bool overlapping = false;
-        evaluate_pair(A, B, T_ab, limits, s.slot(i, j).simplex, pair, statistics_.gjk_iterations, overlapping);
-        if (overlapping) ++statistics_.penetrating_pairs;
+        narrow_phase_cost cost;
+        evaluate_pair(A, B, T_ab, limits, pass, s.slot(i, j).simplex, pair, cost);
+        statistics_.gjk_iterations = std::max(statistics_.gjk_iterations, cost.gjk_iterations);
+        if (cost.overlapping) ++statistics_.penetrating_pairs;
         if (pair.kind == pair_kind::apart) return;
-        if (pair.kind == pair_kind::rejected) {
-          ++statistics_.rejected_pairs;
-          return;
-        }
-        ++statistics_.close_pairs;
-        if (pair.kind == pair_kind::passive) ++statistics_.passive_pairs;
-        if (s.pairs.size() == s.settings.close_pairs) {
-          ++statistics_.dropped_pairs;
-          return;
-        }
-        pair.region = {glm::max(A.box.low, box_b.low) - 0.5 * tolerance,
-                       glm::min(A.box.high, box_b.high) + 0.5 * tolerance};
-        s.pairs.push_back(pair);
+        const vec3 low = glm::max(A.box.low, box_b.low);
+        const vec3 high = glm::min(A.box.high, box_b.high);
+        pair.region = {glm::min(low, high) - 0.5 * limits.tolerance_m, glm::max(low, high) + 0.5 * limits.tolerance_m};
+        add_pair(s, pair, deep);
       });
+    }
+  }
+
+  void add_pair(side& s, const close_pair& pair, bool deep) noexcept {
+    ++statistics_.close_pairs;
+    if (deep) ++statistics_.deep_pairs;
+    if (pair.kind == pair_kind::passive) ++statistics_.passive_pairs;
+    if (s.pairs.size() == s.settings.close_pairs) {
+      ++statistics_.dropped_pairs;
+    } else {
+      s.pairs.push_back(pair);
     }
   }
 

@@ -101,6 +101,13 @@ struct convex_shape {
   return smoothstep(1.0 - violation / slack);
 }
 
+/// False where two flat pieces look the same way or past each other: they cannot be a contact, whatever their distance.
+/// @rt safe
+[[nodiscard]] inline bool may_face(const convex_shape& A, const convex_shape& B, const mat3& R_ab) noexcept {
+  if (A.faces.size() != 1 || B.faces.size() != 1) return true;
+  return glm::dot(A.faces[0].normal, R_ab * B.faces[0].normal) < 0.0;
+}
+
 /// The shape of a piece. Offline: allocates.
 /// @pre the piece has at least one vertex and covers at least one triangle of the mesh that `features` belong to
 [[nodiscard]] inline convex_shape make_convex_shape(const coarse_mesh& mesh, const mesh_features& features,

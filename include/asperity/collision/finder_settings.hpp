@@ -27,10 +27,10 @@ struct finder_settings {
 
 /// What the last find() met, over all fixed bodies.
 struct finder_statistics {
-  std::size_t candidate_pairs = 0;    ///< pairs of pieces whose boxes and spheres came within the tolerance
-  std::size_t close_pairs = 0;        ///< pairs within the tolerance (active and passive)
-  std::size_t passive_pairs = 0;      ///< close pairs whose direction is a ghost: see pair_kind
-  std::size_t rejected_pairs = 0;     ///< near through the inside of a body, or deeper than max_depth_m
+  std::size_t candidate_pairs = 0;  ///< pairs of pieces whose boxes and spheres came within the tolerance
+  std::size_t close_pairs = 0;      ///< pairs within the tolerance (active and passive)
+  std::size_t passive_pairs = 0;    ///< close pairs whose direction is a ghost: see pair_kind
+  std::size_t deep_pairs = 0;  ///< close pairs that the deep pass found: further apart than the tolerance, inside out
   std::size_t penetrating_pairs = 0;  ///< pairs whose hulls overlap
   std::size_t dropped_pairs = 0;      ///< close pairs that did not fit: raise finder_settings::close_pairs
   std::size_t dropped_clusters = 0;   ///< clusters that did not fit: raise finder_settings::clusters

@@ -13,6 +13,7 @@
 #include "asperity/core/math.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/model/coarse_mesh.hpp"
+#include "asperity/model/textured_model.hpp"
 
 namespace asperity {
 
@@ -28,6 +29,16 @@ struct plane_box {
   void add(const vec3& uvh) noexcept {
     low = glm::min(low, vec2(uvh));
     high = glm::max(high, vec2(uvh));
+  }
+  /// Adds the shadow of a box of the frame that `to` projects.
+  template <class Projection>
+  void add(const Projection& to, const bounds& box) noexcept {
+    const vec3 centre = to(0.5 * (box.low + box.high));
+    const vec3 half = 0.5 * (box.high - box.low);
+    const vec3 extent =
+        glm::abs(to.to_uvh[0]) * half.x + glm::abs(to.to_uvh[1]) * half.y + glm::abs(to.to_uvh[2]) * half.z;
+    add(centre - extent);
+    add(centre + extent);
   }
   [[nodiscard]] static plane_box square(const vec2& centre, double half) noexcept {
     return {centre - vec2(half), centre + vec2(half)};
