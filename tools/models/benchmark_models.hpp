@@ -45,6 +45,11 @@ inline constexpr double gear_radius_m = gear_ridges * ridge_wavelength_m / 6.283
 /// Extent of the gear along x, metres. Centred at the origin; a crest points along +z.
 inline constexpr double gear_length_m = 48e-3;
 
+/// Positions of the full-resolution models are whole multiples of this, metres: 2^-26 m, 15 nm. Up to 0.25 m from the
+/// origin single precision holds them exactly, so that a file holds the very same mesh; and the last bit of a sine,
+/// which mathematical libraries do not agree on, does not show.
+inline constexpr double position_step_m = 0x1p-26;
+
 /// Name of the model as the command and its files use it.
 [[nodiscard]] std::string_view to_string(benchmark b) noexcept;
 
@@ -61,8 +66,7 @@ inline constexpr double gear_length_m = 48e-3;
 [[nodiscard]] std::size_t paper_piece_count(benchmark b) noexcept;
 
 /// The full-resolution model in its body frame, metres: full_triangle_count(b) triangles, closed, 2-manifold, one
-/// component, outward oriented. Positions are single-precision numbers, so that a file holds exactly this mesh.
-/// The same bits on every call and in every build type.
+/// component, outward oriented. The same bits on every call and in every build type.
 [[nodiscard]] triangle_mesh make_full(benchmark b);
 
 /// The coarse partner of a full-resolution model, for block and gear: coarse_triangle_count(b) triangles, convex, no

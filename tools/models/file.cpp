@@ -17,9 +17,9 @@ constexpr double half_width = 8e-3;
 constexpr double half_thickness = 2.25e-3;
 
 constexpr double groove_wavelength = 1.8e-3;
-constexpr double groove_amplitude = 0.2e-3;  ///< both families together
-constexpr double overcut_angle_rad = 0.44;   ///< of the first family's wave to the blade's axis
-constexpr double upcut_angle_rad = -0.70;    ///< of the second family's
+constexpr double groove_depth = 0.2e-3;     ///< of one family; where two grooves cross it is twice as deep
+constexpr double overcut_angle_rad = 0.44;  ///< of the first family's wave to the blade's axis
+constexpr double upcut_angle_rad = -0.70;   ///< of the second family's
 
 /// Share of the blade's width that is left at x: a slight taper to the tip, a narrow tang behind the shoulder.
 double width_at(double x) {
@@ -33,14 +33,20 @@ double thickness_at(double x) {
   return x > shoulder ? 1.0 - 0.2 * smoothstep((x - 20e-3) / 60e-3) : 1.0 - 0.4 * smoothstep((shoulder - x) / 30e-3);
 }
 
+/// A groove at phase 0, narrower than the land between two grooves, without any kink; mean 3/8.
+double groove(double phase) {
+  const double c = 0.5 + 0.5 * std::cos(phase);
+  return c * c;
+}
+
 /// Height of the teeth at (x, y) of a face. Flat near the borders, so that the bar's edges stay sharp and straight.
 double teeth(double x, double y, double border_y) {
-  const auto wave = [x, y](double angle) {
-    return std::cos(two_pi / groove_wavelength * (x * std::cos(angle) + y * std::sin(angle)));
+  const auto cut = [x, y](double angle) {
+    return 0.375 - groove(two_pi / groove_wavelength * (x * std::cos(angle) + y * std::sin(angle)));
   };
   const double share = smoothstep((x - shoulder - 2e-3) / 2e-3) * smoothstep((blade_end - x - 1e-3) / 2e-3) *
                        smoothstep((border_y - std::abs(y) - 0.3e-3) / 1e-3);
-  return share * 0.5 * groove_amplitude * (wave(overcut_angle_rad) + wave(upcut_angle_rad));
+  return share * groove_depth * (cut(overcut_angle_rad) + cut(upcut_angle_rad));
 }
 
 vec3 shape(const vec3& p) {
