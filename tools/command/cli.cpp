@@ -92,6 +92,7 @@ int command_line::run(int argc, const char* const* argv) {
       complain("stdout could not be written: free space or redirect it elsewhere");
       return exit_failed;
     }
+    if (!done->complaint.empty()) complain(done->complaint);
     return done->exit_status;
   } catch (const std::bad_alloc&) {
     return fail("limit_exceeded", "out of memory: use smaller models or free memory", common_.json, exit_failed);

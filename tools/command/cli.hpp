@@ -32,6 +32,7 @@ struct answer {
   json document;     ///< without "schema", which the frame puts in front
   std::string text;  ///< ends with a newline
   int exit_status = exit_ok;
+  std::string complaint;  ///< the line for stderr where exit_status is not exit_ok
 };
 
 using action = std::function<result<answer>(const common_options&)>;

@@ -1,0 +1,56 @@
+// asperity devices: what a session can be felt with.
+#include <array>
+
+#include "asperity/hal/simulated/simulated_device.hpp"
+#include "cli.hpp"
+#include "model_report.hpp"
+#include "text.hpp"
+
+namespace asperity::command {
+namespace {
+
+json axes(axis_mask mask) {
+  static constexpr std::array<const char*, 6> names{"x", "y", "z", "rx", "ry", "rz"};
+  json out = json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if ((mask >> i & 1) != 0) out.push_back(names[i]);
+  }
+  return out;
+}
+
+json to_json(const device_capabilities& c) {
+  return {{"name", c.name},
+          {"maturity", to_string(c.maturity)},
+          {"sensed_axes", axes(c.sensed)},
+          {"actuated_axes", axes(c.actuated)},
+          {"continuous_force", c.continuous_force_n},
+          {"peak_force", c.peak_force_n},
+          {"continuous_torque", c.continuous_torque_n_m},
+          {"peak_torque", c.peak_torque_n_m},
+          {"max_stiffness", c.max_stiffness_n_per_m},
+          {"max_stiffness_rate_hz", c.max_stiffness_rate_hz},
+          {"workspace", {{"low", command::to_json(c.workspace_low_d)}, {"high", command::to_json(c.workspace_high_d)}}},
+          {"nominal_rate_hz", c.nominal_rate_hz},
+          {"moving_mass", c.moving_mass_kg},
+          {"device_side_watchdog", c.device_side_watchdog}};
+}
+
+result<answer> list_devices() {
+  const device_capabilities c = simulated_capabilities();
+  answer out;
+  out.document = {{"devices", json::array({to_json(c)})}, {"units", "SI"}};
+  out.text =
+      row("simulated", "no hardware: a handle, a hand and their dynamics in software; " + brief(c.peak_force_n) +
+                           " N and " + brief(c.peak_torque_n_m) + " N m at most, " + brief(c.nominal_rate_hz) + " Hz");
+  out.text += "  This build has no driver for hardware.\n";
+  return out;
+}
+
+}  // namespace
+
+void add_devices(command_line& line) {
+  line.add("devices", "List the devices that a session can be felt with",
+           [](const common_options&) { return list_devices(); });
+}
+
+}  // namespace asperity::command

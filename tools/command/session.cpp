@@ -1,0 +1,174 @@
+#include "session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <time.h>
+#include <utility>
+
+#include "interrupt.hpp"
+#include "record_queue.hpp"
+
+namespace asperity::command {
+namespace {
+
+// What this thread has used of the processor: other programs on the machine do not count as slowness of a tick.
+double cpu_seconds() noexcept {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+// A renderer with a stopwatch around it, so that no tick has to read a clock itself.
+class timed_renderer {
+ public:
+  timed_renderer(renderer feel, std::vector<double>& seconds) : feel_(std::move(feel)), seconds_(&seconds) {}
+
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
+    const double begin = cpu_seconds();
+    const status s = feel_.step(at, out);
+    const double taken = cpu_seconds() - begin;
+    taken_ += taken;
+    if (seconds_->size() < seconds_->capacity()) seconds_->push_back(taken);
+    return s;
+  }
+
+  /// Time in step() since the last call.
+  [[nodiscard]] double take_taken() noexcept { return std::exchange(taken_, 0.0); }
+
+ private:
+  renderer feel_;
+  std::vector<double>* seconds_;
+  double taken_ = 0.0;
+};
+
+struct keep_last {
+  session_record* last;
+  void operator()(const session_record& record) const noexcept { *last = record; }
+};
+
+std::uint64_t count_above(const std::vector<double>& seconds, std::int64_t period_ns) {
+  const double period_s = 1e-9 * static_cast<double>(period_ns);
+  return static_cast<std::uint64_t>(
+      std::count_if(seconds.begin(), seconds.end(), [&](double t) { return t > period_s; }));
+}
+
+result<void> open_and_arm(simulated_device& dev) {
+  if (result<void> opened = dev.open(); !opened) return opened;
+  return dev.arm();
+}
+
+result<session_outcome> run_virtual(session_setup setup, simulated_device& dev, progress_line& progress) {
+  session_outcome out;
+  const auto device_ticks = static_cast<std::uint64_t>(std::llround(setup.seconds * 1e9 / device_period_ns));
+  const double contact_ticks = setup.seconds * 1e9 / static_cast<double>(setup.contact_period_ns);
+  out.device.seconds.reserve(device_ticks);
+  out.contact.seconds.reserve(static_cast<std::size_t>(std::ceil(contact_ticks)) + 1);
+
+  session_record last;
+  // As on a real machine, a contact is used when its computation is over and not when it begins.
+  const virtual_schedule schedule{.device_period_ns = device_period_ns,
+                                  .contact_period_ns = setup.contact_period_ns,
+                                  .contact_one_period_late = true};
+  virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
+                          setup.control, schedule, keep_last{&last});
+  std::optional<error> failed;
+  const auto step = [&] {
+    const double begin = cpu_seconds();
+    static_cast<void>(session.step());
+    const double taken = cpu_seconds() - begin - session.contact().renderer().take_taken();
+    if (out.device.seconds.size() < device_ticks) out.device.seconds.push_back(taken);
+    if (failed) return;
+    if (const result<void> seen = setup.on_tick(last); !seen) failed = seen.error();
+  };
+
+  while (session.device_ticks() < device_ticks && !failed && !interrupted() &&
+         session.device().gate().fault() == gate_fault::none) {
+    step();
+    const std::uint64_t done = session.device_ticks();
+    if (done % 64 == 0) progress.show("session", static_cast<double>(done) / static_cast<double>(device_ticks));
+  }
+  out.fault = session.device().gate().fault();
+  out.interrupted = interrupted();
+  out.ended_at_s = 1e-9 * static_cast<double>(session.now_ns());
+  out.device.ticks = session.device_ticks();
+  out.contact.ticks = session.contact().computed();
+  session.device().stop();
+  constexpr int longest_wind_down = 200;
+  for (int i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
+  static_cast<void>(dev.disarm());
+  if (failed) return *failed;
+
+  out.rejected_samples = session.device().samples().rejected();
+  out.contact.late = count_above(out.contact.seconds, setup.contact_period_ns);
+  out.device.late = count_above(out.device.seconds, device_period_ns);
+  return out;
+}
+
+loop_times to_times(const tick_timing& t) {
+  loop_times out{.seconds = {}, .ticks = t.ticks, .late = t.late, .skipped = t.skipped};
+  for (const std::int64_t ns : t.durations_ns) out.seconds.push_back(1e-9 * static_cast<double>(ns));
+  return out;
+}
+
+result<session_outcome> run_real(session_setup setup, simulated_device& dev, progress_line& progress) {
+  session_outcome out;
+  // Times of an hour at 1 kHz; what comes later is counted, not timed.
+  constexpr double most_timed = 3.6e6;
+  const std::int64_t shortest = std::min(device_period_ns, setup.contact_period_ns);
+  const double wanted = 1.1 * setup.seconds * 1e9 / static_cast<double>(shortest) + 1000.0;
+  const real_schedule schedule{.device_period_ns = device_period_ns,
+                               .contact_period_ns = setup.contact_period_ns,
+                               .timed_ticks = static_cast<std::size_t>(std::min(wanted, most_timed))};
+  const auto queue = std::make_unique<record_queue>();
+  real_session session(std::move(setup.feel), setup.placement, dev, setup.control, schedule,
+                       record_queue::writer{queue.get()});
+
+  std::optional<std::int64_t> origin_ns;
+  std::optional<error> failed;
+  bool shut = false;
+  const auto drain = [&] {
+    session_record record;
+    while (!failed && queue->pop(record)) {
+      if (!origin_ns) origin_ns = record.time_ns;
+      record.time_ns -= *origin_ns;
+      shut = shut || record.fault != gate_fault::none;
+      if (!shut) out.ended_at_s = 1e-9 * static_cast<double>(record.time_ns);
+      if (const result<void> seen = setup.on_tick(record); !seen) failed = seen.error();
+    }
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  session.start();
+  for (double elapsed = 0.0; elapsed < setup.seconds && !failed && !shut && !interrupted();) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    drain();
+    elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    progress.show("session", std::min(1.0, elapsed / setup.seconds));
+  }
+  out.interrupted = interrupted();
+  session.stop();
+  drain();
+  if (failed) return *failed;
+
+  const gate_fault fault = session.device().gate().fault();
+  out.fault = fault == gate_fault::stopped ? gate_fault::none : fault;  // stopping is how every session ends
+  out.contact = to_times(session.contact_timing());
+  out.device = to_times(session.device_timing());
+  out.rejected_samples = session.device().samples().rejected();
+  out.lost_records = queue->lost();
+  return out;
+}
+
+}  // namespace
+
+result<session_outcome> run_session(session_setup setup, progress_line& progress) {
+  simulated_device dev(setup.device);
+  if (const result<void> ready = open_and_arm(dev); !ready) return ready.error();
+  return setup.clock == session_clock::virtual_time ? run_virtual(std::move(setup), dev, progress)
+                                                    : run_real(std::move(setup), dev, progress);
+}
+
+}  // namespace asperity::command

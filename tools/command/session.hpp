@@ -1,0 +1,54 @@
+// One session of the two-rate loop with the simulated device, on either clock.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "asperity/asperity.hpp"
+#include "progress.hpp"
+
+namespace asperity::command {
+
+enum class session_clock : std::uint8_t {
+  virtual_time,  ///< as fast as the machine can; the same session gives the same bits
+  real_time,     ///< two threads on the machine's clock
+};
+
+struct session_setup {
+  renderer feel;
+  scene_placement placement{};
+  simulated_config device{};
+  control_config control{};
+  session_clock clock = session_clock::virtual_time;
+  double seconds = 3.0;
+  std::int64_t contact_period_ns = 1'000'000;
+  /// Told of every device tick, outside it and in order. An error ends the session.
+  std::function<result<void>(const session_record&)> on_tick;
+};
+
+inline constexpr std::int64_t device_period_ns = 1'000'000;
+
+/// Times of the ticks of one loop. CPU time on the virtual clock, time on the wall on the real one.
+struct loop_times {
+  std::vector<double> seconds;  ///< of each tick that was timed
+  std::uint64_t ticks = 0;
+  std::uint64_t late = 0;  ///< began after the following deadline (real clock) or took longer than its period (virtual)
+  std::uint64_t skipped = 0;  ///< periods left out to catch up; real clock only
+};
+
+struct session_outcome {
+  loop_times contact;
+  loop_times device;
+  std::uint64_t rejected_samples = 0;
+  std::uint64_t lost_records = 0;  ///< device ticks that on_tick never saw, because writing them was too slow
+  gate_fault fault = gate_fault::none;
+  double ended_at_s = 0.0;  ///< when the session ended, by its own clock
+  bool interrupted = false;
+};
+
+/// Opens and arms the device, runs the session, takes the wrench to zero and disarms, whatever ended it.
+/// @return what happened, or the error of on_tick or of the device
+[[nodiscard]] result<session_outcome> run_session(session_setup setup, progress_line& progress);
+
+}  // namespace asperity::command

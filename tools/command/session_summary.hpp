@@ -1,0 +1,73 @@
+// What a session amounts to: ranges, energy and a picture.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "asperity/control/session_record.hpp"
+#include "cli.hpp"
+#include "plot.hpp"
+
+namespace asperity::command {
+
+/// Smallest and largest value of each component of a vector, and its largest length.
+class vector_range {
+ public:
+  void add(const vec3& v) noexcept;
+  [[nodiscard]] const vec3& low() const noexcept { return low_; }
+  [[nodiscard]] const vec3& high() const noexcept { return high_; }
+  [[nodiscard]] double largest() const noexcept { return largest_; }
+
+ private:
+  bool empty_ = true;
+  vec3 low_{0.0};
+  vec3 high_{0.0};
+  double largest_ = 0.0;
+};
+
+/// Accumulates device ticks. Constant size.
+class session_summary {
+ public:
+  void add(const session_record& tick) noexcept;
+
+  [[nodiscard]] json to_json() const;
+  [[nodiscard]] std::string to_text() const;
+  [[nodiscard]] bool touched() const noexcept { return touching_ > 0; }
+  [[nodiscard]] double mean_contacts() const noexcept;
+  [[nodiscard]] double largest_hand_force_n() const noexcept { return hand_force_.largest(); }
+  [[nodiscard]] double largest_hand_torque_n_m() const noexcept { return hand_torque_.largest(); }
+
+ private:
+  std::uint64_t ticks_ = 0;
+  std::uint64_t touching_ = 0;
+  std::uint64_t contact_sum_ = 0;
+  std::uint32_t contacts_max_ = 0;
+  double depth_max_m_ = 0.0;
+  vector_range probe_force_, probe_torque_, hand_force_, hand_torque_;
+  double delivered_j_ = 0.0;
+  double surplus_max_j_ = 0.0;
+  std::uint64_t guarded_ = 0;
+};
+
+/// The curves of a session, thinned so that a long one stays a small picture.
+class session_curves {
+ public:
+  /// @param expected_ticks device ticks that will come
+  explicit session_curves(std::size_t expected_ticks);
+
+  void add(const session_record& tick);
+
+  /// Position of the probe, force and torque on the hand over time.
+  [[nodiscard]] plot_page page(std::string title, std::string caption) const;
+
+ private:
+  std::size_t stride_;
+  std::size_t seen_ = 0;
+  std::vector<double> time_s_;
+  std::vector<vec3> position_mm_, force_n_, torque_mn_m_;
+  vec3 start_w_{0.0};
+};
+
+}  // namespace asperity::command
