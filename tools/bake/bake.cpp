@@ -1,0 +1,130 @@
+#include "asperity/bake/bake.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "bake/atlas.hpp"
+#include "bake/cage.hpp"
+#include "bake/check.hpp"
+#include "bake/crease_normals.hpp"
+#include "bake/geometry.hpp"
+#include "bake/measure.hpp"
+#include "bake/parallel.hpp"
+#include "bake/pieces.hpp"
+#include "bake/project.hpp"
+#include "bake/relief_fit.hpp"
+#include "bake/simplify.hpp"
+#include "bake/stage_monitor.hpp"
+#include "bake/triangle_bvh.hpp"
+
+namespace asperity::bake {
+namespace {
+
+constexpr std::size_t fewest_triangles = 4;
+constexpr std::uint32_t smallest_texture = 16;
+constexpr std::uint32_t largest_texture = 8192;
+
+// Rays go a little past the measured distance between the surfaces: along a slanted normal the way is longer.
+constexpr double range_per_cage = 2.0;
+constexpr double least_range_in_diagonals = 0.005;
+constexpr double band_per_cage = 2.0;
+constexpr double least_band_texels = 4.0;
+
+error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
+
+result<void> check_options(const bake_options& options) {
+  if (!options.coarse && options.triangles < fewest_triangles)
+    return error{error_code::invalid_argument, "a coarse mesh of " + std::to_string(options.triangles) +
+                                                   " triangles cannot enclose a volume; ask for 4 or more"};
+  if (options.texture_size < smallest_texture || options.texture_size > largest_texture)
+    return error{error_code::invalid_argument, "texture size " + std::to_string(options.texture_size) + " is outside " +
+                                                   std::to_string(smallest_texture) + " to " +
+                                                   std::to_string(largest_texture) + " texels per side"};
+  return {};
+}
+
+// The coarse mesh that the user gives, checked, or one made by simplifying.
+result<simplified_mesh> coarse_of(const checked_mesh& full, const triangle_bvh& full_tree, const bake_options& options,
+                                  unsigned threads, stage_monitor& monitor) {
+  if (!options.coarse) {
+    auto made = simplify(full, options.triangles, threads, monitor);
+    const double diagonal = bounds_of(full.mesh.positions).diagonal();
+    if (made && made->mesh.triangles.size() < full.mesh.triangles.size())
+      fit_to_relief(made->mesh, full_tree, widest_cage_in_diagonals * diagonal);
+    return made;
+  }
+  triangle_mesh rounded = *options.coarse;
+  round_to_float32(rounded);
+  auto given = check(rounded, "the coarse mesh");
+  if (!given) return given.error();
+  simplified_mesh out{std::move(given->mesh), {}};
+  if (given->flipped) out.note = "the coarse mesh was inside-out and has been turned";
+  return out;
+}
+
+coarse_mesh with_uvs(const triangle_mesh& mesh, const atlas& charts) {
+  coarse_mesh out;
+  out.positions = mesh.positions;
+  out.triangles.resize(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) out.triangles[t] = {mesh.triangles[t], charts.uv[t]};
+  return out;
+}
+
+}  // namespace
+
+result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& options) {
+  stage_monitor monitor(options.progress);
+  const unsigned threads = resolve_threads(options.threads);
+
+  if (!monitor.begin("check")) return cancelled();
+  if (const auto sound = check_options(options); !sound) return sound.error();
+  const auto full = check(full_mesh);
+  if (!full) return full.error();
+  const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles);
+  const double diagonal = bounds_of(full->mesh.positions).diagonal();
+
+  if (!monitor.begin("simplify")) return cancelled();
+  const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);
+  if (!coarse) return coarse.error();
+  if (!monitor.begin("compare")) return cancelled();
+  const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
+  if (!cage) return cage.error();
+
+  if (!monitor.begin("atlas")) return cancelled();
+  const auto charts = make_atlas(coarse->mesh, options.texture_size);
+  if (!charts) return charts.error();
+
+  if (!monitor.begin("project")) return cancelled();
+  const double band = std::max(band_per_cage * *cage, least_band_texels * charts->texel_m);
+  const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
+  auto projected = project(coarse->mesh, *charts, crease_normals(coarse->mesh, band), full_tree, range,
+                           options.texture_size, threads, monitor);
+  if (!projected) return projected.error();
+
+  if (!monitor.begin("pieces")) return cancelled();
+  auto pieces = decompose(coarse->mesh, piece_limits{}, monitor);
+  if (!pieces) return pieces.error();
+
+  textured_model out;
+  out.name = options.name;
+  out.mesh = with_uvs(coarse->mesh, *charts);
+  out.texture = std::move(projected->texture);
+  out.pieces = std::move(*pieces);
+  out.mass = compute_mass_properties(out.mesh);
+  out.box = bounds_of(out.mesh.positions);
+
+  if (!monitor.begin("measure")) return cancelled();
+  const auto errors = measure(full->mesh, full_tree, out.mesh, out.texture, threads, monitor);
+  if (!errors) return errors.error();
+  out.report.rms_error_m = errors->rms_m();
+  out.report.max_error_m = errors->max_m();
+  out.report.relief_m = projected->highest_m - projected->lowest_m;
+  out.report.max_displacement_m = projected->max_displacement_m;
+  out.report.full_triangles = full->mesh.triangles.size();
+  out.report.fallback_texels = projected->fallback_texels;
+  out.report.texels = projected->texels;
+  return out;
+}
+
+}  // namespace asperity::bake

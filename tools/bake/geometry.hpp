@@ -1,0 +1,72 @@
+// Small geometry that several stages of the bake share.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "asperity/core/math.hpp"
+#include "asperity/model/textured_model.hpp"
+#include "bake/halfedges.hpp"
+
+namespace asperity::bake {
+
+[[nodiscard]] inline std::array<vec3, 3> corners(std::span<const vec3> positions, const index_triangle& t) noexcept {
+  return {positions[t[0]], positions[t[1]], positions[t[2]]};
+}
+
+/// The vector divided by its length; zero stays zero.
+[[nodiscard]] inline vec3 normalised(const vec3& v) noexcept {
+  const double length = glm::length(v);
+  return length > 0.0 ? v / length : v;
+}
+
+/// Unit normal of a triangle; zero for one without area.
+[[nodiscard]] inline vec3 unit_normal(const std::array<vec3, 3>& c) noexcept { return normalised(area_normal(c)); }
+
+/// Angle at corner k, rad.
+[[nodiscard]] inline double corner_angle(const std::array<vec3, 3>& c, std::size_t k) noexcept {
+  const vec3 a = c[(k + 1) % 3] - c[k];
+  const vec3 b = c[(k + 2) % 3] - c[k];
+  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+}
+
+/// The number as float32 stores it: a saved model must come back with the same bits.
+[[nodiscard]] inline double to_float32(double x) noexcept { return static_cast<double>(static_cast<float>(x)); }
+[[nodiscard]] inline vec3 to_float32(const vec3& v) noexcept { return {glm::vec3(v)}; }
+
+[[nodiscard]] inline bounds bounds_of(std::span<const vec3> points) noexcept {
+  if (points.empty()) return {};
+  bounds box{points.front(), points.front()};
+  for (const vec3& p : points) {
+    box.low = glm::min(box.low, p);
+    box.high = glm::max(box.high, p);
+  }
+  return box;
+}
+
+/// Point of the segment ab nearest to p.
+[[nodiscard]] inline vec3 closest_on_segment(const vec3& p, const vec3& a, const vec3& b) noexcept {
+  const vec3 d = b - a;
+  const double length2 = glm::dot(d, d);
+  const double s = length2 > 0.0 ? std::clamp(glm::dot(p - a, d) / length2, 0.0, 1.0) : 0.0;
+  return a + s * d;
+}
+
+/// Unit normals of the vertices: mean of the faces around, weighted by their angle at the vertex.
+[[nodiscard]] inline std::vector<vec3> vertex_normals(std::span<const vec3> positions,
+                                                      std::span<const index_triangle> triangles) {
+  std::vector<vec3> normals(positions.size(), vec3(0.0));
+  for (const index_triangle& t : triangles) {
+    const auto c = corners(positions, t);
+    const vec3 n = unit_normal(c);
+    for (std::size_t k = 0; k < 3; ++k) normals[t[k]] += corner_angle(c, k) * n;
+  }
+  for (vec3& n : normals) n = normalised(n);
+  return normals;
+}
+
+}  // namespace asperity::bake

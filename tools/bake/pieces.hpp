@@ -1,0 +1,31 @@
+// Fifth stage of the bake: the convex pieces that collision detection works on.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/convex_piece.hpp"
+#include "asperity/model/triangle_mesh.hpp"
+#include "bake/stage_monitor.hpp"
+
+namespace asperity::bake {
+
+/// Limits as shares of the mesh's diagonal.
+struct piece_limits {
+  double tolerance = 1e-4;    ///< a vertex of a piece may stand this far above the plane of one of its triangles
+  double bridged_air = 4e-3;  ///< a hull may stand this far off the solid where it spans a concave place
+  double flat = 1e-5;         ///< a piece no thicker than this is flat
+};
+
+/// Splits a closed mesh into convex surface patches, grown greedily from the largest triangle over its neighbours, and
+/// takes the hull of each. Every triangle belongs to exactly one piece; a component that is convex becomes one piece.
+/// Hull vertices are vertices of the mesh.
+/// @source S. Ehmann and M. Lin, Accurate and fast proximity queries between polyhedra using convex surface
+///         decomposition, 2001
+/// @pre closed 2-manifold, outward oriented, without degenerate triangles
+/// @return cancelled
+[[nodiscard]] result<std::vector<convex_piece>> decompose(const triangle_mesh& mesh, const piece_limits& limits,
+                                                          stage_monitor& monitor);
+
+}  // namespace asperity::bake

@@ -1,0 +1,167 @@
+#include "bake/project.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "bake/geometry.hpp"
+#include "bake/parallel.hpp"
+
+namespace asperity::bake {
+namespace {
+
+using barycentric = std::array<double, 3>;
+
+// A coarse triangle in the image, in texels.
+struct image_triangle {
+  std::array<vec2, 3> c;
+  double twice_area;  // signed
+
+  image_triangle(const std::array<vec2, 3>& uv, double side) : c{side * uv[0], side * uv[1], side * uv[2]} {
+    twice_area = cross(c[1] - c[0], c[2] - c[0]);
+  }
+
+  static double cross(const vec2& a, const vec2& b) noexcept { return a.x * b.y - a.y * b.x; }
+
+  [[nodiscard]] barycentric coordinates(const vec2& p) const noexcept {
+    const double b1 = cross(p - c[0], c[2] - c[0]) / twice_area;
+    const double b2 = cross(c[1] - c[0], p - c[0]) / twice_area;
+    return {1.0 - b1 - b2, b1, b2};
+  }
+
+  // Point of the triangle nearest to p: p itself where it is inside.
+  [[nodiscard]] vec2 clamp(const vec2& p) const noexcept {
+    const barycentric b = coordinates(p);
+    if (b[0] >= 0.0 && b[1] >= 0.0 && b[2] >= 0.0) return p;
+    vec2 best = c[0];
+    double best2 = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const vec2 d = c[(k + 1) % 3] - c[k];
+      const double s = std::clamp(glm::dot(p - c[k], d) / glm::dot(d, d), 0.0, 1.0);
+      const vec2 q = c[k] + s * d;
+      const double q2 = glm::dot(p - q, p - q);
+      if (q2 < best2) {
+        best2 = q2;
+        best = q;
+      }
+    }
+    return best;
+  }
+};
+
+struct owner {
+  std::uint32_t triangle = no_halfedge;
+  float distance = std::numeric_limits<float>::infinity();  // texels between texel centre and triangle; 0 inside
+};
+
+// The triangle that each texel belongs to: the nearest one within the gutter's width.
+std::vector<owner> assign_texels(const atlas& charts, std::uint32_t size) {
+  std::vector<owner> owners(std::size_t{size} * size);
+  const auto clamp_index = [size](double x) {
+    return static_cast<std::uint32_t>(std::clamp(std::floor(x), 0.0, static_cast<double>(size - 1)));
+  };
+  for (std::uint32_t t = 0; t < charts.uv.size(); ++t) {
+    const image_triangle triangle(charts.uv[t], size);
+    const vec2 low = glm::min(glm::min(triangle.c[0], triangle.c[1]), triangle.c[2]) - gutter_texels;
+    const vec2 high = glm::max(glm::max(triangle.c[0], triangle.c[1]), triangle.c[2]) + gutter_texels;
+    for (std::uint32_t j = clamp_index(low.y); j <= clamp_index(high.y); ++j)
+      for (std::uint32_t i = clamp_index(low.x); i <= clamp_index(high.x); ++i) {
+        const vec2 p{i + 0.5, j + 0.5};
+        const auto distance = static_cast<float>(glm::length(p - triangle.clamp(p)));
+        owner& o = owners[std::size_t{j} * size + i];
+        if (static_cast<double>(distance) <= gutter_texels && distance < o.distance) o = {t, distance};
+      }
+  }
+  return owners;
+}
+
+// What one block of texels adds to the report.
+struct tally {
+  std::size_t texels = 0;
+  std::size_t fallback_texels = 0;
+  double highest = -std::numeric_limits<double>::infinity();
+  double lowest = std::numeric_limits<double>::infinity();
+  double farthest = 0.0;
+};
+
+class projector {
+ public:
+  projector(const triangle_mesh& coarse, const crease_normals& directions, const triangle_bvh& full, double range_m)
+      : coarse_(coarse), directions_(directions), full_(full), range_m_(range_m) {}
+
+  vec3 operator()(std::uint32_t t, const barycentric& b, tally* count) const {
+    const auto c = corners(coarse_.positions, coarse_.triangles[t]);
+    const vec3 p = b[0] * c[0] + b[1] * c[1] + b[2] * c[2];
+    const vec3 d = directions_.at(t, b);
+    const auto crossing = full_.nearest_front_crossing(p, d, range_m_);
+    const vec3 q = crossing ? crossing->point : full_.closest(p).point;
+    if (count != nullptr) {
+      const double offset = glm::dot(q - p, d);
+      ++count->texels;
+      if (!crossing) ++count->fallback_texels;
+      count->highest = std::max(count->highest, offset);
+      count->lowest = std::min(count->lowest, offset);
+      count->farthest = std::max(count->farthest, glm::length(q - p));
+    }
+    return q;
+  }
+
+ private:
+  const triangle_mesh& coarse_;
+  const crease_normals& directions_;
+  const triangle_bvh& full_;
+  double range_m_;
+};
+
+}  // namespace
+
+result<projection> project(const triangle_mesh& coarse, const atlas& charts, const crease_normals& directions,
+                           const triangle_bvh& full, double range_m, std::uint32_t texture_size, unsigned threads,
+                           stage_monitor& monitor) {
+  const std::vector<owner> owners = assign_texels(charts, texture_size);
+  const projector surface(coarse, directions, full, range_m);
+  const glm::vec3 nowhere(std::numeric_limits<float>::quiet_NaN());
+  projection out;
+  out.texture = {texture_size, texture_size, std::vector<glm::vec3>(owners.size(), nowhere)};
+  std::vector<tally> of_block(block_count(owners.size()));
+  const auto fill = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const owner& o = owners[i];
+      if (o.triangle == no_halfedge) continue;
+      const image_triangle triangle(charts.uv[o.triangle], texture_size);
+      const vec2 p{static_cast<double>(i % texture_size) + 0.5, static_cast<double>(i / texture_size) + 0.5};
+      vec3 q;
+      if (o.distance == 0.0F) {
+        q = surface(o.triangle, triangle.coordinates(p), &of_block[block]);
+      } else {
+        const vec2 edge = triangle.clamp(p);
+        const vec2 mirror = triangle.clamp(2.0 * edge - p);
+        q = 2.0 * surface(o.triangle, triangle.coordinates(edge), nullptr) -
+            surface(o.triangle, triangle.coordinates(mirror), nullptr);
+      }
+      out.texture.texels[i] = glm::vec3(q);
+    }
+  };
+  if (!parallel_blocks(owners.size(), threads, monitor, 0.0, 1.0, fill))
+    return error{error_code::cancelled, "the bake was cancelled"};
+
+  tally all;
+  for (const tally& b : of_block) {
+    all.texels += b.texels;
+    all.fallback_texels += b.fallback_texels;
+    all.highest = std::max(all.highest, b.highest);
+    all.lowest = std::min(all.lowest, b.lowest);
+    all.farthest = std::max(all.farthest, b.farthest);
+  }
+  out.texels = all.texels;
+  out.fallback_texels = all.fallback_texels;
+  if (all.texels > 0) {
+    out.highest_m = all.highest;
+    out.lowest_m = all.lowest;
+  }
+  out.max_displacement_m = all.farthest;
+  return out;
+}
+
+}  // namespace asperity::bake

@@ -1,0 +1,35 @@
+// Fourth stage of the bake: the haptic texture.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/haptic_texture.hpp"
+#include "asperity/model/triangle_mesh.hpp"
+#include "bake/atlas.hpp"
+#include "bake/crease_normals.hpp"
+#include "bake/stage_monitor.hpp"
+#include "bake/triangle_bvh.hpp"
+
+namespace asperity::bake {
+
+struct projection {
+  haptic_texture texture;
+  std::size_t texels = 0;           ///< inside a chart, gutters not counted
+  std::size_t fallback_texels = 0;  ///< of these, projected to the closest point
+  double highest_m = 0.0;           ///< largest displacement along the direction of projection
+  double lowest_m = 0.0;            ///< smallest
+  double max_displacement_m = 0.0;  ///< largest distance between a texel and its coarse surface point
+};
+
+/// Fills every texel inside a chart with the point where the direction of its coarse surface point, followed both ways,
+/// first meets the front of the original within range_m; where it meets none, with the point of the original closest to
+/// it. Texels of the gutter continue the chart's own surface linearly, 2 f(edge) - f(mirror), so that a bilinear lookup
+/// at the edge of a chart gives f(edge). All others are NaN.
+/// @return cancelled
+[[nodiscard]] result<projection> project(const triangle_mesh& coarse, const atlas& charts,
+                                         const crease_normals& directions, const triangle_bvh& full, double range_m,
+                                         std::uint32_t texture_size, unsigned threads, stage_monitor& monitor);
+
+}  // namespace asperity::bake

@@ -1,0 +1,37 @@
+// Progress and cancellation of a bake.
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+namespace asperity::bake {
+
+/// Tells the caller of each stage and remembers whether he cancelled. Used from the calling thread only.
+class stage_monitor {
+ public:
+  using callback = std::function<bool(std::string_view stage, double done)>;
+
+  stage_monitor() = default;
+  explicit stage_monitor(callback tell) : tell_(std::move(tell)) {}
+
+  /// Starts a stage. @return false where the bake is cancelled
+  bool begin(std::string_view stage) {
+    stage_ = stage;
+    return at(0.0);
+  }
+
+  /// Reports the share of the stage that is done, 0 to 1. @return false where the bake is cancelled
+  bool at(double done) {
+    if (!cancelled_ && tell_) cancelled_ = !tell_(stage_, done);
+    return !cancelled_;
+  }
+
+  [[nodiscard]] bool cancelled() const noexcept { return cancelled_; }
+
+ private:
+  callback tell_;
+  std::string_view stage_;
+  bool cancelled_ = false;
+};
+
+}  // namespace asperity::bake

@@ -1,0 +1,224 @@
+#include "bake/triangle_bvh.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "bake/geometry.hpp"
+
+namespace asperity::bake {
+namespace {
+
+constexpr std::size_t leaf_size = 4;
+constexpr std::size_t stack_size = 64;  // the tree is balanced: its depth is the logarithm of the triangle count
+
+float below(double x) noexcept {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) <= x ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
+}
+float above(double x) noexcept {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) >= x ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+}
+
+template <class Node>
+double distance2(const Node& n, const vec3& p) noexcept {
+  double sum = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    const double low = static_cast<double>(n.low[axis]) - p[k];
+    const double high = p[k] - static_cast<double>(n.high[axis]);
+    const double d = std::max({low, high, 0.0});
+    sum += d * d;
+  }
+  return sum;
+}
+
+// Smallest |s| at which the line p + s d is inside the box, or infinity.
+template <class Node>
+double smallest_offset(const Node& n, const vec3& p, const vec3& inverse_d) noexcept {
+  double enter = -std::numeric_limits<double>::infinity();
+  double leave = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 3; ++k) {
+    const auto axis = static_cast<std::size_t>(k);
+    double a = (static_cast<double>(n.low[axis]) - p[k]) * inverse_d[k];
+    double b = (static_cast<double>(n.high[axis]) - p[k]) * inverse_d[k];
+    if (std::isnan(a) || std::isnan(b)) continue;  // 0 * infinity: the line runs in the face of the box
+    if (a > b) std::swap(a, b);
+    enter = std::max(enter, a);
+    leave = std::min(leave, b);
+  }
+  if (enter > leave) return std::numeric_limits<double>::infinity();
+  return enter > 0.0 ? enter : (leave < 0.0 ? -leave : 0.0);
+}
+
+// Offset at which the line crosses the triangle from inside to outside, or NaN.
+double front_crossing(const vec3& p, const vec3& d, const std::array<vec3, 3>& c) noexcept {
+  constexpr double edge_slack = 1e-9;  // barycentric: neighbours overlap by this much instead of leaving a slit
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const vec3 ab = c[1] - c[0];
+  const vec3 ac = c[2] - c[0];
+  const vec3 n = glm::cross(ab, ac);
+  const double facing = glm::dot(n, d);
+  if (!(facing > 0.0)) return none;
+  const vec3 q = glm::cross(p - c[0], d);
+  const double v = -glm::dot(ac, q) / facing;
+  const double w = glm::dot(ab, q) / facing;
+  if (v < -edge_slack || w < -edge_slack || v + w > 1.0 + edge_slack) return none;
+  return glm::dot(n, c[0] - p) / facing;
+}
+
+}  // namespace
+
+vec3 closest_on_triangle(const vec3& p, const std::array<vec3, 3>& c) noexcept {
+  const vec3 n = area_normal(c);
+  const double n2 = glm::dot(n, n);
+  if (n2 > 0.0) {
+    const vec3 q = p - glm::dot(p - c[0], n) / n2 * n;
+    bool within = true;
+    for (std::size_t k = 0; k < 3; ++k)
+      within = within && glm::dot(glm::cross(c[(k + 1) % 3] - c[k], q - c[k]), n) >= 0.0;
+    if (within) return q;
+  }
+  vec3 best{0.0};
+  double best2 = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const vec3 q = closest_on_segment(p, c[k], c[(k + 1) % 3]);
+    const double d2 = glm::dot(p - q, p - q);
+    if (d2 < best2) {
+      best2 = d2;
+      best = q;
+    }
+  }
+  return best;
+}
+
+struct triangle_bvh::item {
+  std::array<float, 3> centre;
+  std::uint32_t triangle;
+};
+
+triangle_bvh::triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles) {
+  std::vector<item> items(triangles.size());
+  corners_.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    corners_[t] = corners(positions, triangles[t]);
+    const vec3 centre = (corners_[t][0] + corners_[t][1] + corners_[t][2]) / 3.0;
+    items[t] = {{static_cast<float>(centre.x), static_cast<float>(centre.y), static_cast<float>(centre.z)},
+                static_cast<std::uint32_t>(t)};
+  }
+  nodes_.reserve(triangles.size());
+  build(items, 0);
+  std::vector<std::array<vec3, 3>> in_leaf_order(items.size());
+  triangle_.resize(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    triangle_[i] = items[i].triangle;
+    in_leaf_order[i] = corners_[items[i].triangle];
+  }
+  corners_ = std::move(in_leaf_order);
+}
+
+std::uint32_t triangle_bvh::build(std::span<item> items, std::size_t first) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  if (items.size() <= leaf_size) {
+    bounds box{corners_[items[0].triangle][0], corners_[items[0].triangle][0]};
+    for (const item& i : items)
+      for (const vec3& p : corners_[i.triangle]) {
+        box.low = glm::min(box.low, p);
+        box.high = glm::max(box.high, p);
+      }
+    nodes_[index] = {{below(box.low.x), below(box.low.y), below(box.low.z)},
+                     {above(box.high.x), above(box.high.y), above(box.high.z)},
+                     static_cast<std::uint32_t>(first),
+                     static_cast<std::uint32_t>(items.size())};
+    return index;
+  }
+  std::array<float, 3> low = items[0].centre;
+  std::array<float, 3> high = items[0].centre;
+  for (const item& i : items)
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], i.centre[k]);
+      high[k] = std::max(high[k], i.centre[k]);
+    }
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (high[k] - low[k] > high[axis] - low[axis]) axis = k;
+  const std::size_t half = items.size() / 2;
+  std::nth_element(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(half), items.end(),
+                   [axis](const item& a, const item& b) {
+                     return std::pair(a.centre[axis], a.triangle) < std::pair(b.centre[axis], b.triangle);
+                   });
+  build(items.first(half), first);
+  const std::uint32_t right = build(items.subspan(half), first + half);
+  const node& l = nodes_[index + 1];
+  const node& r = nodes_[right];
+  node merged{l.low, l.high, right, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    merged.low[k] = std::min(l.low[k], r.low[k]);
+    merged.high[k] = std::max(l.high[k], r.high[k]);
+  }
+  nodes_[index] = merged;
+  return index;
+}
+
+triangle_bvh::nearest triangle_bvh::closest(const vec3& p, double within) const noexcept {
+  nearest best;
+  double best2 = within * within;
+  std::array<std::pair<double, std::uint32_t>, stack_size> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {distance2(nodes_[0], p), 0};
+  while (depth > 0) {
+    const auto [d2, at] = stack[--depth];
+    if (d2 > best2) continue;
+    const node& n = nodes_[at];
+    if (n.count == 0) {
+      std::pair<double, std::uint32_t> left{distance2(nodes_[at + 1], p), at + 1};
+      std::pair<double, std::uint32_t> right{distance2(nodes_[n.right_or_first], p), n.right_or_first};
+      if (left.first < right.first) std::swap(left, right);
+      if (left.first <= best2) stack[depth++] = left;
+      if (right.first <= best2) stack[depth++] = right;
+      continue;
+    }
+    for (std::uint32_t i = n.right_or_first; i < n.right_or_first + n.count; ++i) {
+      const vec3 q = closest_on_triangle(p, corners_[i]);
+      const double q2 = glm::dot(p - q, p - q);
+      if (q2 > best2 || (q2 == best2 && best.triangle != no_halfedge)) continue;
+      best2 = q2;
+      best = {q, std::sqrt(q2), triangle_[i]};
+    }
+  }
+  return best;
+}
+
+std::optional<triangle_bvh::crossing> triangle_bvh::nearest_front_crossing(const vec3& p, const vec3& d,
+                                                                           double range) const noexcept {
+  const vec3 inverse = 1.0 / d;
+  std::optional<crossing> best;
+  double reach = range;
+  std::array<std::pair<double, std::uint32_t>, stack_size> stack;
+  std::size_t depth = 0;
+  stack[depth++] = {smallest_offset(nodes_[0], p, inverse), 0};
+  while (depth > 0) {
+    const auto [offset, at] = stack[--depth];
+    if (offset > reach) continue;
+    const node& n = nodes_[at];
+    if (n.count == 0) {
+      std::pair<double, std::uint32_t> left{smallest_offset(nodes_[at + 1], p, inverse), at + 1};
+      std::pair<double, std::uint32_t> right{smallest_offset(nodes_[n.right_or_first], p, inverse), n.right_or_first};
+      if (left.first < right.first) std::swap(left, right);
+      if (left.first <= reach) stack[depth++] = left;
+      if (right.first <= reach) stack[depth++] = right;
+      continue;
+    }
+    for (std::uint32_t i = n.right_or_first; i < n.right_or_first + n.count; ++i) {
+      const double s = front_crossing(p, d, corners_[i]);
+      if (!(std::abs(s) <= reach) || (best && std::abs(s) == reach)) continue;
+      reach = std::abs(s);
+      best = crossing{p + s * d, s, triangle_[i]};
+    }
+  }
+  return best;
+}
+
+}  // namespace asperity::bake

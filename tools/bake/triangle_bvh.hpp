@@ -1,0 +1,62 @@
+// Closest points and line crossings on a triangle mesh.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "asperity/core/math.hpp"
+#include "bake/halfedges.hpp"
+
+namespace asperity::bake {
+
+/// Point of the triangle nearest to p.
+[[nodiscard]] vec3 closest_on_triangle(const vec3& p, const std::array<vec3, 3>& c) noexcept;
+
+/// Tree of boxes over the triangles of a mesh. Keeps a copy of the corners: fast, and the mesh may go away.
+class triangle_bvh {
+ public:
+  struct nearest {
+    vec3 point{0.0};
+    double distance_m = std::numeric_limits<double>::infinity();
+    std::uint32_t triangle = no_halfedge;  ///< no_halfedge where nothing is within reach
+  };
+
+  struct crossing {
+    vec3 point{0.0};
+    double offset_m = 0.0;  ///< signed, along the direction
+    std::uint32_t triangle = 0;
+  };
+
+  /// @pre all indices in range, all coordinates finite, at least one triangle
+  triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles);
+
+  /// The point of the surface nearest to p, no farther than `within`.
+  [[nodiscard]] nearest closest(const vec3& p, double within = std::numeric_limits<double>::infinity()) const noexcept;
+
+  /// The crossing of the line p + s d, |s| <= range, that is nearest to p among the triangles whose outward side
+  /// faces along d. Edges and corners count, so a line cannot slip through between two triangles. @pre |d| = 1
+  [[nodiscard]] std::optional<crossing> nearest_front_crossing(const vec3& p, const vec3& d,
+                                                               double range) const noexcept;
+
+ private:
+  // Children of an inner node: the next node in memory, and `right`. A leaf holds triangles [first, first + count).
+  struct node {
+    std::array<float, 3> low;
+    std::array<float, 3> high;
+    std::uint32_t right_or_first;
+    std::uint32_t count;
+  };
+  struct item;
+
+  std::uint32_t build(std::span<item> items, std::size_t first);
+
+  std::vector<node> nodes_;
+  std::vector<std::array<vec3, 3>> corners_;  // in leaf order
+  std::vector<std::uint32_t> triangle_;       // leaf order to the caller's order
+};
+
+}  // namespace asperity::bake
