@@ -82,6 +82,10 @@ class contact_loop {
     out.time_ns = at.time_ns;
     out.answer = answer;
     if (answer != status::ok && answer != status::capacity_reached) return;
+    if (!is_finite(last_.force.on_probe_w) || !is_finite(last_.force.stiffness)) {
+      out.answer = status::not_finite;
+      return;
+    }
     out.on_probe_w = last_.force.on_probe_w;
     out.stiffness = last_.force.stiffness;
     out.dropped = static_cast<std::uint32_t>(last_.dropped_contacts);

@@ -44,6 +44,7 @@ struct control_config {
 /// - The probe starts at the device's first good pose, at rest: no jump.
 /// - A rejected sample: the wanted wrench is zero in this tick, and the probe goes on towards the last good pose. After
 ///   sample_check_config::reject_limit rejections in a row the gate shuts (bad_samples).
+/// - A probe step that fails (a contact that is not finite): the wanted wrench is zero in this tick.
 /// - A device that refuses a command shuts the gate (device_failed). A shut gate disarms the device once the wrench is
 ///   zero. Nothing here ever arms.
 /// @tparam Device see haptic_device; not owned, outlives the loop
@@ -84,8 +85,8 @@ class device_loop {
     if (placed_) {
       if (accepted) guard_.observe(last_seen_.T_dh, gate_.last(), std::exchange(unobserved_s_, 0.0));
       probe_status = move_probe(now_ns, dt_s, accepted);
-      // The damping is part of the answer to a pose that was measured; without one nothing is put out at all.
-      if (accepted) {
+      // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
+      if (accepted && probe_status == status::ok) {
         wanted_d = wrench_on_hand();
         guarded = guard_.adjust(wanted_d);
       }

@@ -58,7 +58,7 @@ class probe {
   }
 
   /// Advances by h_s seconds towards the target. The contact is evaluated at the pose before the step.
-  /// @return ok | not_finite (the probe is left at rest where it was)
+  /// @return ok | not_finite (also a speed that no tool has; the probe is left at rest where it was)
   /// @rt safe: fixed cost
   [[nodiscard]] status step(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
                             const twist& target_velocity_w, const contact_evaluation& contact,
@@ -79,7 +79,7 @@ class probe {
     const vec6 load = coupled + touched + to_vec6(external_w) + h_s * (contact.stiffness * v) - stretch_rate;
 
     vec6 dv;
-    if (!solve(a, load, dv) || !is_finite(v + dv)) {
+    if (!solve(a, load, dv) || !plausible(v + dv)) {
       state_.velocity_w = {};
       return status::not_finite;
     }
@@ -103,6 +103,14 @@ class probe {
   }
 
  private:
+  // Finite is not enough: a load of 1e300 N gives a finite velocity and a position that means nothing. NaN fails too.
+  [[nodiscard]] static bool plausible(const vec6& v) noexcept {
+    constexpr double fastest_m_per_s = 1e3;
+    constexpr double fastest_rad_per_s = 1e5;
+    return glm::dot(v.linear, v.linear) <= fastest_m_per_s * fastest_m_per_s &&
+           glm::dot(v.angular, v.angular) <= fastest_rad_per_s * fastest_rad_per_s;
+  }
+
   [[nodiscard]] mat6 inertia_w() const noexcept {
     const mat3 r = glm::mat3_cast(state_.T_wc.rotation);
     mat6 out;

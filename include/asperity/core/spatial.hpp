@@ -94,6 +94,14 @@ struct mat6 {
   }
 };
 
+/// @rt safe
+[[nodiscard]] inline bool is_finite(const mat6& a) noexcept {
+  for (const double x : a.m) {
+    if (!std::isfinite(x)) return false;
+  }
+  return true;
+}
+
 /// Adds s * a * a^T.
 /// @rt safe
 inline void add_outer(mat6& to, double s, const vec6& a) noexcept {

@@ -1,0 +1,288 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <gtest/gtest.h>
+#include <limits>
+#include <vector>
+
+#include <asperity/control/virtual_session.hpp>
+#include <asperity/hal/simulated/simulated_device.hpp>
+
+#include "unit/control/analytic_wall.hpp"
+
+namespace {
+
+using namespace asperity;
+using test::analytic_wall;
+
+constexpr std::int64_t ms = 1'000'000;
+
+struct keep_all {
+  std::vector<session_record>* to;
+  void operator()(const session_record& r) noexcept { to->push_back(r); }
+};
+
+// A hand that presses onto the wall at z = 0 and reaches it after about 0.2 s.
+simulated_config pressing_hand() {
+  simulated_config c;
+  c.motion = {.T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .depth_m = 0.015, .approach_s = 0.4};
+  return c;
+}
+
+struct rig {
+  std::vector<session_record> log;
+  simulated_device dev;
+  virtual_session<analytic_wall, simulated_device, keep_all> session;
+
+  explicit rig(const simulated_config& hand, const control_config& control = {}, const analytic_wall& wall = {})
+      : dev(hand), session(wall, {{pose{}}, vec3(0.0)}, opened(dev), control, {}, keep_all{&log}) {}
+
+  static simulated_device& opened(simulated_device& d) {
+    EXPECT_TRUE(d.open() && d.arm());
+    return d;
+  }
+  void run_ms(int n) {
+    for (int i = 0; i < n; ++i) static_cast<void>(session.step());
+  }
+  [[nodiscard]] const session_record& last() const { return log.back(); }
+};
+
+double force_of(const session_record& r) { return glm::length(r.on_hand_d.force); }
+
+TEST(device_loop, starts_the_probe_at_the_device_without_a_jump) {
+  simulated_config hand = pressing_hand();
+  hand.motion.T_dh.position = {0.3, -0.2, 0.1};
+  hand.motion.T_dh.rotation = exp_rotation({0.3, 0.1, -1.0});
+  rig r(hand);
+  r.run_ms(20);
+  EXPECT_LT(glm::length(r.log[0].T_wa.position - r.log[0].T_wa_target.position), 1e-12);
+  EXPECT_EQ(force_of(r.log[0]), 0.0);
+  for (const session_record& t : r.log) EXPECT_LT(force_of(t), 0.05);
+}
+
+TEST(device_loop, pushes_back_where_hand_coupling_and_wall_balance) {
+  rig r(pressing_hand());
+  r.run_ms(3000);
+  // Three springs in a row: the hand's 300, the coupling's 500 and the wall's 2000 N/m over the 10 mm below the wall.
+  const double expected = 0.010 / (1.0 / 300.0 + 1.0 / 500.0 + 1.0 / 2000.0);
+  EXPECT_NEAR(r.last().on_hand_d.force.z, expected, 0.05);
+  EXPECT_NEAR(r.last().on_probe_w.force.z, expected, 0.05);
+  EXPECT_NEAR(r.last().max_depth_m, expected / 2000.0, 2e-5);
+  EXPECT_EQ(r.last().fault, gate_fault::none);
+  EXPECT_EQ(r.last().device, device_state::active);
+}
+
+TEST(device_loop, puts_nothing_out_before_it_is_armed) {
+  simulated_device dev(pressing_hand());
+  ASSERT_TRUE(dev.open());
+  virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+  static_cast<void>(session.run_until(1000 * ms));
+  EXPECT_EQ(dev.state(), device_state::ready);
+  EXPECT_EQ(dev.delivered_j(), 0.0);
+}
+
+// The handle carries a probe whose centre of mass is off its axis, in a workspace that is turned and scaled: the hand
+// feels the wall's force along the device's own axes, and the torque of the lever.
+TEST(device_loop, maps_frames_and_levers) {
+  simulated_config hand;
+  hand.motion = {.T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .direction_d = {1, 0, 0}, .depth_m = 0.012};
+  hand.hand.stiffness_n_m_per_rad = 1e3;  // a grip that does not turn
+  control_config control;
+  control.map.T_wd = {exp_rotation({0, 0.5 * 3.141592653589793, 0}), {0, 0, 0.008}};  // device +x is world -z
+  control.map.scale = 1.0;
+  analytic_wall wall;
+  wall.centre_of_mass_a = {0.0, 0.02, 0.0};
+  simulated_device dev(hand);
+  ASSERT_TRUE(dev.open() && dev.arm());
+  std::vector<session_record> log;
+  virtual_session<analytic_wall, simulated_device, keep_all> session(wall, {{pose{}}, wall.centre_of_mass_a}, dev,
+                                                                     control, {}, keep_all{&log});
+  static_cast<void>(session.run_until(2500 * ms));
+  const wrench& w = log.back().on_hand_d;
+  EXPECT_LT(w.force.x, -0.5);
+  EXPECT_NEAR(w.force.y, 0.0, 0.02);
+  EXPECT_NEAR(w.force.z, 0.0, 0.02);
+  // r x F with r = (0, 0.02, 0): the lever stands along y in both frames, as the map turns about y.
+  EXPECT_NEAR(w.torque.z, -0.02 * w.force.x, 0.1 * std::fabs(0.02 * w.force.x));
+}
+
+TEST(device_loop, substeps_transmit_more_of_a_fast_target) {
+  const auto lag = [](int substeps) {
+    simulated_config hand;
+    hand.motion = {
+        .kind = motion_kind::scrub, .depth_m = 0.0, .approach_s = 0.01, .amplitude_m = 0.0005, .frequency_hz = 40.0};
+    hand.hand = {.stiffness_n_per_m = 2e4, .damping_n_s_per_m = 50.0};
+    control_config control;
+    control.substeps = substeps;
+    rig r(hand, control);
+    r.run_ms(1000);
+    double sum = 0.0;
+    for (std::size_t i = 500; i < 1000; ++i) {
+      sum += std::pow(r.log[i].T_wa.position.x - r.log[i].T_wa_target.position.x, 2);
+    }
+    return sum;
+  };
+  EXPECT_NE(lag(8), lag(1));
+}
+
+struct fault_case {
+  device_fault kind;
+  sample_verdict verdict;
+};
+
+class bad_sample_test : public testing::TestWithParam<fault_case> {};
+
+// One bad sample: nothing is wanted in that tick, and the session goes on. Five in a row: the gate shuts.
+TEST_P(bad_sample_test, is_rejected_and_survived_once) {
+  simulated_config hand = pressing_hand();
+  hand.faults = {{GetParam().kind, 800 * ms, 801 * ms}};
+  if (GetParam().kind == device_fault::stale) return;  // one repeated sample is an ordinary thing
+  rig r(hand);
+  r.run_ms(1200);
+  EXPECT_EQ(r.log[800].sample, GetParam().verdict);
+  EXPECT_EQ(r.log[801].sample, sample_verdict::accepted);
+  EXPECT_TRUE(is_finite(r.log[800].on_hand_d));
+  EXPECT_LT(force_of(r.log[800]), force_of(r.log[799]));
+  EXPECT_NEAR(force_of(r.last()), force_of(r.log[799]), 0.1);
+  EXPECT_EQ(r.last().fault, gate_fault::none);
+}
+
+TEST_P(bad_sample_test, shuts_the_gate_when_it_lasts) {
+  simulated_config hand = pressing_hand();
+  hand.faults = {{GetParam().kind, 800 * ms, 10'000 * ms}};
+  rig r(hand);
+  r.run_ms(900);
+  EXPECT_GT(force_of(r.log[799]), 1.0);
+  std::size_t first_fault = 0;
+  while (first_fault < r.log.size() && r.log[first_fault].fault == gate_fault::none) ++first_fault;
+  ASSERT_LT(first_fault, r.log.size());
+  EXPECT_EQ(r.log[first_fault].fault, gate_fault::bad_samples);
+  EXPECT_EQ(r.log[first_fault].sample, GetParam().verdict);
+  // Rejected samples up to the limit; a repeated one first has to grow old (20 ms).
+  EXPECT_LE(first_fault, 800U + 5U + (GetParam().kind == device_fault::stale ? 21U : 0U));
+  // Then from 20 N to zero at 5 N per tick.
+  for (std::size_t i = first_fault + 4; i < r.log.size(); ++i) EXPECT_EQ(force_of(r.log[i]), 0.0);
+  EXPECT_EQ(r.dev.state(), device_state::ready);  // disarmed
+  EXPECT_EQ(r.session.device().gate().flight().size(), flight_recorder::capacity());
+}
+
+INSTANTIATE_TEST_SUITE_P(every_kind, bad_sample_test,
+                         testing::Values(fault_case{device_fault::nan_pose, sample_verdict::not_finite},
+                                         fault_case{device_fault::infinite_pose, sample_verdict::not_finite},
+                                         fault_case{device_fault::bad_rotation, sample_verdict::not_unit},
+                                         fault_case{device_fault::jump, sample_verdict::jump},
+                                         fault_case{device_fault::drop, sample_verdict::no_answer},
+                                         fault_case{device_fault::stale, sample_verdict::stale}));
+
+TEST(device_loop, never_arms_again_by_itself) {
+  simulated_config hand = pressing_hand();
+  hand.faults = {{device_fault::nan_pose, 800 * ms, 850 * ms}};
+  rig r(hand);
+  r.run_ms(1500);
+  EXPECT_EQ(r.last().fault, gate_fault::bad_samples);  // the samples have been good for long
+  EXPECT_EQ(r.last().sample, sample_verdict::accepted);
+  EXPECT_EQ(force_of(r.last()), 0.0);
+  ASSERT_TRUE(r.session.device().clear_fault());
+  r.run_ms(100);
+  EXPECT_EQ(r.last().device, device_state::ready);
+  const double before = r.dev.delivered_j();
+  r.run_ms(100);
+  EXPECT_EQ(r.dev.delivered_j(), before);
+  ASSERT_TRUE(r.dev.arm());
+  r.run_ms(100);
+  EXPECT_EQ(r.last().device, device_state::active);
+}
+
+TEST(device_loop, shuts_where_the_device_refuses_a_command) {
+  simulated_config hand = pressing_hand();
+  hand.faults = {{device_fault::refuse_write, 800 * ms, 801 * ms}};
+  rig r(hand);
+  r.run_ms(900);
+  EXPECT_EQ(r.last().fault, gate_fault::device_failed);
+  EXPECT_EQ(force_of(r.last()), 0.0);
+}
+
+TEST(device_loop, a_device_that_leaves_and_returns_stays_in_its_fault) {
+  simulated_config hand = pressing_hand();
+  hand.faults = {{device_fault::depart, 800 * ms, 801 * ms}};
+  rig r(hand);
+  r.run_ms(900);
+  EXPECT_EQ(r.dev.state(), device_state::fault);
+  EXPECT_EQ(r.last().fault, gate_fault::device_failed);
+  r.dev.plug_in();
+  r.run_ms(100);
+  EXPECT_EQ(r.dev.state(), device_state::fault);
+  EXPECT_FALSE(r.dev.arm());
+}
+
+TEST(device_loop, goes_to_zero_when_told_to_stop) {
+  rig r(pressing_hand());
+  r.run_ms(1000);
+  EXPECT_GT(force_of(r.last()), 1.0);
+  r.session.device().stop();
+  r.run_ms(5);
+  EXPECT_EQ(force_of(r.last()), 0.0);
+  EXPECT_EQ(r.last().fault, gate_fault::stopped);
+  EXPECT_EQ(r.dev.state(), device_state::ready);
+}
+
+TEST(device_loop, a_contact_that_stays_away_fades) {
+  simulated_device dev(pressing_hand());
+  ASSERT_TRUE(dev.open() && dev.arm());
+  std::vector<session_record> log;
+  exchange shared;
+  analytic_wall wall;
+  contact_loop<analytic_wall> contact(wall, {{pose{}}, vec3(0.0)}, shared);
+  device_loop<simulated_device, keep_all> loop(dev, {}, vec3(0.0), shared, keep_all{&log});
+  for (int i = 0; i < 1300; ++i) {
+    if (i < 1000) {  // then the contact thread stalls
+      ASSERT_EQ(contact.tick(i * ms), status::ok);
+    }
+    ASSERT_EQ(loop.tick(i * ms), status::ok);
+  }
+  EXPECT_GT(glm::length(log[1040].on_probe_w.force), 1.0);
+  EXPECT_EQ(log[1110].on_probe_w.force, vec3(0.0));
+  EXPECT_LT(force_of(log.back()), 0.2);
+}
+
+TEST(device_loop, keeps_within_the_limits_of_device_and_application) {
+  control_config control;
+  control.limits.peak_force_n = 0.7;
+  rig r(pressing_hand(), control);
+  r.run_ms(1500);
+  double largest = 0.0;
+  for (const session_record& t : r.log) largest = std::max(largest, force_of(t));
+  EXPECT_NEAR(largest, 0.7, 1e-9);
+}
+
+// A renderer gone mad: whatever it answers, what leaves is finite and within the limits.
+struct mad_renderer {
+  int n = 0;
+  status step(const scene_pose&, tick& out) noexcept {
+    out = {};
+    const double values[] = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e300,
+                             -1e300, 1e18};
+    const double v = values[n++ % 5];
+    out.force.on_probe_w.force = {v, -v, v};
+    out.force.on_probe_w.torque = {0.0, v, 0.0};
+    out.force.stiffness(1, 1) = v;
+    return status::ok;
+  }
+};
+
+TEST(device_loop, survives_a_renderer_gone_mad) {
+  simulated_device dev(pressing_hand());
+  ASSERT_TRUE(dev.open() && dev.arm());
+  std::vector<session_record> log;
+  virtual_session<mad_renderer, simulated_device, keep_all> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{},
+                                                                    {}, keep_all{&log});
+  static_cast<void>(session.run_until(500 * ms));
+  for (const session_record& r : log) {
+    ASSERT_TRUE(is_finite(r.on_hand_d));
+    ASSERT_LE(force_of(r), 20.0 * (1 + 1e-8));
+    ASSERT_LE(glm::length(r.on_hand_d.torque), 1.0 * (1 + 1e-8));
+    ASSERT_TRUE(is_valid(r.T_wa));
+  }
+}
+
+}  // namespace

@@ -1,0 +1,198 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+#include <asperity/control/probe.hpp>
+
+namespace {
+
+using namespace asperity;
+
+constexpr double pi = 3.141592653589793;
+
+virtual_coupling undamped(double kt, double kr) {
+  // A damping cannot be zero by configuration (zero asks for critical): take one that dissipates nothing measurable.
+  return {{.stiffness_n_per_m = kt,
+           .stiffness_n_m_per_rad = kr,
+           .damping_n_s_per_m = 1e-300,
+           .damping_n_m_s_per_rad = 1e-300},
+          0.01,
+          1e-5};
+}
+
+double unit(std::mt19937_64& bits) { return static_cast<double>(bits() >> 11) * 0x1.0p-53; }
+
+// Implicit Euler multiplies an undamped oscillation by 1/(1 - i w h) each step: amplitude and phase are known exactly.
+TEST(probe, follows_the_oscillator_of_the_implicit_step) {
+  const double mass = 0.01;
+  const double k = 500.0;
+  const double h = 1e-5;
+  const double w = std::sqrt(k / mass);
+  probe p({mass, mat3(1e-5)});
+  p.reset({quat(1, 0, 0, 0), {0.001, 0, 0}});
+  const virtual_coupling spring = undamped(k, 3.0);
+  const int steps = 5000;
+  for (int i = 0; i < steps; ++i) ASSERT_EQ(p.step(h, spring, {}, {}, {}), status::ok);
+  const double decay = std::pow(1.0 + w * w * h * h, -0.5 * steps);
+  const double phase = steps * std::atan(w * h);
+  EXPECT_NEAR(p.state().T_wc.position.x, 0.001 * decay * std::cos(phase), 1e-6 * 0.001);
+  EXPECT_NEAR(p.state().T_wc.position.x, 0.001 * std::cos(w * h * steps), 0.001 * 0.14);  // and the true one nearly
+}
+
+TEST(probe, turns_as_it_moves) {
+  const double inertia = 1e-5;
+  const double h = 1e-5;
+  const double w = std::sqrt(3.0 / inertia);
+  probe p({0.01, mat3(inertia)});
+  p.reset({exp_rotation({0, 0.1, 0}), vec3(0.0)});
+  const virtual_coupling spring = undamped(500.0, 3.0);
+  const int steps = 1000;
+  for (int i = 0; i < steps; ++i) ASSERT_EQ(p.step(h, spring, {}, {}, {}), status::ok);
+  const double decay = std::pow(1.0 + w * w * h * h, -0.5 * steps);
+  EXPECT_NEAR(log_rotation(p.state().T_wc.rotation).y, 0.1 * decay * std::cos(steps * std::atan(w * h)), 1e-6);
+}
+
+TEST(probe, converges_to_the_true_oscillator_with_the_first_order) {
+  const double w = std::sqrt(500.0 / 0.01);
+  const double end = 0.02;
+  double last = 0.0;
+  for (int steps : {1000, 2000, 4000}) {
+    probe p({0.01, mat3(1e-5)});
+    p.reset({quat(1, 0, 0, 0), {0.001, 0, 0}});
+    for (int i = 0; i < steps; ++i) ASSERT_EQ(p.step(end / steps, undamped(500.0, 3.0), {}, {}, {}), status::ok);
+    const double error = std::fabs(p.state().T_wc.position.x - 0.001 * std::cos(w * end));
+    if (last > 0.0) {
+      EXPECT_NEAR(last / error, 2.0, 0.1);
+    }
+    last = error;
+  }
+}
+
+// The probe's inertia belongs to its body: turned by a quarter about z, x and y change places.
+TEST(probe, carries_its_inertia_with_its_rotation) {
+  mat3 inertia(1e-5);
+  inertia[0][0] = 4e-5;
+  const virtual_coupling spring = undamped(500.0, 3.0);
+  const auto response_about_x = [&](double turn) {
+    probe p({0.01, inertia});
+    p.reset({exp_rotation({0, 0, turn}), vec3(0.0)});
+    const pose target{p.state().T_wc.rotation, vec3(0.0)};
+    EXPECT_EQ(p.step(1e-6, spring, target, {}, {}, {vec3(0.0), {1e-3, 0, 0}}), status::ok);
+    return p.state().velocity_w.angular.x;
+  };
+  EXPECT_NEAR(response_about_x(0.0), 1e-3 * 1e-6 / 4e-5, 1e-9);
+  EXPECT_NEAR(response_about_x(0.5 * pi), 1e-3 * 1e-6 / 1e-5, 1e-9);
+}
+
+struct stiff_scene {
+  probe tool;
+  virtual_coupling coupling{{}, 0.01, 1e-5};
+  linear_contact contact;
+
+  // Up to six random directions with stiffnesses between 1 and 1e12.
+  stiff_scene(std::mt19937_64& bits, int directions, std::size_t axes) {
+    for (int i = 0; i < directions; ++i) {
+      vec6 g;
+      for (std::size_t j = 0; j < axes; ++j) g[j] = (2.0 * unit(bits) - 1.0) * (j < 3 ? 1.0 : 0.03);
+      add_outer(contact.stiffness, -std::pow(10.0, 12.0 * unit(bits)), g);
+    }
+    tool.reset({axes == 6 ? exp_rotation({0.002, -0.001, 0.003}) : quat(1, 0, 0, 0), {0.001, -0.002, 0.003}});
+  }
+  [[nodiscard]] status step() { return tool.step(1e-3, coupling, {}, {}, evaluate(contact, tool.state().T_wc, 1.0)); }
+  [[nodiscard]] double energy_j() const {
+    const vec6 q = pose_difference(tool.state().T_wc, {});
+    return tool.kinetic_j() + coupling.stored_j({}, tool.state().T_wc) - 0.5 * dot(q, contact.stiffness * q);
+  }
+};
+
+// Any symmetric negative semidefinite J, of any size: kinetic energy, springs and contact potential together only fall.
+TEST(probe, loses_energy_under_any_contact_stiffness) {
+  std::mt19937_64 bits(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    stiff_scene s(bits, 1 + trial % 6, 3);
+    double before = s.energy_j();
+    for (int i = 0; i < 300; ++i) {
+      ASSERT_EQ(s.step(), status::ok);
+      ASSERT_LE(s.energy_j(), before * (1.0 + 1e-9)) << "trial " << trial << " step " << i;
+      before = s.energy_j();
+    }
+  }
+}
+
+// With rotations the potential is quadratic in the pose only to first order: it may wobble, and stays below its start.
+TEST(probe, stays_bounded_under_any_six_dimensional_stiffness) {
+  std::mt19937_64 bits(8);
+  for (int trial = 0; trial < 200; ++trial) {
+    stiff_scene s(bits, 1 + trial % 6, 6);
+    const double start = s.energy_j();
+    for (int i = 0; i < 300; ++i) {
+      ASSERT_EQ(s.step(), status::ok);
+      ASSERT_LE(s.energy_j(), start) << "trial " << trial << " step " << i;
+    }
+    EXPECT_LT(s.energy_j(), 0.01 * start);
+  }
+}
+
+TEST(probe, explodes_without_the_stiffness_in_the_step) {  // the test of the test above
+  probe p;
+  p.reset({quat(1, 0, 0, 0), {0, 0, 0.001}});
+  const virtual_coupling coupling({}, 0.01, 1e-5);
+  for (int i = 0; i < 50 && std::fabs(p.state().T_wc.position.z) < 0.1; ++i) {
+    contact_evaluation held;
+    held.on_probe_w.force.z = -1e6 * p.state().T_wc.position.z;
+    ASSERT_EQ(p.step(1e-3, coupling, {}, {}, held), status::ok);
+  }
+  EXPECT_GT(std::fabs(p.state().T_wc.position.z), 0.1);
+}
+
+TEST(probe, closes_its_energy_book) {
+  probe p({0.01, mat3(1e-5)});
+  p.reset({});
+  const virtual_coupling coupling({}, 0.01, 1e-5);
+  linear_contact wall;
+  wall.stiffness(2, 2) = -2000.0;
+  for (int i = 0; i < 4000; ++i) {
+    const double t = i * 1e-4;
+    const pose target{exp_rotation({0.1 * std::sin(30 * t), 0.05 * std::sin(50 * t), 0}),
+                      {0.01 * std::sin(20 * t), 0, -0.002 * std::sin(40 * t)}};
+    ASSERT_EQ(p.step(1e-4, coupling, target, {}, evaluate(wall, p.state().T_wc, 1.0), {{0.1, 0, 0}, vec3(0.0)}),
+              status::ok);
+  }
+  const probe_energy& e = p.energy();
+  const double gained = e.by_coupling_j + e.by_contact_j + e.by_external_j - e.numerical_j;
+  EXPECT_NEAR(gained, p.kinetic_j(), 1e-12);
+  EXPECT_GT(std::fabs(e.by_coupling_j), 1e-4);  // the balance is not between zeros
+  EXPECT_GE(e.numerical_j, 0.0);
+}
+
+TEST(probe, stops_where_a_load_is_not_finite) {
+  probe p;
+  p.reset({quat(1, 0, 0, 0), {0, 0, 0.001}});
+  const virtual_coupling coupling({}, 0.01, 1e-5);
+  ASSERT_EQ(p.step(1e-3, coupling, {}, {}, {}), status::ok);
+  const pose before = p.state().T_wc;
+  contact_evaluation bad;
+  bad.on_probe_w.force.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(p.step(1e-3, coupling, {}, {}, bad), status::not_finite);
+  EXPECT_EQ(p.state().T_wc.position, before.position);
+  EXPECT_EQ(p.state().velocity_w.linear, vec3(0.0));
+}
+
+TEST(virtual_coupling, is_critically_damped_up_to_its_bound) {
+  EXPECT_DOUBLE_EQ(virtual_coupling({}, 0.01, 1e-5).damping_n_s_per_m(), 2.0 * std::sqrt(5.0));
+  EXPECT_DOUBLE_EQ(virtual_coupling({}, 0.01, 1e-5).damping_n_m_s_per_rad(), 2.0 * std::sqrt(3e-5));
+  EXPECT_EQ(virtual_coupling({}, 1.0, 1.0).damping_n_s_per_m(), 5.0);
+  EXPECT_EQ(virtual_coupling({.damping_n_s_per_m = 0.7}, 1.0, 1.0).damping_n_s_per_m(), 0.7);
+}
+
+TEST(virtual_coupling, pulls_the_probe_towards_the_device) {
+  const virtual_coupling c({}, 0.01, 1e-5);
+  const wrench w = c.on_probe({exp_rotation({0, 0, 0.1}), {0.001, 0, 0}}, {}, {}, {});
+  EXPECT_DOUBLE_EQ(w.force.x, 0.5);
+  EXPECT_NEAR(w.torque.z, 0.3, 1e-12);
+  const wrench drag = c.on_probe({}, {}, {}, {{1.0, 0, 0}, vec3(0.0)});
+  EXPECT_DOUBLE_EQ(drag.force.x, -c.damping_n_s_per_m());
+}
+
+}  // namespace
