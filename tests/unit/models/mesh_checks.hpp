@@ -125,12 +125,27 @@ inline double distance_to(const vec3& p, const std::array<vec3, 3>& c) {
   return inside ? std::abs(glm::dot(p - c[0], n)) / glm::length(n) : nearest;
 }
 
-/// Largest distance of a vertex of `from` to the surface of `to`. Tries every pair: for small `to` only.
+/// Largest distance of a vertex of `from` to the surface of `to`.
 inline double largest_distance(const triangle_mesh& from, const triangle_mesh& to) {
+  struct ball {
+    vec3 centre;
+    double radius;
+  };
+  std::vector<ball> balls;
+  for (std::size_t t = 0; t < to.triangles.size(); ++t) {
+    const auto c = corners(to, t);
+    const vec3 centre = (c[0] + c[1] + c[2]) / 3.0;
+    balls.push_back({centre, std::max(glm::length(c[0] - centre),
+                                      std::max(glm::length(c[1] - centre), glm::length(c[2] - centre)))});
+  }
   double out = 0.0;
   for (const vec3& p : from.positions) {
     double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t t = 0; t < to.triangles.size(); ++t) nearest = std::min(nearest, distance_to(p, corners(to, t)));
+    for (std::size_t t = 0; t < to.triangles.size(); ++t) {
+      const vec3 d = p - balls[t].centre;
+      const double reach = nearest + balls[t].radius;
+      if (glm::dot(d, d) < reach * reach) nearest = std::min(nearest, distance_to(p, corners(to, t)));
+    }
     out = std::max(out, nearest);
   }
   return out;

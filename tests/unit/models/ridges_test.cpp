@@ -149,6 +149,31 @@ TEST_P(partner, lies_at_mid_height_of_the_ridges) {
   EXPECT_NEAR(test::volume_of(coarse) / test::volume_of(full), 1.0, 2e-3);
 }
 
+TEST_P(partner, has_its_sharp_edges_on_the_full_surface) {
+  const triangle_mesh coarse = *make_coarse(GetParam());
+  const double tolerance = GetParam() == benchmark::gear ? 33e-6 : 1e-7;
+  triangle_mesh on_edges;
+  for (int i = 0; i <= 20; ++i) {
+    const double share = i / 20.0;
+    if (GetParam() == benchmark::block) {
+      const double y = (share - 0.5) * block_size_m[1];
+      const double x = (share - 0.5) * block_size_m[0];
+      on_edges.positions.emplace_back(0.5 * block_size_m[0], 0.5 * ridge_wavelength_m * (i - 10) / 5.0,
+                                      0.5 * block_size_m[2]);
+      on_edges.positions.emplace_back(-0.5 * block_size_m[0], y, -0.5 * block_size_m[2]);
+      on_edges.positions.emplace_back(x, 0.5 * block_size_m[1], 0.5 * block_size_m[2]);
+      on_edges.positions.emplace_back(x, -0.5 * block_size_m[1], -0.5 * block_size_m[2]);
+    } else {
+      const double angle = two_pi / gear_ridges * share;
+      for (const double side : {-0.5, 0.5})
+        on_edges.positions.emplace_back(side * gear_length_m, gear_radius_m * std::sin(angle),
+                                        gear_radius_m * std::cos(angle));
+    }
+  }
+  EXPECT_LE(test::largest_distance(on_edges, coarse), tolerance);
+  EXPECT_LE(test::largest_distance(on_edges, make_full(GetParam())), tolerance);
+}
+
 /// Normals of the vertices, each triangle weighted with its angle there.
 std::vector<vec3> angle_weighted_normals(const triangle_mesh& mesh) {
   std::vector<vec3> normals(mesh.positions.size(), vec3(0.0));
