@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -138,12 +139,14 @@ TEST(probe, explodes_without_the_stiffness_in_the_step) {  // the test of the te
   probe p;
   p.reset({quat(1, 0, 0, 0), {0, 0, 0.001}});
   const virtual_coupling coupling({}, 0.01, 1e-5);
-  for (int i = 0; i < 50 && std::fabs(p.state().T_wc.position.z) < 0.1; ++i) {
+  double farthest = 0.0;
+  for (int i = 0; i < 50 && farthest < 1.0; ++i) {
     contact_evaluation held;
     held.on_probe_w.force.z = -1e6 * p.state().T_wc.position.z;
-    ASSERT_EQ(p.step(1e-3, coupling, {}, {}, held), status::ok);
+    if (p.step(1e-3, coupling, {}, {}, held) != status::ok) farthest = std::numeric_limits<double>::infinity();
+    farthest = std::max(farthest, std::fabs(p.state().T_wc.position.z));
   }
-  EXPECT_GT(std::fabs(p.state().T_wc.position.z), 0.1);
+  EXPECT_GE(farthest, 1.0);
 }
 
 TEST(probe, closes_its_energy_book) {

@@ -1,0 +1,235 @@
+#include <bit>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+
+#include <asperity/hal/output_gate.hpp>
+
+namespace {
+
+using namespace asperity;
+
+constexpr std::int64_t ms = 1'000'000;
+constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// 10 N and 0.5 N m, 1 N and 0.05 N m per millisecond; continuous limits out of the way.
+gate_limits plain() {
+  return {.peak_force_n = 10.0,
+          .continuous_force_n = 10.0,
+          .force_slew_n_per_s = 1000.0,
+          .peak_torque_n_m = 0.5,
+          .continuous_torque_n_m = 0.5,
+          .torque_slew_n_m_per_s = 50.0};
+}
+
+device_command want(const vec3& force, const vec3& torque = vec3(0.0)) {
+  return {{force, torque}, wrench_frame::device_base, std::numeric_limits<std::int64_t>::max(), 1};
+}
+
+struct gate_test : testing::Test {
+  output_gate gate{plain()};
+  std::int64_t now = 0;
+
+  wrench pass(const device_command& c, std::int64_t step_ns = ms) {
+    now += step_ns;
+    return gate.pass(now, {}, c).on_hand;
+  }
+  wrench pass_times(int n, const device_command& c) {
+    wrench w;
+    for (int i = 0; i < n; ++i) w = pass(c);
+    return w;
+  }
+};
+
+TEST_F(gate_test, starts_at_zero_and_follows_at_the_slew_rate) {
+  EXPECT_EQ(pass(want({5, 0, 0})).force, vec3(0.0));
+  EXPECT_DOUBLE_EQ(pass(want({5, 0, 0})).force.x, 1.0);
+  EXPECT_DOUBLE_EQ(pass_times(3, want({5, 0, 0})).force.x, 4.0);
+  EXPECT_DOUBLE_EQ(pass_times(3, want({5, 0, 0})).force.x, 5.0);
+  EXPECT_DOUBLE_EQ(pass(want({-5, 0, 0})).force.x, 4.0);
+  EXPECT_EQ(gate.fault(), gate_fault::none);
+}
+
+TEST_F(gate_test, saturates_force_and_torque_apart_and_keeps_their_directions) {
+  const vec3 force{30.0, -40.0, 120.0};
+  const vec3 torque{0.3, 0.0, -0.1};
+  const wrench w = pass_times(50, want(force, torque));
+  EXPECT_NEAR(glm::length(w.force), 10.0, 1e-12);
+  EXPECT_NEAR(glm::dot(glm::normalize(w.force), glm::normalize(force)), 1.0, 1e-14);
+  EXPECT_LT(glm::length(w.torque - torque), 1e-15);  // within its own limit: untouched
+  EXPECT_EQ(gate.fault(), gate_fault::none);
+}
+
+TEST_F(gate_test, a_late_tick_saves_up_no_slew) {
+  pass_times(2, want({0, 0, 0}));
+  EXPECT_NEAR(pass(want({9, 0, 0}), 3000 * ms).force.x, 4.0, 1e-12);  // four milliseconds' worth
+}
+
+TEST_F(gate_test, time_that_stands_still_or_runs_back_changes_nothing) {
+  pass_times(4, want({9, 0, 0}));
+  const wrench before = gate.last();
+  EXPECT_EQ(pass(want({-9, 0, 0}), 0).force, before.force);
+  EXPECT_EQ(pass(want({-9, 0, 0}), -ms).force, before.force);
+}
+
+TEST_F(gate_test, shuts_on_what_is_not_finite) {
+  for (const double bad : {nan_value, infinity, -infinity, 1e300, std::numeric_limits<double>::max()}) {
+    for (int axis = 0; axis < 6; ++axis) {
+      output_gate fresh(plain());
+      std::int64_t t = 0;
+      for (int i = 0; i < 20; ++i) static_cast<void>(fresh.pass(t += ms, {}, want({3, 4, 0}, {0, 0.3, 0})));
+      device_command c = want({3, 4, 0}, {0, 0.3, 0});
+      (axis < 3 ? c.on_hand.force[axis] : c.on_hand.torque[axis - 3]) = bad;
+      const wrench first = fresh.pass(t += ms, {}, c).on_hand;
+      EXPECT_TRUE(is_finite(first));
+      EXPECT_EQ(fresh.fault(), gate_fault::not_finite);
+      // Zero within peak / slew, and it stays zero although the commands are good again.
+      for (int i = 0; i < 10; ++i) static_cast<void>(fresh.pass(t += ms, {}, want({3, 4, 0}, {0, 0.3, 0})));
+      EXPECT_TRUE(fresh.at_rest());
+    }
+  }
+}
+
+TEST_F(gate_test, takes_minus_zero_for_zero) {
+  const wrench w = pass_times(3, want({-0.0, -0.0, 1.0}));
+  EXPECT_EQ(w.force.x, 0.0);
+  EXPECT_EQ(gate.fault(), gate_fault::none);
+  const wrench rest = pass_times(3, want({-0.0, -0.0, -0.0}));
+  EXPECT_EQ(rest.force, vec3(0.0));
+  EXPECT_TRUE(gate.at_rest());
+}
+
+TEST_F(gate_test, shuts_on_a_stale_command) {
+  device_command c = want({5, 0, 0});
+  c.valid_until_ns = 10 * ms;
+  for (int i = 0; i < 10; ++i) pass(c);
+  EXPECT_EQ(gate.fault(), gate_fault::none);
+  EXPECT_EQ(now, 10 * ms);
+  pass(c);
+  EXPECT_EQ(gate.fault(), gate_fault::stale_command);
+  pass_times(5, c);
+  EXPECT_TRUE(gate.at_rest());
+}
+
+TEST_F(gate_test, shuts_on_a_wrong_frame) {
+  for (const wrench_frame f : {wrench_frame::unset, wrench_frame::world, wrench_frame::handle}) {
+    output_gate fresh(plain());
+    device_command c = want({1, 0, 0});
+    c.frame = f;
+    static_cast<void>(fresh.pass(0, {}, c));
+    EXPECT_TRUE(is_finite(fresh.pass(ms, {}, c).on_hand));
+    EXPECT_TRUE(fresh.at_rest());
+    EXPECT_EQ(fresh.fault(), gate_fault::wrong_frame);
+  }
+}
+
+TEST_F(gate_test, keeps_the_first_cause_and_opens_at_rest_only) {
+  pass_times(6, want({5, 0, 0}));
+  gate.trip(gate_fault::stopped);
+  gate.trip(gate_fault::device_failed);
+  EXPECT_EQ(gate.fault(), gate_fault::stopped);
+  EXPECT_FALSE(gate.clear());
+  pass_times(6, want({5, 0, 0}));
+  EXPECT_TRUE(gate.clear());
+  EXPECT_GT(pass_times(2, want({5, 0, 0})).force.x, 0.0);
+}
+
+TEST_F(gate_test, remembers_the_last_ticks_before_a_fault) {
+  for (int i = 0; i < 100; ++i) pass(want({0.01 * i, 0, 0}));
+  pass(want({nan_value, 0, 0}));
+  pass_times(10, want({1, 0, 0}));
+  const flight_recorder& f = gate.flight();
+  ASSERT_EQ(f.size(), 64U);
+  EXPECT_TRUE(f.frozen());
+  EXPECT_TRUE(std::isnan(f[63].wanted.force.x));
+  EXPECT_EQ(f[63].time_ns, 101 * ms);
+  EXPECT_EQ(f[0].time_ns, 38 * ms);
+  EXPECT_DOUBLE_EQ(f[62].wanted.force.x, 0.99);
+}
+
+TEST(bound_vector, certificate_catches_a_previous_value_beyond_the_limit) {
+  const bounded_vector v = bound_vector({1, 0, 0}, {50, 0, 0}, {10.0, 10.0, 1.0}, true);
+  EXPECT_FALSE(v.certified);
+  EXPECT_EQ(v.value, vec3(0.0));
+  EXPECT_EQ(bound_vector({1, 0, 0}, {nan_value, 0, 0}, {10.0, 10.0, 1.0}, true).value, vec3(0.0));
+}
+
+TEST(output_gate, limits_that_are_no_numbers_let_nothing_through) {
+  for (const double bad : {nan_value, -1.0, 0.0}) {
+    gate_limits l = plain();
+    l.peak_force_n = bad;
+    output_gate gate(l);
+    for (int i = 0; i < 20; ++i) static_cast<void>(gate.pass(i * ms, {}, want({1, 2, 3})));
+    EXPECT_EQ(gate.last().force, vec3(0.0));
+  }
+}
+
+TEST(output_gate, device_limits_cannot_be_raised) {
+  gate_limits generous = plain();
+  generous.peak_force_n = 1000.0;
+  EXPECT_EQ(tighter(plain(), generous).peak_force_n, 10.0);
+  device_capabilities unstated;
+  EXPECT_EQ(tighter(limits_of(unstated), generous).peak_force_n, 0.0);
+}
+
+// A million commands, poses and limits of any bit pattern: finite, within the limit, no faster than the slew rate.
+TEST(output_gate, no_bit_pattern_gets_past) {
+  std::mt19937_64 bits(20241);
+  output_gate gate(plain());
+  std::int64_t t = 0;
+  wrench before;
+  double largest = 0.0;
+  double steepest = 0.0;
+  int opened = 0;
+  for (int i = 0; i < 1'000'000; ++i) {
+    // Half raw bits, half numbers of a likely size: raw bits alone shut the gate nearly always.
+    const auto number = [&](double scale) {
+      const std::uint64_t b = bits();
+      return i % 2 == 0 ? std::bit_cast<double>(b) : scale * (static_cast<double>(b >> 11) * 0x1.0p-52 - 1.0);
+    };
+    const device_command c{{{number(40), number(40), number(40)}, {number(2), number(2), number(2)}},
+                           bits() % 64 == 0 ? wrench_frame::world : wrench_frame::device_base,
+                           bits() % 64 == 0 ? t : std::numeric_limits<std::int64_t>::max(),
+                           0};
+    t += ms;
+    const wrench w = gate.pass(t, {}, c).on_hand;
+    ASSERT_TRUE(is_finite(w));
+    largest = std::max({largest, glm::length(w.force) / 10.0, glm::length(w.torque) / 0.5});
+    steepest = std::max({steepest, glm::length(w.force - before.force), glm::length(w.torque - before.torque) / 0.05});
+    before = w;
+    if (gate.fault() != gate_fault::none && gate.clear()) ++opened;
+  }
+  EXPECT_LE(largest, 1.0 + 1e-8);
+  EXPECT_LE(steepest, 1.0 + 1e-12);
+  EXPECT_GT(largest, 0.1);  // something did get through
+  EXPECT_GT(opened, 1000);
+}
+
+TEST(output_gate, settles_at_the_continuous_limit) {
+  gate_limits l = plain();
+  l.continuous_force_n = 4.0;
+  l.thermal_time_s = 2.0;
+  output_gate gate(l);
+  double peak = 0.0;
+  double largest_mean_square = 0.0;
+  for (int i = 0; i < 60'000; ++i) {
+    peak = std::max(peak, gate.pass(i * ms, {}, want({100, 0, 0})).on_hand.force.x);
+    largest_mean_square = std::max(largest_mean_square, gate.force_mean_square());
+  }
+  EXPECT_GT(peak, 9.0);  // the peak is there for a short time
+  EXPECT_NEAR(gate.last().force.x, 4.0, 0.05);
+  EXPECT_LE(largest_mean_square, 16.0);
+  EXPECT_EQ(gate.fault(), gate_fault::none);
+}
+
+TEST(output_gate, derates_nothing_below_the_continuous_limit) {
+  gate_limits l = plain();
+  l.continuous_force_n = 4.0;
+  output_gate gate(l);
+  for (int i = 0; i < 100'000; ++i) static_cast<void>(gate.pass(i * ms, {}, want({3.9, 0, 0})));
+  EXPECT_DOUBLE_EQ(gate.last().force.x, 3.9);
+}
+
+}  // namespace

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+#include <limits>
+
+#include <asperity/hal/sample_check.hpp>
+
+namespace {
+
+using namespace asperity;
+
+constexpr std::int64_t ms = 1'000'000;
+
+device_sample good(std::int64_t time_ns, double x = 0.0) {
+  device_sample s;
+  s.host_time_ns = time_ns;
+  s.T_dh.position.x = x;
+  s.valid = sample_field::position | sample_field::rotation;
+  return s;
+}
+
+TEST(sample_check, accepts_a_good_sample) {
+  sample_check check;
+  EXPECT_EQ(check.judge(0, status::ok, good(0)), sample_verdict::accepted);
+  EXPECT_EQ(check.rejected(), 0U);
+}
+
+TEST(sample_check, names_what_is_wrong) {
+  sample_check check;
+  device_sample s = good(0);
+  s.T_dh.position.y = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(check.judge(0, status::ok, s), sample_verdict::not_finite);
+  s = good(0);
+  s.T_dh.rotation.w = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(check.judge(0, status::ok, s), sample_verdict::not_finite);
+  s = good(0);
+  s.T_dh.rotation = {0.0, 0.0, 0.0, 0.0};
+  EXPECT_EQ(check.judge(0, status::ok, s), sample_verdict::not_unit);
+  s = good(0);
+  s.valid = sample_field::buttons;
+  EXPECT_EQ(check.judge(0, status::ok, s), sample_verdict::not_measured);
+  EXPECT_EQ(check.judge(0, status::backend_failed, good(0)), sample_verdict::no_answer);
+  EXPECT_EQ(check.rejected(), 5U);
+  EXPECT_TRUE(check.exhausted());
+}
+
+TEST(sample_check, lets_a_sample_grow_as_old_as_its_limit) {
+  sample_check check;
+  EXPECT_EQ(check.judge(20 * ms, status::ok, good(0)), sample_verdict::accepted);
+  EXPECT_EQ(check.judge(20 * ms + 1, status::ok, good(0)), sample_verdict::stale);
+}
+
+TEST(sample_check, finds_a_jump_and_a_spin) {
+  sample_check check;
+  ASSERT_EQ(check.judge(0, status::ok, good(0)), sample_verdict::accepted);
+  EXPECT_EQ(check.judge(ms, status::ok, good(ms, 0.0099)), sample_verdict::accepted);
+  EXPECT_EQ(check.judge(2 * ms, status::ok, good(2 * ms, 0.5)), sample_verdict::jump);
+  device_sample spun = good(3 * ms, 0.0099);
+  spun.T_dh.rotation = exp_rotation({0, 0, 1.0});
+  EXPECT_EQ(check.judge(3 * ms, status::ok, spun), sample_verdict::jump);
+  EXPECT_EQ(check.judge(4 * ms, status::ok, good(4 * ms, 0.01)), sample_verdict::accepted);
+  check.restart();
+  EXPECT_EQ(check.judge(5 * ms, status::ok, good(5 * ms, 0.5)), sample_verdict::accepted);
+}
+
+TEST(sample_check, is_exhausted_by_rejections_in_a_row_only) {
+  sample_check check;
+  for (int i = 0; i < 4; ++i) static_cast<void>(check.judge(0, status::backend_failed, good(0)));
+  EXPECT_FALSE(check.exhausted());
+  static_cast<void>(check.judge(0, status::ok, good(0)));
+  for (int i = 0; i < 4; ++i) static_cast<void>(check.judge(0, status::backend_failed, good(0)));
+  EXPECT_FALSE(check.exhausted());
+  static_cast<void>(check.judge(0, status::backend_failed, good(0)));
+  EXPECT_TRUE(check.exhausted());
+}
+
+}  // namespace
