@@ -118,16 +118,16 @@ class convex_piece_finder {
     const placement T_ab(T);
     const std::size_t overlapping = statistics_.penetrating_pairs;
     s.pairs.clear();
-    visit_candidates(s, T_ab, narrow_pass::near_pass);
-    if (statistics_.penetrating_pairs > overlapping && s.settings.max_depth_m > s.settings.tolerance_m) {
-      visit_candidates(s, T_ab, narrow_pass::deep_pass);
-    }
+    visit_candidates(s, T_ab, {-1.0, s.settings.tolerance_m});
+    if (statistics_.penetrating_pairs == overlapping || s.settings.max_depth_m <= s.settings.tolerance_m) return;
+    const std::size_t near = statistics_.close_pairs;
+    visit_candidates(s, T_ab, {s.settings.tolerance_m, s.settings.max_depth_m});
+    statistics_.deep_pairs += statistics_.close_pairs - near;
   }
 
-  void visit_candidates(side& s, const placement& T_ab, narrow_pass pass) noexcept {
-    const bool deep = pass == narrow_pass::deep_pass;
+  void visit_candidates(side& s, const placement& T_ab, const distance_shell& shell) noexcept {
     const narrow_phase_limits limits{s.settings.tolerance_m, s.settings.max_depth_m};
-    const double margin = deep ? limits.max_depth_m : limits.tolerance_m;
+    const double margin = shell.outer_m;
     const mat3 size(glm::abs(T_ab.rotation[0]), glm::abs(T_ab.rotation[1]), glm::abs(T_ab.rotation[2]));
     for (std::uint32_t j = 0; j < s.body.shapes.size(); ++j) {
       const convex_shape& B = s.body.shapes[j];
@@ -139,27 +139,26 @@ class convex_piece_finder {
         const vec3 apart = centre - A.centre;
         const double reach = A.radius + B.radius + margin;
         if (glm::dot(apart, apart) > reach * reach) return;
-        if (deep && !may_face(A, B, T_ab.rotation)) return;
+        if (shell.deep() && !may_have_passed(A, B, T_ab)) return;
         ++statistics_.candidate_pairs;
         close_pair pair;
         pair.a = i;
         pair.b = j;
         narrow_phase_cost cost;
-        evaluate_pair(A, B, T_ab, limits, pass, s.slot(i, j).simplex, pair, cost);
+        evaluate_pair(A, B, T_ab, limits, shell, s.slot(i, j).simplex, pair, cost);
         statistics_.gjk_iterations = std::max(statistics_.gjk_iterations, cost.gjk_iterations);
         if (cost.overlapping) ++statistics_.penetrating_pairs;
         if (pair.kind == pair_kind::apart) return;
         const vec3 low = glm::max(A.box.low, box_b.low);
         const vec3 high = glm::min(A.box.high, box_b.high);
         pair.region = {glm::min(low, high) - 0.5 * limits.tolerance_m, glm::max(low, high) + 0.5 * limits.tolerance_m};
-        add_pair(s, pair, deep);
+        add_pair(s, pair);
       });
     }
   }
 
-  void add_pair(side& s, const close_pair& pair, bool deep) noexcept {
+  void add_pair(side& s, const close_pair& pair) noexcept {
     ++statistics_.close_pairs;
-    if (deep) ++statistics_.deep_pairs;
     if (pair.kind == pair_kind::passive) ++statistics_.passive_pairs;
     if (s.pairs.size() == s.settings.close_pairs) {
       ++statistics_.dropped_pairs;

@@ -64,10 +64,12 @@ struct convex_shape {
     return static_cast<std::uint32_t>(best);
   }
 
-  /// True where d, unit, looks out of at least one covered triangle.
+  /// True where d, unit, points into the body behind every covered triangle.
   /// @rt safe
-  [[nodiscard]] bool faces_along(const vec3& d) const noexcept {
-    return std::any_of(faces.begin(), faces.end(), [&](const shape_face& f) { return glm::dot(f.normal, d) > 0.0; });
+  [[nodiscard]] bool looks_away(const vec3& d) const noexcept {
+    constexpr double grazing = 0.1;  // the sine that spec section 2 puts between facing and not
+    return std::all_of(faces.begin(), faces.end(),
+                       [&](const shape_face& f) { return glm::dot(f.normal, d) < -grazing; });
   }
 };
 
@@ -99,13 +101,6 @@ struct convex_shape {
     violation = std::min(violation, out);
   }
   return smoothstep(1.0 - violation / slack);
-}
-
-/// False where two flat pieces look the same way or past each other: they cannot be a contact, whatever their distance.
-/// @rt safe
-[[nodiscard]] inline bool may_face(const convex_shape& A, const convex_shape& B, const mat3& R_ab) noexcept {
-  if (A.faces.size() != 1 || B.faces.size() != 1) return true;
-  return glm::dot(A.faces[0].normal, R_ab * B.faces[0].normal) < 0.0;
 }
 
 /// The shape of a piece. Offline: allocates.
