@@ -72,7 +72,10 @@ inline void keep_vertex(simplex& s, std::size_t i) noexcept {
   s.size = 1;
 }
 
-inline void keep_edge(simplex& s, std::size_t i, std::size_t j, double share_j) noexcept {
+/// Shares j : i as towards_j : towards_i; both 0 where a stale cache made the two ends equal.
+inline void keep_edge(simplex& s, std::size_t i, std::size_t j, double towards_j, double towards_i) noexcept {
+  const double whole = towards_j + towards_i;
+  const double share_j = whole > 0.0 ? towards_j / whole : 0.0;
   const difference_vertex second = s.v[j];
   s.v[0] = s.v[i];
   s.v[1] = second;
@@ -88,7 +91,7 @@ inline void reduce_segment(simplex& s) noexcept {
   const double length2 = glm::dot(ab, ab);
   if (t <= 0.0 || length2 <= 0.0) return keep_vertex(s, 0);
   if (t >= length2) return keep_vertex(s, 1);
-  keep_edge(s, 0, 1, t / length2);
+  keep_edge(s, 0, 1, t, length2 - t);
 }
 
 /// The same for a triangle, by the signs of its barycentric coordinates.
@@ -103,15 +106,15 @@ inline void reduce_triangle(simplex& s) noexcept {
   const double ab_b = -glm::dot(ab, b), ac_b = -glm::dot(ac, b);
   if (ab_b >= 0.0 && ac_b <= ab_b) return keep_vertex(s, 1);
   const double area_c = ab_a * ac_b - ab_b * ac_a;
-  if (area_c <= 0.0 && ab_a >= 0.0 && ab_b <= 0.0) return keep_edge(s, 0, 1, ab_a / (ab_a - ab_b));
+  if (area_c <= 0.0 && ab_a >= 0.0 && ab_b <= 0.0) return keep_edge(s, 0, 1, ab_a, -ab_b);
   const double ab_c = -glm::dot(ab, c), ac_c = -glm::dot(ac, c);
   if (ac_c >= 0.0 && ab_c <= ac_c) return keep_vertex(s, 2);
   const double area_b = ab_c * ac_a - ab_a * ac_c;
-  if (area_b <= 0.0 && ac_a >= 0.0 && ac_c <= 0.0) return keep_edge(s, 0, 2, ac_a / (ac_a - ac_c));
+  if (area_b <= 0.0 && ac_a >= 0.0 && ac_c <= 0.0) return keep_edge(s, 0, 2, ac_a, -ac_c);
   const double area_a = ab_b * ac_c - ab_c * ac_b;
   const double from_b = ac_b - ab_b;
   const double from_c = ab_c - ac_c;
-  if (area_a <= 0.0 && from_b >= 0.0 && from_c >= 0.0) return keep_edge(s, 1, 2, from_b / (from_b + from_c));
+  if (area_a <= 0.0 && from_b >= 0.0 && from_c >= 0.0) return keep_edge(s, 1, 2, from_b, from_c);
   const double area = area_a + area_b + area_c;
   if (!(area > 0.0)) {  // three points in a line
     s.size = 2;
@@ -207,7 +210,6 @@ inline bool reduce_tetrahedron(simplex& s) noexcept {
       cache.size = 0;
       return out;
     }
-    out.outcome = gjk_outcome::separated;
     if (length2 >= previous || out.iterations == max_iterations) break;  // rounding ended the progress
     previous = length2;
 
@@ -230,7 +232,7 @@ inline bool reduce_tetrahedron(simplex& s) noexcept {
   }
   if (out.outcome == gjk_outcome::beyond) return out;
   out.distance = std::sqrt(glm::dot(v, v));
-  if (out.distance > limit) out.outcome = gjk_outcome::beyond;
+  out.outcome = out.distance > limit ? gjk_outcome::beyond : gjk_outcome::separated;
   out.n_ab = v / -out.distance;
   for (std::size_t i = 0; i < s.size; ++i) {
     out.p_a += s.v[i].share * s.v[i].a;
