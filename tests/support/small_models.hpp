@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "asperity/core/float32.hpp"
 #include "asperity/core/math.hpp"
 #include "asperity/model/textured_model.hpp"
 
@@ -17,9 +18,6 @@ namespace asperity::test_support {
 
 /// Height of the fine surface above the coarse surface point, along its outward normal, metres.
 using relief_function = std::function<double(const vec3& point, const vec3& normal)>;
-
-/// The vector that float32 can hold: what a model is after it has been in a file.
-inline vec3 to_float32(const vec3& p) { return vec3(glm::vec3(p)); }
 
 /// Texels between a face's chart and its neighbours; they hold the face's own plane and relief, carried on past its
 /// edge.
@@ -33,7 +31,7 @@ inline textured_model make_textured_box(const vec3& half_extent, std::uint32_t t
                                         const relief_function& relief) {
   textured_model model;
   model.name = "box";
-  const vec3 h = to_float32(half_extent);
+  const vec3 h = round_to_float32(half_extent);
   for (int corner = 0; corner < 8; ++corner) {
     model.mesh.positions.emplace_back((corner & 1) != 0 ? h.x : -h.x, (corner & 2) != 0 ? h.y : -h.y,
                                       (corner & 4) != 0 ? h.z : -h.z);
@@ -56,7 +54,7 @@ inline textured_model make_textured_box(const vec3& half_extent, std::uint32_t t
     const std::uint32_t chart_width = cell_width - 2 * box_gutter_texels;
     const std::uint32_t chart_height = cell_height - 2 * box_gutter_texels;
     const auto uv_at = [&](std::uint32_t i, std::uint32_t j) {
-      return vec2(glm::vec2((left + box_gutter_texels + i) / size, (low + box_gutter_texels + j) / size));
+      return round_to_float32(vec2((left + box_gutter_texels + i) / size, (low + box_gutter_texels + j) / size));
     };
     const std::array<vec2, 4> uv{uv_at(0, 0), uv_at(chart_width, 0), uv_at(chart_width, chart_height),
                                  uv_at(0, chart_height)};
