@@ -7,7 +7,7 @@
 
 #include "asperity/control/contact_loop.hpp"
 
-namespace asperity::test {
+namespace asperity::test_support {
 
 /// Three points of the probe, in its body frame about the centre of mass, against the plane z = 0 (overlap where z <
 /// 0). n_ab = (0, 0, -1). Each point is a linear spring along n with a third of the stiffness; slope_x tilts the force,
@@ -48,4 +48,4 @@ struct analytic_wall {
   }
 };
 
-}  // namespace asperity::test
+}  // namespace asperity::test_support

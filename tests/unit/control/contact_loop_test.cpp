@@ -7,7 +7,7 @@
 namespace {
 
 using namespace asperity;
-using test::analytic_wall;
+using test_support::analytic_wall;
 
 struct contact_loop_test : testing::Test {
   exchange shared;

@@ -13,7 +13,7 @@
 namespace {
 
 using namespace asperity;
-using test::analytic_wall;
+using test_support::analytic_wall;
 
 constexpr std::int64_t ms = 1'000'000;
 

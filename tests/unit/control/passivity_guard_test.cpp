@@ -117,13 +117,13 @@ felt feel(const scene_setting& s) {
   EXPECT_TRUE(dev.open() && dev.arm());
   control_config control;
   control.guard.enabled = s.guard;
-  test::analytic_wall wall;
+  test_support::analytic_wall wall;
   wall.linearised = s.linearised;
   wall.stiffness_n_per_m = s.stiffness_n_per_m;
   wall.arm_m = 0.02;
   const virtual_schedule schedule{.contact_period_ns = s.contact_period_ns, .contact_one_period_late = s.late};
-  virtual_session<test::analytic_wall, simulated_device, watch> session(wall, {{pose{}}, vec3(0.0)}, dev, control,
-                                                                        schedule);
+  virtual_session<test_support::analytic_wall, simulated_device, watch> session(wall, {{pose{}}, vec3(0.0)}, dev,
+                                                                                control, schedule);
   EXPECT_EQ(session.run_until(2'000'000'000), status::ok);
   double sum = 0.0;
   for (int i = 0; i < 1000; ++i) {

@@ -11,7 +11,7 @@
 namespace {
 
 using namespace asperity;
-using test::analytic_wall;
+using test_support::analytic_wall;
 
 simulated_config touching_hand() {
   simulated_config c;

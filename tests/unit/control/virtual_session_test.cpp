@@ -10,7 +10,7 @@
 namespace {
 
 using namespace asperity;
-using test::analytic_wall;
+using test_support::analytic_wall;
 
 // FNV-1a over the bits of every number of every record.
 struct digest {
