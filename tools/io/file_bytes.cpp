@@ -17,6 +17,15 @@ using file_handle = std::unique_ptr<std::FILE, close_file>;
 
 std::string reason() { return std::generic_category().message(errno); }
 
+/// The path that a chain of links ends in, whether a file is there or not.
+fs::path behind_links(fs::path path) {
+  std::error_code ec;
+  for (int link = 0; link < 40 && fs::is_symlink(fs::symlink_status(path, ec)); ++link) {
+    path = path.parent_path() / fs::read_symlink(path, ec);  // an absolute one replaces the parent
+  }
+  return path;
+}
+
 /// A new file beside the target, so that renaming it stays within one file system.
 file_handle create_beside(const fs::path& target, fs::path& name) {
   for (int attempt = 0; attempt < 100; ++attempt) {
@@ -34,18 +43,20 @@ error fault(error_code code, const fs::path& file, std::string_view what) {
   return {code, file.string() + ": " + std::string(what)};
 }
 
-result<std::string> read_file(const fs::path& file, std::uintmax_t limit) {
+result<void> check_regular_file(const fs::path& file) {
   std::error_code ec;
   const fs::file_status status = fs::status(file, ec);
-  if (!fs::exists(status)) {
-    return fault(error_code::io_failed, file, "cannot be found; check the path");
-  }
-  if (fs::is_directory(status)) {
-    return fault(error_code::io_failed, file, "is a directory; name a file in it");
-  }
+  if (!fs::exists(status)) return fault(error_code::io_failed, file, "cannot be found; check the path");
+  if (fs::is_directory(status)) return fault(error_code::io_failed, file, "is a directory; name a file in it");
   if (!fs::is_regular_file(status)) {  // opening a pipe would wait for ever
     return fault(error_code::io_failed, file, "is not a regular file; save its contents to one first");
   }
+  return {};
+}
+
+result<std::string> read_file(const fs::path& file, std::uintmax_t limit) {
+  if (const auto regular = check_regular_file(file); !regular) return regular.error();
+  std::error_code ec;
   const std::uintmax_t size = fs::file_size(file, ec);
   if (ec) return fault(error_code::io_failed, file, "has no size: " + ec.message() + "; check the path");
   if (size == 0) return fault(error_code::bad_format, file, "is empty; export it again");
@@ -65,8 +76,7 @@ result<std::string> read_file(const fs::path& file, std::uintmax_t limit) {
 
 result<void> write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {
   std::error_code ec;
-  // A link keeps pointing at the file that it names; a device is not replaced by a file.
-  const fs::path target = fs::is_symlink(fs::symlink_status(file, ec)) ? fs::weakly_canonical(file, ec) : file;
+  const fs::path target = behind_links(file);  // a link keeps pointing at the file that it names
   const fs::file_status status = fs::status(target, ec);
   if (fs::is_directory(status)) {
     return fault(error_code::io_failed, file, "cannot be written: it is a directory; name a file in it");

@@ -25,6 +25,9 @@ inline constexpr std::uintmax_t max_model_bytes = std::uintmax_t{256} << 20;
 /// "file: what is wrong, where; how to mend it".
 [[nodiscard]] error fault(error_code code, const std::filesystem::path& file, std::string_view what);
 
+/// @return io_failed for what is absent, a directory or a device
+[[nodiscard]] result<void> check_regular_file(const std::filesystem::path& file);
+
 /// All bytes of a regular, non-empty file.
 /// @return io_failed (absent, directory, device, unreadable), bad_format (empty), limit_exceeded
 [[nodiscard]] result<std::string> read_file(const std::filesystem::path& file, std::uintmax_t limit);

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <string>
 
+#include "asperity/core/float32.hpp"
 #include "file_bytes.hpp"
 #include "mesh_formats.hpp"
 
@@ -17,12 +18,13 @@ std::string lower_case_extension(const std::filesystem::path& file) {
   return extension;
 }
 
-bool fits_float32(const vec3& p) { return vec3(glm::vec3(p)) == p; }
+bool fits_float32(const vec3& p) { return round_to_float32(p) == p; }
 
 }  // namespace
 
 result<triangle_mesh> load_mesh(const std::filesystem::path& file) {
   return without_exceptions(file, [&]() -> result<triangle_mesh> {
+    if (const auto regular = check_regular_file(file); !regular) return regular.error();
     const std::string extension = lower_case_extension(file);
     const auto reader = extension == ".ply"                           ? read_ply
                         : extension == ".obj"                         ? read_obj

@@ -74,6 +74,23 @@ std::vector<placed_mesh> placed_meshes(const tinygltf::Model& model) {
   return out;
 }
 
+/// Refuses a scene that would outgrow the limits, before any of it is built. Throws rejection.
+void check_size(const tinygltf::Model& model, const std::vector<placed_mesh>& scene) {
+  std::size_t corners = 0;
+  std::size_t vertices = 0;
+  for (const placed_mesh& placed : scene) {
+    for (const auto& primitive : model.meshes[static_cast<std::size_t>(placed.mesh)].primitives) {
+      const auto count = [&](int accessor) { return model.accessors[static_cast<std::size_t>(accessor)].count; };
+      const int positions = primitive.attributes.at("POSITION");
+      vertices += count(positions);
+      corners += count(primitive.indices < 0 ? positions : primitive.indices);
+      if (corners / 3 > max_triangles || vertices > max_vertices) {  // checked at each step: no sum can wrap round
+        throw rejection{error_code::limit_exceeded, "places more than 20 million triangles or vertices in its scene"};
+      }
+    }
+  }
+}
+
 void add_primitive(const gltf_document& document, const tinygltf::Primitive& primitive, const std::string& place,
                    const glm::dmat4& transform, polygon_soup& soup, bool& all_have_uvs) {
   if (primitive.mode == TINYGLTF_MODE_POINTS || primitive.mode == TINYGLTF_MODE_LINE ||
@@ -87,10 +104,6 @@ void add_primitive(const gltf_document& document, const tinygltf::Primitive& pri
   const auto indices = document.indices(primitive.indices, positions.size());
   if (indices.size() % 3 != 0)
     reject(place + " has " + std::to_string(indices.size()) + " corners, not a multiple of 3");
-  if (indices.size() / 3 > max_triangles - soup.ends.size() ||
-      positions.size() > max_vertices - soup.positions.size()) {
-    throw rejection{error_code::limit_exceeded, "places more than 20 million triangles or vertices in its scene"};
-  }
   const auto uv = primitive.attributes.find("TEXCOORD_0");
   all_have_uvs = all_have_uvs && uv != primitive.attributes.end();
   const auto uvs = all_have_uvs ? document.uvs(uv->second) : std::vector<vec2>();
@@ -123,7 +136,9 @@ result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::p
     const gltf_document document(bytes, file, buffer_policy::own_folder, limits);
     const tinygltf::Model& model = document.geometry();
     bool all_have_uvs = true;
-    for (const placed_mesh& placed : placed_meshes(model)) {
+    const std::vector<placed_mesh> scene = placed_meshes(model);
+    check_size(model, scene);
+    for (const placed_mesh& placed : scene) {
       const auto& primitives = model.meshes[static_cast<std::size_t>(placed.mesh)].primitives;
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         const std::string place = "meshes[" + std::to_string(placed.mesh) + "].primitives[" + std::to_string(p) + "]";

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "asperity/core/float32.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "asperity/model/validate.hpp"
 #include "file_bytes.hpp"
@@ -21,16 +22,14 @@ namespace {
 using value = tinygltf::Value;
 using object = tinygltf::Value::Object;
 
-vec3 rounded(const vec3& p) { return vec3(glm::vec3(p)); }
-
 /// The model that the file will hold: positions and texture coordinates as float32.
 textured_model as_in_file(textured_model model) {
-  for (vec3& p : model.mesh.positions) p = rounded(p);
+  for (vec3& p : model.mesh.positions) p = round_to_float32(p);
   for (coarse_triangle& t : model.mesh.triangles) {
-    for (vec2& uv : t.uv) uv = vec2(glm::vec2(uv));
+    for (vec2& uv : t.uv) uv = round_to_float32(uv);
   }
   for (convex_piece& piece : model.pieces) {
-    for (vec3& p : piece.vertices) p = rounded(p);
+    for (vec3& p : piece.vertices) p = round_to_float32(p);
   }
   return model;
 }
