@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "asperity/core/float32.hpp"
 #include "asperity/core/math.hpp"
 #include "asperity/model/textured_model.hpp"
 #include "bake/halfedges.hpp"
@@ -35,8 +36,8 @@ namespace asperity::bake {
 }
 
 /// The number as float32 stores it: a saved model must come back with the same bits.
-[[nodiscard]] inline double to_float32(double x) noexcept { return static_cast<double>(static_cast<float>(x)); }
-[[nodiscard]] inline vec3 to_float32(const vec3& v) noexcept { return {glm::vec3(v)}; }
+[[nodiscard]] inline double to_float32(double x) noexcept { return asperity::round_to_float32(x); }
+[[nodiscard]] inline vec3 to_float32(const vec3& v) noexcept { return asperity::round_to_float32(v); }
 
 [[nodiscard]] inline bounds bounds_of(std::span<const vec3> points) noexcept {
   if (points.empty()) return {};
