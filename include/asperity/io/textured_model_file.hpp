@@ -12,7 +12,10 @@ namespace asperity::io {
 /// @return io_failed | bad_format | bad_mesh | bad_texture | unsupported | limit_exceeded, with the place and the mend
 [[nodiscard]] result<textured_model> load_textured_model(const std::filesystem::path& file);
 
-/// Writes a valid glTF 2.0 .glb that any viewer opens as the coarse mesh; appears whole or not at all.
+/// Writes a valid glTF 2.0 .glb that any viewer opens as the coarse mesh; appears whole or not at all. Positions and
+/// texture coordinates are rounded to float32; a model that came from a file is written with the same bits again. The
+/// model passes validate() first, so what is written loads again. The layout is in docs/reference/asset-format.md.
+/// @return io_failed | bad_mesh | bad_texture | invalid_argument | limit_exceeded
 [[nodiscard]] result<void> save_textured_model(const textured_model& model, const std::filesystem::path& file);
 
 }  // namespace asperity::io
