@@ -22,8 +22,9 @@ struct close_pair {
   std::uint32_t a = 0, b = 0;  ///< pieces
   bounds region;               ///< where the two pieces' boxes overlap, or what lies between them, and half a tolerance
   pair_kind kind = pair_kind::apart;
-  double weight = 0.0;  ///< 0 at the tolerance, 1 at touch, growing with depth; continuous in the pose
-  vec3 n_ab{0.0};       ///< unit
+  double presence = 0.0;  ///< how much of `region` counts: 0 at the tolerance, 1 a little inside it
+  double weight = 0.0;    ///< 0 at the tolerance, 1 at touch, growing with depth; continuous in the pose
+  vec3 n_ab{0.0};         ///< unit
   double separation_m = 0.0;
   vec3 p_a{0.0}, p_b{0.0};  ///< witness points
 };
@@ -137,6 +138,8 @@ inline void evaluate_pair(const convex_shape& A, const convex_shape& B, const pl
 
   cost.overlapping = g.outcome == gjk_outcome::overlapping || g.distance < direction_limit * (A.radius + B.radius);
   const bool behind = !cost.overlapping && A.looks_away(g.n_ab) && B.looks_away(T_ab.to_local(-g.n_ab));
+  // A region that came at once, at the tolerance, would make the window jump; it grows over an eighth of it.
+  pair.presence = cost.overlapping || behind ? 1.0 : std::min(1.0, 8.0 * (1.0 - g.distance / limits.tolerance_m));
   if (cost.overlapping || behind) {
     if (!detail::find_penetration(A, B, T_ab, limits, pair, cost)) pair.kind = pair_kind::passive;
     return;

@@ -60,7 +60,7 @@ class contact_builder {
     const window_projection onto_a(w, T_wa);
     const window_projection onto_b(w, T_wb);
     plane_box near;
-    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region);
+    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence);
     near = intersection(near, plane_box::square(vec2(0.0), limits.max_half_size_m));
     const plane_box region_a = cut_region(a, onto_a, 1.0, {height_a - behind, height_a + beyond}, near, patch_a_);
     const plane_box region_b = cut_region(b, onto_b, -1.0, {height_b - beyond, height_b + behind}, near, patch_b_);

@@ -1,6 +1,7 @@
 // Distance between two convex shapes by the algorithm of Gilbert, Johnson and Keerthi, with a warm start.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -162,7 +163,7 @@ inline bool reduce_tetrahedron(simplex& s) noexcept {
 /// Distance between shapes A and B (B placed in A's frame), given up as soon as it is known to exceed `limit`.
 /// The cache is read for a start and written for the next call; a cache of size 0 starts cold.
 /// @param limit metres; infinity for the exact distance always
-/// @pre the cache's indices belong to these shapes   @rt safe: at most 64 iterations
+/// @pre the cache's indices belong to these shapes   @rt safe: at most 64 iterations, twice
 [[nodiscard]] inline gjk_result gjk_distance(const convex_shape& A, const convex_shape& B, const placement& T_ab,
                                              double limit, gjk_cache& cache) noexcept {
   constexpr std::uint32_t max_iterations = 64;
@@ -181,13 +182,15 @@ inline bool reduce_tetrahedron(simplex& s) noexcept {
 
   detail::simplex s;
   for (std::uint32_t i = 0; i < cache.size; ++i) s.v[s.size++] = make(cache.a[i], cache.b[i]);
-  if (s.size == 0) s.v[s.size++] = furthest(T_ab * B.centre - A.centre);
+  const bool warm = s.size > 0;
+  if (!warm) s.v[s.size++] = furthest(T_ab * B.centre - A.centre);
 
   // Lengths below this are rounding: the shapes touch.
   const double touching = 1e-12 * (A.radius + B.radius);
   gjk_result out;
   vec3 v(0.0);
   double previous = std::numeric_limits<double>::infinity();
+  double proven = 0.0;  // no two points are closer than this
   for (;;) {
     bool inside = false;
     switch (s.size) {
@@ -219,11 +222,21 @@ inline bool reduce_tetrahedron(simplex& s) noexcept {
       out.outcome = gjk_outcome::beyond;
       break;
     }
+    proven = std::max(proven, bound / std::sqrt(length2));
     if (length2 - bound <= relative_gap * length2) break;
     bool known = false;
     for (std::size_t i = 0; i < s.size; ++i) known = known || (s.v[i].ia == next.ia && s.v[i].ib == next.ib);
     if (known) break;
     s.v[s.size++] = next;
+  }
+  // A stale simplex can be degenerate and stop short of the closest points. Then the cold start answers.
+  constexpr double stopped_short = 1e-9;
+  if (warm && out.outcome != gjk_outcome::beyond && std::sqrt(glm::dot(v, v)) - proven > stopped_short * proven) {
+    cache.size = 0;
+    const std::uint32_t spent = out.iterations;
+    out = gjk_distance(A, B, T_ab, limit, cache);
+    out.iterations += spent;
+    return out;
   }
   cache.size = static_cast<std::uint32_t>(s.size < 4 ? s.size : 0);
   for (std::uint32_t i = 0; i < cache.size; ++i) {

@@ -30,15 +30,15 @@ struct plane_box {
     low = glm::min(low, vec2(uvh));
     high = glm::max(high, vec2(uvh));
   }
-  /// Adds the shadow of a box of the frame that `to` projects.
+  /// Adds the shadow of a box of the frame that `to` projects, drawn together towards the origin by `scale`.
   template <class Projection>
-  void add(const Projection& to, const bounds& box) noexcept {
+  void add(const Projection& to, const bounds& box, double scale) noexcept {
     const vec3 centre = to(0.5 * (box.low + box.high));
     const vec3 half = 0.5 * (box.high - box.low);
     const vec3 extent =
         glm::abs(to.to_uvh[0]) * half.x + glm::abs(to.to_uvh[1]) * half.y + glm::abs(to.to_uvh[2]) * half.z;
-    add(centre - extent);
-    add(centre + extent);
+    add(scale * (centre - extent));
+    add(scale * (centre + extent));
   }
   [[nodiscard]] static plane_box square(const vec2& centre, double half) noexcept {
     return {centre - vec2(half), centre + vec2(half)};

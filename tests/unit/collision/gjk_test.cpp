@@ -62,7 +62,7 @@ TEST(gjk, equals_brute_force_on_random_hulls_and_triangles) {
   for (std::size_t k = 0; k < 1500; ++k) {
     const body a = random_body(uniform, k);
     const body b = random_body(uniform, k / 3);
-    const pose T = random_pose(uniform, 2.5);
+    const pose T = random_pose(uniform, 1.8);
     const coarse_mesh at = moved(b.mesh, T);
     const gjk_result g = cold(a, b, T);
     if (test::brute_separation(a.mesh, at) < 0.0) {
