@@ -1,4 +1,5 @@
-// A force model of your own in the renderer: a spring that softens, so that no contact pushes harder than a limit.
+// A force model of your own in the renderer: a spring that softens, so that no contact pushes harder along its normal
+// than a limit.
 #include <cmath>
 #include <cstdio>
 
@@ -13,7 +14,8 @@ class gentle_spring {
   gentle_spring(double stiffness_n_per_m, double limit_n) : stiffness_n_per_m_(stiffness_n_per_m), limit_n_(limit_n) {}
 
   // Force f(d) = limit tanh(k d / limit) along the gradient of the depth d: stiffness k at first touch, never more than
-  // the limit. Its derivative f' is positive, so J = -f' g g^T pulls nothing and an implicit step may use it.
+  // the limit along the normal. Its derivative f' is positive, so J = -f' g g^T pulls nothing and an implicit step may
+  // use it.
   [[nodiscard]] asperity::status accumulate(const asperity::contact_set& contacts,
                                             std::span<const asperity::penetration> depths,
                                             asperity::contact_force& out) const noexcept {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# repeatable.sh COMMAND FOLDER: the same session twice gives the same bytes, and a session that did nothing is no proof.
+# repeatable.sh COMMAND FOLDER: the same session twice gives the same bytes, and the session did touch something.
 set -euo pipefail
 here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
 for run in first second; do
@@ -8,8 +8,10 @@ for run in first second; do
 done
 cmp "$2/first.sha256" "$2/second.sha256"
 
-rows=$(wc -l < "$2/first/golden/recording.csv")
-[[ $rows -gt 400 ]] || {
-  echo "the recording of half a second has only $rows lines" >&2
-  exit 1
-}
+awk -F, '
+  NR == 1 { for (i = 1; i <= NF; i++) if ($i == "contacts") column = i; next }
+  $column > 0 { touched++ }
+  END {
+    printf "%d of %d ticks in contact\n", touched, NR - 1
+    exit !(NR == 1001 && touched > 100)
+  }' "$2/first/golden/recording.csv"

@@ -8,5 +8,5 @@ rm -rf "$golden"
 
 "$here/../support/block_and_gear.sh" "$1" "$golden"
 rm -r "$golden/full"
-"$1" --quiet run --probe "$golden/block.glb" --fixed "$golden/gear.glb" --device simulated --seconds 0.5 \
+"$1" --quiet run --probe "$golden/block.glb" --fixed "$golden/gear.glb" --device simulated --seconds 1 \
   --record "$golden/recording.csv"
