@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/collapse.hpp"
 #include "bake/geometry.hpp"
 #include "bake/halfedges.hpp"
 #include "bake/smooth.hpp"
@@ -24,43 +25,6 @@ constexpr std::array attempts{attempt{1.0, 1.0}, attempt{2.0, 1.0}, attempt{4.0,
 
 constexpr double folded_cosine = -0.985;     // two triangles less than 10 degrees from lying back to back
 constexpr double least_height_ratio = 1e-4;  // height over longest edge
-
-triangle_mesh keep_used(const std::vector<vec3>& positions, const std::vector<unsigned>& indices) {
-  std::vector<std::uint32_t> number(positions.size(), no_halfedge);
-  triangle_mesh out;
-  for (std::size_t i = 0; i < indices.size(); i += 3) {
-    index_triangle t{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& n = number[indices[i + k]];
-      if (n == no_halfedge) {
-        n = static_cast<std::uint32_t>(out.positions.size());
-        out.positions.push_back(positions[indices[i + k]]);
-      }
-      t[k] = n;
-    }
-    out.triangles.push_back(t);
-  }
-  return out;
-}
-
-// Edge collapse on positions about the centre of the mesh: meshoptimizer computes in float32.
-std::vector<unsigned> collapse(const std::vector<vec3>& positions, const std::vector<index_triangle>& triangles,
-                               std::size_t target) {
-  const bounds box = bounds_of(positions);
-  const vec3 centre = 0.5 * (box.low + box.high);
-  const double scale = 1.0 / box.diagonal();
-  std::vector<glm::vec3> local;
-  local.reserve(positions.size());
-  for (const vec3& p : positions) local.emplace_back(scale * (p - centre));
-  std::vector<unsigned> from;
-  from.reserve(3 * triangles.size());
-  for (const index_triangle& t : triangles) from.insert(from.end(), t.begin(), t.end());
-  std::vector<unsigned> to(from.size());
-  constexpr float any_error = 1.0F;
-  to.resize(meshopt_simplify(to.data(), from.data(), from.size(), &local[0].x, local.size(), sizeof(glm::vec3),
-                             3 * target, any_error, 0, nullptr));
-  return to;
-}
 
 bool same_topology(const triangle_mesh& mesh, const checked_mesh& full) {
   if (mesh.triangles.size() < 4) return false;
@@ -115,8 +79,9 @@ result<simplified_mesh> simplify(const checked_mesh& full, std::size_t triangles
         smooth(full.mesh, static_cast<std::size_t>(std::lround(a.smoothing * passes)), threads, monitor);
     if (monitor.cancelled()) return error{error_code::cancelled, "the bake was cancelled"};
     const auto target = static_cast<std::size_t>(std::lround(a.triangles * static_cast<double>(triangles)));
-    const std::vector<unsigned> coarse = collapse(smoothed.positions, smoothed.triangles, target);
-    out.mesh = keep_used(smoothed.positions, coarse);
+    auto reduced = collapse_edges(smoothed, target, monitor);
+    if (!reduced) return error{error_code::cancelled, "the bake was cancelled"};
+    out.mesh = std::move(*reduced);
     round_to_float32(out.mesh);
     // An edge collapse stops early where the topology is in its way: then less than asked for has been removed.
     const bool reached = 2 * out.mesh.triangles.size() <= 3 * target;
