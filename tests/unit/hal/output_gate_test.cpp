@@ -149,11 +149,16 @@ TEST_F(gate_test, remembers_the_last_ticks_before_a_fault) {
   EXPECT_DOUBLE_EQ(f[62].wanted.force.x, 0.99);
 }
 
-TEST(bound_vector, certificate_catches_a_previous_value_beyond_the_limit) {
-  const bounded_vector v = bound_vector({1, 0, 0}, {50, 0, 0}, {10.0, 10.0, 1.0}, true);
-  EXPECT_FALSE(v.certified);
-  EXPECT_EQ(v.value, vec3(0.0));
-  EXPECT_EQ(bound_vector({1, 0, 0}, {nan_value, 0, 0}, {10.0, 10.0, 1.0}, true).value, vec3(0.0));
+TEST(bound_vector, certificate_catches_a_previous_value_that_is_not_within_the_limit) {
+  for (const double bad : {50.0, nan_value, infinity, 1e300}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      vec3 previous{0.5, -0.25, 0.125};
+      previous[axis] = bad;
+      const bounded_vector v = bound_vector({1, 2, 3}, previous, {10.0, 10.0, 1.0}, true);
+      EXPECT_FALSE(v.certified);
+      EXPECT_EQ(v.value, vec3(0.0));
+    }
+  }
 }
 
 TEST(output_gate, limits_that_are_no_numbers_let_nothing_through) {
