@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -257,10 +258,14 @@ class cpu_depth {
       }
       return g;
     };
-    return soft_max(
-        e.grid.size(), e.pair.tau_m, e.grid.cell_m2() / e.pair.reference_area_m2,
-        [&](std::size_t i) { return a_.field.height[i] - b_.field.height[i]; },
-        [&](std::size_t i) { return weight_[i]; }, gradient);
+    for (std::size_t i = 0; i < e.grid.size(); ++i) {
+      const double mu = weight_[i];
+      weight_[i] = !(mu > 0.0)
+                       ? -std::numeric_limits<double>::infinity()
+                       : a_.field.height[i] - b_.field.height[i] + (mu < 1.0 ? e.pair.tau_m * std::log(mu) : 0.0);
+    }
+    return soft_max(std::span(weight_).first(e.grid.size()), e.pair.tau_m, e.grid.cell_m2() / e.pair.reference_area_m2,
+                    gradient);
   }
 
   [[nodiscard]] double border(const detail::sample_grid& grid, std::size_t i, double width_m) const noexcept {

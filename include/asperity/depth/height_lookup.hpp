@@ -45,34 +45,26 @@ struct fine_hit {
   constexpr double gutter_texels = 1.0;
   const projected_triangle* t = &start;
   vec2 z(t->texel_x(uv.x, uv.y), t->texel_y(uv.x, uv.y));
+  texture_cell cell = texture_cell(body.texture, z).seen_by(body.map);
   for (int step = 0; step < max_steps; ++step) {
-    const texture_tap tap = read(body.texture, z);
-    const vec3 q = body.map.point(tap.point);
+    if (!cell.holds(z)) cell = texture_cell(body.texture, z).seen_by(body.map);
+    const auto [q, dx, dy] = cell.at(z);
     if (!is_finite(q)) return {};
-    const vec3 dx = body.map.direction(tap.along_x);
-    const vec3 dy = body.map.direction(tap.along_y);
     const double det = dx.x * dy.y - dx.y * dy.x;
     const double coarse_det = t->texel_x.per_u * t->texel_y.per_v - t->texel_x.per_v * t->texel_y.per_u;
     // On a fold the fine surface turns its other side to the window: its determinant has the wrong sign.
     if (!(det * coarse_det > 0.02)) break;
     const vec2 miss(uv.x - q.x, uv.y - q.y);
     const vec2 dz = vec2(dy.y * miss.x - dy.x * miss.y, dx.x * miss.y - dx.y * miss.x) / det;
+    // The last step goes along the tangents: what is left of the miss counts only in second order.
     if (std::fabs(miss.x) <= tolerance_m && std::fabs(miss.y) <= tolerance_m) {
       return {hit::above, q.z + dx.z * dz.x + dy.z * dz.y, z};
     }
     z += dz;
 
     const texel_triangle& chart = body.index.texels[t->triangle];
-    vec3 bary;
-    std::size_t outermost = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const vec3& w = chart.weight[k];
-      bary[static_cast<int>(k)] = w.x + w.y * z.x + w.z * z.y;
-      if (bary[static_cast<int>(k)] * chart.altitude[k] <
-          bary[static_cast<int>(outermost)] * chart.altitude[outermost]) {
-        outermost = k;
-      }
-    }
+    const vec3 bary = chart.barycentric(z);
+    const std::size_t outermost = chart.outermost(bary);
     if (bary[static_cast<int>(outermost)] * chart.altitude[outermost] >= -gutter_texels) continue;
     // The edge opposite to corner k is edge k + 1.
     const projected_triangle* next = body.patch.find(body.index.neighbour[t->triangle][(outermost + 1) % 3]);
@@ -89,7 +81,7 @@ struct fine_hit {
 template <class Wanted>
 [[nodiscard]] bool look_up(const body_view& body, const sample_grid& grid, parallax_mode mode, height_field& field,
                            Wanted wanted) noexcept {
-  const double tolerance_m = 1e-9 * grid.half_m;
+  const double tolerance_m = 1e-8 * grid.half_m;
   bool all_finite = true;
   for (std::size_t row = 0, i = 0; row < grid.side; ++row) {
     const double v = grid.coordinate(row);
@@ -123,7 +115,7 @@ template <class Wanted>
 [[nodiscard]] inline vec6 height_gradient(const body_view& body, const contact_window& window,
                                           const height_field& field, std::size_t i, const vec2& uv,
                                           const vec3& centre_w) noexcept {
-  const texture_tap tap = read(body.texture, field.texel[i]);
+  const surface_tap tap = read(body.texture, field.texel[i]);
   const vec3 arm_x = to_world(window, body.map.point(tap.point)) - centre_w;
   const vec3 dx = body.map.direction(tap.along_x);
   const vec3 dy = body.map.direction(tap.along_y);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include "asperity/core/spatial.hpp"
 
@@ -20,22 +21,17 @@ struct soft_maximum {
   bool found = false;  ///< false where no sample has any weight
 };
 
-/// @param depth     depth(i) of sample i, m; only read where weight(i) > 0
-/// @param weight    weight(i), at least 0; 0 leaves the sample out
-/// @param gradient  gradient(i) of depth(i) + tau ln weight(i); only asked for where it counts
+/// Soft maximum of effective depths d_i + tau ln mu_i, m; minus infinity leaves a sample out.
 /// @param area_ratio  p^2 / A0
+/// @param gradient    gradient(i) of effective depth i; only asked for where it counts
 /// @rt safe   @source spec section 3.2 (LSE)
-template <class Depth, class Weight, class Gradient>
-[[nodiscard]] soft_maximum soft_max(std::size_t samples, double tau_m, double area_ratio, Depth depth, Weight weight,
+template <class Gradient>
+[[nodiscard]] soft_maximum soft_max(std::span<const double> effective_m, double tau_m, double area_ratio,
                                     Gradient gradient) noexcept {
-  // The largest effective depth is the reference, so that no exponent overflows and the sum never vanishes.
   constexpr double nothing = -std::numeric_limits<double>::infinity();
+  // The largest effective depth is the reference, so that no exponent overflows and the sum never vanishes.
   double top = nothing;
-  for (std::size_t i = 0; i < samples; ++i) {
-    if (!(weight(i) > 0.0)) continue;
-    const double e = depth(i) + tau_m * std::log(weight(i));
-    top = e > top ? e : top;
-  }
+  for (const double e : effective_m) top = e > top ? e : top;
   soft_maximum out;
   if (!(top > nothing)) return out;
 
@@ -46,10 +42,9 @@ template <class Depth, class Weight, class Gradient>
   vec6 reference{};
   mat6 second{};
   bool have_reference = false;
-  for (std::size_t i = 0; i < samples; ++i) {
-    if (!(weight(i) > 0.0)) continue;
-    const double x = (depth(i) - top) / tau_m + std::log(weight(i));
-    if (x < -negligible) continue;
+  for (std::size_t i = 0; i < effective_m.size(); ++i) {
+    const double x = (effective_m[i] - top) / tau_m;
+    if (!(x >= -negligible)) continue;
     const double w = std::exp(x);
     const vec6 g = gradient(i);
     if (!have_reference) reference = g;

@@ -19,6 +19,16 @@ struct texel_triangle {
   /// Height of the triangle over the edge opposite to corner k, texels: turns barycentric coordinates into distances.
   std::array<double, 3> altitude;
   bool usable = false;  ///< false where the triangle has no area in the texture
+
+  [[nodiscard]] vec3 barycentric(const vec2& z) const noexcept {
+    const auto at = [&](std::size_t k) { return weight[k].x + weight[k].y * z.x + weight[k].z * z.y; };
+    return {at(0), at(1), at(2)};
+  }
+  /// Corner whose opposite edge is the one that a position is farthest outside of.
+  [[nodiscard]] std::size_t outermost(const vec3& bary) const noexcept {
+    const double d0 = bary.x * altitude[0], d1 = bary.y * altitude[1], d2 = bary.z * altitude[2];
+    return d0 <= d1 && d0 <= d2 ? 0 : (d1 <= d2 ? 1 : 2);
+  }
 };
 
 /// Edge k of a triangle runs from corner k to corner k + 1.

@@ -52,7 +52,7 @@ struct texture_scale {
         a = 1.0 - a;
         b = 1.0 - b;
       }
-      const texture_tap tap = read(model.texture, (1.0 - a - b) * z.corner[0] + a * z.corner[1] + b * z.corner[2]);
+      const surface_tap tap = read(model.texture, (1.0 - a - b) * z.corner[0] + a * z.corner[1] + b * z.corner[2]);
       if (!is_finite(tap.point)) continue;
       const double h = glm::dot(n, tap.point - ((1.0 - a - b) * c[0] + a * c[1] + b * c[2]));
       const double hx = glm::dot(n, tap.along_x - per_x), hy = glm::dot(n, tap.along_y - per_y);
