@@ -69,6 +69,13 @@ int command_line::run(int argc, const char* const* argv) {
     return app_.exit(help_or_version) == 0 && std::fflush(stdout) == 0 ? exit_ok : exit_failed;
   } catch (const CLI::ParseError& e) {
     const auto chosen = app_.get_subcommands();
+    // CLI11 would only say that a subcommand is missing, without the word that should have been one.
+    const auto word =
+        std::find_if(argv + std::min(1, argc), argv + argc, [](const char* a) { return *a != '-' && *a != '\0'; });
+    if (chosen.empty() && word != argv + argc) {
+      return fail("usage", "there is no subcommand '" + std::string(*word) + "'; see asperity --help", json_wanted,
+                  exit_usage);
+    }
     const std::string page = chosen.empty() ? "asperity --help" : "asperity " + chosen.front()->get_name() + " --help";
     return fail("usage", std::string(e.what()) + "; see " + page, json_wanted, exit_usage);
   }

@@ -12,6 +12,7 @@
 #include "cli.hpp"
 #include "interrupt.hpp"
 #include "model_report.hpp"
+#include "options.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "scene_loading.hpp"
@@ -224,7 +225,9 @@ void add_bench(command_line& line) {
       ->check(CLI::ExistingDirectory)
       ->excludes(probe);
   sub.add_option("--poses", o->poses, "Poses of the path")->check(CLI::Range(10, 1000000))->capture_default_str();
-  sub.add_option("--seed", o->seed, "Seed of the path")->capture_default_str();
+  sub.add_option("--seed", o->seed, "Seed of the path")
+      ->check(whole_number_error, "WHOLE NUMBER")
+      ->capture_default_str();
 }
 
 }  // namespace asperity::command

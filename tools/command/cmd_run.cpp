@@ -110,7 +110,7 @@ std::string plot_title(const run_command& options, const session_summary& summar
   if (!summary.touched()) return who + " and never touches it.";
   return who + ": up to " + brief(summary.largest_hand_force_n()) + " N and " +
          brief(1e3 * summary.largest_hand_torque_n_m()) + " mN m on the hand, " + brief(summary.mean_contacts()) +
-         " contacts on average.";
+         (summary.mean_contacts() == 1.0 ? " contact" : " contacts on average") + " while touching.";
 }
 
 std::string plot_caption(const run_command& options) {
@@ -299,7 +299,9 @@ void add_run(command_line& line) {
   sub.add_option("--motion", o->motion, "What the simulated hand does")
       ->check(CLI::IsMember({"press", "scrub", "twist", "free"}))
       ->capture_default_str();
-  sub.add_option("--seed", o->seed, "Seed of the simulated hand")->capture_default_str();
+  sub.add_option("--seed", o->seed, "Seed of the simulated hand")
+      ->check(whole_number_error, "WHOLE NUMBER")
+      ->capture_default_str();
   sub.add_option("--press", o->press_m, "How far below the first touch the hand aims (m)")
       ->check(positive_number_error, "NUMBER > 0")
       ->capture_default_str();

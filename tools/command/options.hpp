@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <initializer_list>
 #include <string>
@@ -17,6 +18,14 @@ namespace asperity::command {
   const bool whole = failed == std::errc() && end == text.data() + text.size();
   if (whole && std::isfinite(value) && value > 0.0) return {};
   return "'" + text + "' is not a finite number greater than zero";
+}
+
+/// A whole number, zero or larger, that fits 64 bits.
+[[nodiscard]] inline std::string whole_number_error(const std::string& text) {
+  std::uint64_t value = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failed == std::errc() && end == text.data() + text.size()) return {};
+  return "'" + text + "' is not a whole number from 0 to 18446744073709551615";
 }
 
 /// A file name with one of these extensions, lower or upper case.

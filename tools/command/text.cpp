@@ -41,7 +41,7 @@ std::string brief(double value) {
 }
 
 std::string length_text(double metres) {
-  if (metres == 0.0) return "0 m";
+  if (std::fabs(metres) < 1e-12) return "0 m";  // rounding, not a length
   return scaled(metres, std::array<scale, 4>{{{1.0, "m"}, {1e-3, "mm"}, {1e-6, "um"}, {1e-9, "nm"}}});
 }
 

@@ -1,0 +1,202 @@
+// The documents that --json promises (docs/reference/command.md): their keys, their units, their agreement.
+#include <cmath>
+
+#include "command_process.hpp"
+
+namespace fault {
+namespace {
+
+class documents : public command_test {
+ protected:
+  [[nodiscard]] static std::string block(const char* file = "block.glb") { return (small_models() / file).string(); }
+};
+
+void expect_keys(const json& object, std::initializer_list<const char*> keys) {
+  ASSERT_TRUE(object.is_object()) << object;
+  std::set<std::string> wanted(keys.begin(), keys.end());
+  std::set<std::string> found;
+  for (const auto& [key, value] : object.items()) found.insert(key);
+  EXPECT_EQ(found, wanted);
+}
+
+void expect_numbers(const json& array, std::size_t count) {
+  ASSERT_TRUE(array.is_array()) << array;
+  EXPECT_EQ(array.size(), count);
+  for (const json& x : array) EXPECT_TRUE(x.is_number()) << array;
+}
+
+TEST_F(documents, models) {
+  const json d = expect_document({"models", "--only", "gear", "-o", path("made")}, "asperity.models/1");
+  ASSERT_EQ(d["meshes"].size(), 2U);
+  EXPECT_EQ(d["meshes"][0]["triangles"], 25600);
+  EXPECT_EQ(d["meshes"][1]["triangles"], 1600);
+  EXPECT_EQ(files(), (std::set<std::string>{"made", "made/gear.ply", "made/gear_coarse.ply"}));
+}
+
+TEST_F(documents, bake_and_inspect_tell_the_same) {
+  const json baked = expect_document(
+      {"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture", "128", "-o", path("brick.glb")},
+      "asperity.bake/1");
+  EXPECT_EQ(baked["name"], "block");
+  EXPECT_EQ(baked["full_triangles"], 65536);
+  EXPECT_EQ(baked["coarse"]["triangles"], 16);
+  EXPECT_EQ(baked["pieces"]["count"], 1);
+  EXPECT_EQ(baked["texture"]["width"], 128);
+  EXPECT_EQ(baked["units"], "SI");
+  EXPECT_GT(baked["bake"]["max_error"], baked["bake"]["rms_error"]);
+  EXPECT_NEAR(baked["bake"]["relief"], 1e-3, 1e-4);  // ridges of half a millimetre either way
+  EXPECT_FALSE(baked["stages"].empty());
+
+  const json seen = expect_document({"inspect", path("brick.glb")}, "asperity.inspect/1");
+  for (const char* key : {"name", "full_triangles", "coarse", "pieces", "texture"})
+    EXPECT_EQ(seen[key], baked[key]) << key;
+  EXPECT_EQ(seen["bake"]["max_error"], baked["bake"]["max_error"]);
+  // The file keeps positions in single precision.
+  EXPECT_NEAR(seen["size"]["diagonal"], baked["size"]["diagonal"], 1e-8);
+  EXPECT_NEAR(seen["mass_properties"]["volume"], baked["mass_properties"]["volume"], 1e-11);
+  EXPECT_EQ(seen["warnings"], json::array());
+}
+
+TEST_F(documents, scale_changes_units_and_inspect_warns) {
+  const json baked = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
+                                      "64", "--scale", "1000", "-o", path("huge.glb")},
+                                     "asperity.bake/1");
+  EXPECT_NEAR(baked["size"]["high"][0], 20.0, 0.1);  // 40 mm wide, about the origin
+  const json seen = expect_document({"inspect", path("huge.glb")}, "asperity.inspect/1");
+  ASSERT_FALSE(seen["warnings"].empty());
+  EXPECT_NE(seen["warnings"][0].get<std::string>().find("--scale"), std::string::npos);
+}
+
+TEST_F(documents, query_is_the_contract) {
+  // Ridges in grooves, and the upper block two tenths of a millimetre too low.
+  const json d = expect_document(
+      {"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 0.0198 0 0 0 1"}, "asperity.query/1");
+  expect_keys(d, {"schema", "contacts", "force", "torque", "centre_of_mass", "stiffness", "backend", "gradient_scheme",
+                  "status", "dropped_contacts", "units"});
+  EXPECT_EQ(d["backend"], "cpu");
+  EXPECT_EQ(d["units"], "SI");
+  expect_numbers(d["force"], 3);
+  expect_numbers(d["torque"], 3);
+  expect_numbers(d["centre_of_mass"], 3);
+  expect_numbers(d["stiffness"], 36);
+  ASSERT_FALSE(d["contacts"].empty());
+  for (const json& c : d["contacts"]) {
+    expect_keys(c, {"p_a", "p_b", "n_ab", "centre", "u", "half_size", "separation", "depth", "soft_depth", "gradient",
+                    "witness", "samples", "flags"});
+    for (const char* key : {"p_a", "p_b", "n_ab", "centre", "u", "witness"}) expect_numbers(c[key], 3);
+    expect_numbers(c["gradient"], 6);
+    EXPECT_TRUE(c["flags"].is_array());
+    EXPECT_TRUE(c["samples"].is_number_unsigned());
+    double along = 0.0;  // the gradient's component along n is 1 exactly
+    for (std::size_t i = 0; i < 3; ++i) along += c["gradient"][i].get<double>() * c["n_ab"][i].get<double>();
+    EXPECT_NEAR(along, 1.0, 1e-9);
+  }
+  EXPECT_NEAR(d["contacts"][0]["n_ab"][2], -1.0, 1e-6);  // from the probe above to the body below
+  EXPECT_GT(d["contacts"][0]["depth"], 2e-4 - 1e-6);
+  EXPECT_LT(d["contacts"][0]["depth"], 1e-3);  // the small texture is coarse beside the ridges
+  EXPECT_GT(d["force"][2], 0.0);               // and the probe is pushed up
+}
+
+TEST_F(documents, query_far_away_has_no_contact_and_no_force) {
+  const json d = expect_document({"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1"},
+                                 "asperity.query/1");
+  EXPECT_EQ(d["contacts"], json::array());
+  EXPECT_EQ(d["force"], json::array({0.0, 0.0, 0.0}));
+  EXPECT_EQ(d["torque"], json::array({0.0, 0.0, 0.0}));
+}
+
+TEST_F(documents, both_gradient_schemes_agree_on_the_depth) {
+  const arguments query{"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0.001 0.0005 0.0198 0 0 0 1"};
+  arguments central = query;
+  central.insert(central.end(), {"--gradient", "central"});
+  const json soft = expect_document(query, "asperity.query/1");
+  const json paper = expect_document(central, "asperity.query/1");
+  ASSERT_FALSE(soft["contacts"].empty());
+  ASSERT_EQ(paper["contacts"].size(), soft["contacts"].size());
+  EXPECT_EQ(paper["contacts"][0]["depth"], soft["contacts"][0]["depth"]);
+  EXPECT_EQ(paper["contacts"][0]["soft_depth"], paper["contacts"][0]["depth"]);
+}
+
+TEST_F(documents, backends_that_are_not_built_say_so) {
+  for (const char* backend : {"cpu-simd", "gl-occlusion", "gl-compute"}) {
+    const std::string message = expect_failure(
+        {"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1", "--backend", backend}, 1,
+        "unsupported");
+    EXPECT_NE(message.find(backend), std::string::npos);
+  }
+  expect_failure(
+      {"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1", "--backend", "abacus"}, 2,
+      "usage");
+}
+
+TEST_F(documents, run) {
+  const json d = expect_document({"run", "--probe", block(), "--fixed", block(), "--seconds", "0.8", "--grid", "24",
+                                  "--record", path("session.csv"), "--plot", path("session.svg")},
+                                 "asperity.run/1");
+  expect_keys(d, {"schema",
+                  "probe",
+                  "fixed",
+                  "start",
+                  "device",
+                  "clock",
+                  "motion",
+                  "seed",
+                  "seconds",
+                  "backend",
+                  "gradient_scheme",
+                  "grid",
+                  "contacts",
+                  "max_depth",
+                  "probe_force",
+                  "probe_torque",
+                  "hand_force",
+                  "hand_torque",
+                  "energy",
+                  "contact_loop",
+                  "device_loop",
+                  "tick_time_is",
+                  "rejected_samples",
+                  "lost_records",
+                  "fault",
+                  "interrupted",
+                  "recording",
+                  "plot",
+                  "units"});
+  EXPECT_EQ(d["device_loop"]["ticks"], 800);
+  EXPECT_EQ(d["fault"], "none");
+  EXPECT_EQ(d["interrupted"], false);
+  EXPECT_GT(d["contacts"]["share_of_ticks"], 0.3);
+  EXPECT_GT(d["hand_force"]["max"], 0.1);
+  EXPECT_GT(d["device_loop"]["tick_time"]["p50"], 0.0);
+  EXPECT_GE(d["device_loop"]["tick_time"]["p99"], d["device_loop"]["tick_time"]["p50"]);
+  EXPECT_EQ(files(), (std::set<std::string>{"session.csv", "session.svg"}));
+  EXPECT_NE(read("session.svg").find("</svg>"), std::string::npos);
+}
+
+TEST_F(documents, devices) {
+  const json d = expect_document({"devices"}, "asperity.devices/1");
+  ASSERT_EQ(d["devices"].size(), 1U);
+  EXPECT_EQ(d["devices"][0]["name"], "simulated");
+  EXPECT_EQ(d["devices"][0]["maturity"], "simulated");
+}
+
+TEST_F(documents, bench) {
+  const json d =
+      expect_document({"bench", "--probe", block(), "--fixed", block(), "--poses", "50"}, "asperity.bench/1");
+  expect_keys(d["seconds"], {"collision_query", "contact_soft", "contact_central", "tick_soft", "tick_central"});
+  for (const auto& [what, times] : d["seconds"].items()) {
+    EXPECT_GT(times["p50"], 0.0) << what;
+    EXPECT_GE(times["p99"], times["p50"]) << what;
+  }
+  EXPECT_GT(d["ratios"]["contact_central_to_soft"], 0.0);
+}
+
+TEST_F(documents, quiet_says_nothing) {
+  const outcome done = run({"inspect", block(), "--quiet"});
+  EXPECT_EQ(done.exit_status, 0);
+  EXPECT_EQ(done.out + done.err, "");
+  EXPECT_EQ(run({"--quiet", "inspect", block()}).out, "");
+}
+
+}  // namespace
+}  // namespace fault

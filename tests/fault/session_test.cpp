@@ -1,0 +1,108 @@
+// What a session leaves behind: the same bytes every time, and a closed recording when somebody stops it.
+#include <algorithm>
+
+#include "command_process.hpp"
+
+namespace fault {
+namespace {
+
+class session : public command_test {
+ protected:
+  [[nodiscard]] arguments session_to(const std::string& recording, const arguments& more = {}) const {
+    const std::string block = (small_models() / "block.glb").string();
+    arguments args{"run", "--probe", block, "--fixed", block, "--record", path(recording), "--grid", "24"};
+    args.insert(args.end(), more.begin(), more.end());
+    return args;
+  }
+  [[nodiscard]] std::vector<std::vector<std::string>> table(const std::string& name) const {
+    std::vector<std::vector<std::string>> rows{{""}};
+    for (const char c : read(name)) {
+      if (c == '\n') {
+        rows.push_back({""});
+      } else if (c == ',') {
+        rows.back().emplace_back();
+      } else {
+        rows.back().back() += c;
+      }
+    }
+    EXPECT_EQ(rows.back(), std::vector<std::string>{""}) << "the last line is not complete";
+    rows.pop_back();
+    return rows;
+  }
+};
+
+TEST_F(session, twice_gives_the_same_bytes) {
+  for (const char* motion : {"scrub", "twist", "free"}) {
+    const arguments more{"--seconds", "0.7", "--motion", motion, "--contact-rate", "500"};
+    ASSERT_EQ(run(session_to("first.csv", more)).exit_status, 0);
+    ASSERT_EQ(run(session_to("second.csv", more)).exit_status, 0);
+    EXPECT_GT(read("first.csv").size(), 50000U);
+    EXPECT_TRUE(read("first.csv") == read("second.csv")) << motion;
+  }
+}
+
+TEST_F(session, another_seed_is_another_hand) {
+  ASSERT_EQ(run(session_to("first.csv", {"--seconds", "0.2", "--seed", "1"})).exit_status, 0);
+  ASSERT_EQ(run(session_to("second.csv", {"--seconds", "0.2", "--seed", "2"})).exit_status, 0);
+  EXPECT_FALSE(read("first.csv") == read("second.csv"));
+}
+
+TEST_F(session, recording_is_a_table_that_ends_with_no_wrench) {
+  ASSERT_EQ(run(session_to("session.csv", {"--seconds", "0.8"})).exit_status, 0);
+  const auto rows = table("session.csv");
+  ASSERT_GT(rows.size(), 800U);
+  for (const auto& row : rows) ASSERT_EQ(row.size(), rows.front().size());
+  EXPECT_EQ(rows.front().front(), "time_s");
+  const auto column = [&](const std::string& name) {
+    const auto found = std::find(rows.front().begin(), rows.front().end(), name);
+    EXPECT_NE(found, rows.front().end()) << name;
+    return static_cast<std::size_t>(found - rows.front().begin());
+  };
+  double largest = 0.0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    EXPECT_EQ(std::stod(rows[i][0]), static_cast<double>(i - 1) / 1e3);
+    largest = std::max(largest, std::stod(rows[i][column("hand_fz_n")]));
+  }
+  EXPECT_GT(largest, 0.1);  // the hand was pushed up
+  for (const char* component : {"hand_fx_n", "hand_fy_n", "hand_fz_n", "hand_tx_n_m", "hand_ty_n_m", "hand_tz_n_m"}) {
+    EXPECT_EQ(std::stod(rows.back()[column(component)]), 0.0) << component;
+  }
+}
+
+TEST_F(session, interrupted_on_the_real_clock) {
+  process_options options;
+  options.interrupt_after_s = 1.0;
+  const outcome stopped = run(session_to("session.csv", {"--seconds", "600", "--clock", "real", "--json"}), options);
+  EXPECT_EQ(stopped.exit_status, 130);
+  EXPECT_EQ(stopped.err.rfind("asperity: interrupted", 0), 0U) << stopped.err;
+  const json document = json::parse(stopped.out, nullptr, false);
+  ASSERT_TRUE(document.is_object()) << stopped.out;
+  EXPECT_EQ(document["schema"], "asperity.run/1");
+  EXPECT_EQ(document["interrupted"], true);
+  EXPECT_EQ(files(), std::set<std::string>{"session.csv"});
+  const auto rows = table("session.csv");
+  ASSERT_GT(rows.size(), 1U);
+  for (const auto& row : rows) ASSERT_EQ(row.size(), rows.front().size());
+}
+
+TEST_F(session, interrupted_on_the_virtual_clock) {
+  process_options options;
+  options.interrupt_after_s = 0.5;
+  const outcome stopped = run(session_to("session.csv", {"--seconds", "80000"}), options);
+  EXPECT_EQ(stopped.exit_status, 130);
+  EXPECT_EQ(files(), std::set<std::string>{"session.csv"});
+  EXPECT_GT(table("session.csv").size(), 1U);
+}
+
+TEST_F(session, more_poses_than_bodies) {
+  expect_failure(session_to("session.csv", {"--fixed-pose", "0 0 0 0 0 0 1", "--fixed-pose", "0 0 0 0 0 0 1"}), 1,
+                 "invalid_argument");
+}
+
+TEST_F(session, bad_poses) {
+  expect_failure(session_to("session.csv", {"--probe-pose", "0 0 nan 0 0 0 1"}), 1, "invalid_argument");
+  expect_failure(session_to("session.csv", {"--fixed-pose", "0 0 0 0 0 0 2"}), 1, "invalid_argument");
+}
+
+}  // namespace
+}  // namespace fault
