@@ -49,7 +49,8 @@ struct candidate {
 
   // Cheapest first; the vertex numbers make the order of equal costs a fixed one.
   friend bool operator<(const candidate& x, const candidate& y) noexcept {
-    return std::tuple(x.cost, x.a, x.b) > std::tuple(y.cost, y.a, y.b);
+    if (x.cost != y.cost) return x.cost > y.cost;
+    return std::tuple(x.a, x.b) > std::tuple(y.a, y.b);
   }
 };
 

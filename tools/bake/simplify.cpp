@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <meshoptimizer.h>
 #include <optional>
 #include <string>
 #include <vector>
