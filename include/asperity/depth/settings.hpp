@@ -35,8 +35,9 @@ struct depth_settings {
   /// Samples per side of the window; 2 to max_grid. 64, not the paper's 50: 50 locks to common ridge pitches.
   std::uint32_t grid = 64;
 
-  /// Softness of the maximum, m. 0: 2 % of the larger relief of the two bodies, and at least 20 millionths of the
-  /// smaller body's diagonal, so that untextured faces do not chatter either.
+  /// Softness of the maximum, m. 0: 2 % of the larger relief of the two bodies (peak to valley of the sine with the
+  /// same mean square height), and at least 20 millionths of the smaller body's diagonal, so that untextured faces do
+  /// not chatter either.
   double tau_m = 0.0;
 
   /// A0 of the soft maximum, m^2: the contact area at which the soft depth equals the deepest sample. 0: 2 pi tau /
