@@ -89,18 +89,25 @@ TEST_F(bad_model, texture_of_nan) {
 
 TEST_F(bad_model, one_nan_in_a_texel_that_is_used) {
   glb_editor file(read("whole.glb"));
-  const auto view = file.haptic()["texture"]["bufferView"].get<std::size_t>();
-  const auto offset = file.json["bufferViews"][view]["byteOffset"].get<std::size_t>();
-  // The middle of a run of texels that hold a surface lies inside a chart.
-  std::size_t run = 0, at = 0;
-  while (run < 9) {
-    float x = 0.0F;
-    std::memcpy(&x, file.bin.data() + offset + at * 12, sizeof x);
-    run = std::isnan(x) ? 0 : run + 1;
-    ++at;
-    ASSERT_LT(at, std::size_t{128} * 128);
+  const auto number = [&](std::size_t accessor, std::size_t index, auto value) {
+    const auto view = file.json["accessors"][accessor]["bufferView"].get<std::size_t>();
+    const auto offset = file.json["bufferViews"][view].value("byteOffset", std::size_t{0});
+    std::memcpy(&value, file.bin.data() + offset + index * sizeof value, sizeof value);
+    return value;
+  };
+  // The texel under the middle of the first triangle.
+  const json& primitive = file.json["meshes"][0]["primitives"][0];
+  const auto indices = primitive["indices"].get<std::size_t>();
+  const auto texcoord = primitive["attributes"]["TEXCOORD_0"].get<std::size_t>();
+  float u = 0.0F, v = 0.0F;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const std::size_t vertex = number(indices, corner, std::uint32_t{});
+    u += number(texcoord, 2 * vertex, 0.0F) / 3.0F;
+    v += number(texcoord, 2 * vertex + 1, 0.0F) / 3.0F;
   }
-  file.put(view, 3 * (at - 5), std::numeric_limits<float>::quiet_NaN());
+  const std::size_t texel = static_cast<std::size_t>(v * 128.0F) * 128 + static_cast<std::size_t>(u * 128.0F);
+  file.put(file.haptic()["texture"]["bufferView"].get<std::size_t>(), 3 * texel,
+           std::numeric_limits<float>::quiet_NaN());
   expect_refused(file.bytes(), "bad_texture");
 }
 
