@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <limits>
 #include <gtest/gtest.h>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -51,8 +51,8 @@ class error_table {
       std::sort(l.errors.begin(), l.errors.end());
       const double median = l.errors[l.errors.size() / 2], largest = l.errors.back();
       const bool held = l.held && (!l.typical || median <= l.limit);
-      std::printf("  %-58s %5zu  %-10.3g %-10.3g %-10.3g%s\n", l.name.c_str(), l.errors.size(), median, largest, l.limit,
-                  !held ? "  EXCEEDED" : (l.typical ? "  (median; twice that at most)" : ""));
+      std::printf("  %-58s %5zu  %-10.3g %-10.3g %-10.3g%s\n", l.name.c_str(), l.errors.size(), median, largest,
+                  l.limit, !held ? "  EXCEEDED" : (l.typical ? "  (median; twice that at most)" : ""));
       EXPECT_TRUE(held) << title_ << ": " << l.name;
     }
   }

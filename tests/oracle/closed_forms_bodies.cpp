@@ -22,7 +22,7 @@ void check_gradient(error_table& table, const scene& bodies, const contact_windo
     cpu_depth differences(bodies, settings_for(gradient_scheme::central_difference, n, 0.01, 0.1));
     // The step alone, with the maximum found exactly, costs up to 3.7e-3 on R1: the limit is on the median.
     table.add_typical("gradient, central difference 0.1 mm, N = " + std::to_string(n),
-              gradient_error(measure_whole(differences, bodies, window, T_wa).gradient, expected), limit);
+                      gradient_error(measure_whole(differences, bodies, window, T_wa).gradient, expected), limit);
     cpu_depth soft(bodies, settings_for(gradient_scheme::soft_max, n, 0.01, 0.0));
     table.add("gradient, soft maximum tau 0.01 mm, N = " + std::to_string(n),
               gradient_error(measure_whole(soft, bodies, window, T_wa).gradient, expected), 2e-2);
