@@ -1,5 +1,7 @@
 // The documents that --json promises (docs/reference/command.md): their keys, their units, their agreement.
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 
 #include "command_process.hpp"
 
@@ -189,6 +191,25 @@ TEST_F(documents, bench) {
     EXPECT_GE(times["p99"], times["p50"]) << what;
   }
   EXPECT_GT(d["ratios"]["contact_central_to_soft"], 0.0);
+}
+
+TEST_F(documents, examples_of_the_reference_page_work) {
+  std::ifstream page(ASPERITY_SOURCE_DIR "/docs/reference/command.md");
+  const std::string folder = std::filesystem::path(ASPERITY_COMMAND).parent_path().string();
+  int examples = 0;
+  bool inside = false;
+  for (std::string line; std::getline(page, line);) {
+    if (line == "```sh" || line == "```") {
+      inside = line == "```sh";
+      continue;
+    }
+    if (!inside) continue;
+    ++examples;
+    const std::string quietly = line.find('>') == std::string::npos ? " > /dev/null" : "";
+    const std::string shell = "cd '" + path("") + "' && PATH='" + folder + "':\"$PATH\" && " + line + quietly;
+    EXPECT_EQ(std::system(shell.c_str()), 0) << line;
+  }
+  EXPECT_GE(examples, 10);
 }
 
 TEST_F(documents, quiet_says_nothing) {
