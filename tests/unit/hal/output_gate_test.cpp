@@ -229,6 +229,14 @@ TEST(output_gate, settles_at_the_continuous_limit) {
   EXPECT_EQ(gate.fault(), gate_fault::none);
 }
 
+TEST(output_gate, warms_with_its_time_constant) {
+  gate_limits l = plain();
+  l.thermal_time_s = 2.0;
+  output_gate gate(l);
+  for (int i = 0; i < 2000; ++i) static_cast<void>(gate.pass(i * ms, {}, want({3.0, 0, 0})));
+  EXPECT_NEAR(gate.force_mean_square(), 9.0 * (1.0 - std::exp(-1.0)), 0.02);
+}
+
 TEST(output_gate, derates_nothing_below_the_continuous_limit) {
   gate_limits l = plain();
   l.continuous_force_n = 4.0;
