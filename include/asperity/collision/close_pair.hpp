@@ -91,7 +91,9 @@ inline bool find_penetration(const convex_shape& A, const convex_shape& B, const
   separating_directions directions;
   find_separating_directions(A, B, T_ab, directions);
   for (const separating_direction& d : directions) {
-    if (d.separation_m < -limits.max_depth_m) return false;
+    // Far deeper than the pieces need to part: it belongs to some other place of contact, or to none.
+    const double deepest = 2.0 * directions[0].separation_m - tolerance;
+    if (d.separation_m < -limits.max_depth_m || d.separation_m < deepest) return false;
     if (d.separation_m >= tolerance) continue;
     // Spheres that miss each other across the direction: far cheaper to know than the two tests below.
     const vec3 across = apart - glm::dot(apart, d.n_ab) * d.n_ab;
@@ -106,8 +108,10 @@ inline bool find_penetration(const convex_shape& A, const convex_shape& B, const
     const gjk_result meet = gjk_distance(A, B, moved, 1.05 * tolerance, cold);
     cost.gjk_iterations = std::max(cost.gjk_iterations, meet.iterations);
     if (meet.outcome != gjk_outcome::separated) continue;
+    pair.weight =
+        share * smoothstep((d.separation_m - deepest) / tolerance) * separation_weight(d.separation_m, tolerance);
+    if (pair.weight <= 0.0) return false;
     pair.kind = pair_kind::active;
-    pair.weight = share * separation_weight(d.separation_m, tolerance);
     pair.n_ab = d.n_ab;
     pair.separation_m = d.separation_m;
     pair.p_a = meet.p_a;

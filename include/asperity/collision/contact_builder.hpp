@@ -60,12 +60,15 @@ class contact_builder {
     const window_projection onto_a(w, T_wa);
     const window_projection onto_b(w, T_wb);
     plane_box near;
-    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence);
+    // Presence counts against the nearest pair's: a contact that is new as a whole is whole at once.
+    double presence = 0.0;
+    for (const std::uint32_t m : members) presence = std::max(presence, pairs[m].presence);
+    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence / presence);
     near = intersection(near, plane_box::square(vec2(0.0), limits.max_half_size_m));
     const plane_box region_a = cut_region(a, onto_a, 1.0, {height_a - behind, height_a + beyond}, near, patch_a_);
     const plane_box region_b = cut_region(b, onto_b, -1.0, {height_b - beyond, height_b + behind}, near, patch_b_);
     plane_box region = intersection(region_a, region_b);
-    vec2 centre(0.0);
+    vec2 centre = vec2(onto_a(0.5 * (cluster.p_a + cluster.p_b)));
     w.half_size_m = limits.min_half_size_m;
     if (!region.empty()) {
       centre = region.centre();

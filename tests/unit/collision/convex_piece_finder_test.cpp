@@ -258,6 +258,28 @@ TEST(finder, a_pair_at_the_tolerance_weighs_nothing) {
   }
 }
 
+TEST(finder, a_new_contact_has_its_whole_window_at_once) {
+  // One pair, off the middle of both boxes' overlap, a hair inside the tolerance: still the place where they touch.
+  for (const cut_into how : every_cut) {
+    finder_settings settings;
+    settings.tolerance_m = 1e-3;
+    rig r = box_on_plate(how, settings);
+    const double corner = 0.02 * std::sqrt(3.0);
+    const quat tip =
+        exp_rotation({0.0, std::asin(1.0 / std::sqrt(3.0)), 0.0}) * exp_rotation({std::acos(std::sqrt(0.5)), 0.0, 0.0});
+    const pose T{exp_rotation({0.3, 0.1, 0.0}) * tip, {0.02, -0.01, 0.01}};
+    double lowest = 0.0;
+    for (const vec3& p : r.bodies.probe->mesh.positions) lowest = std::min(lowest, (T.rotation * p).z);
+    EXPECT_LT(-lowest, corner);
+    const pose near{T.rotation, T.position + vec3(0.0, 0.0, 0.99999e-3 - lowest)};
+    ASSERT_EQ(r.at(near), status::ok);
+    ASSERT_EQ(r.out.size(), 1U);
+    expect_sound(r, near);
+    EXPECT_LT(glm::distance(r.only().window.centre_w, 0.5 * (r.only().p_a_w + r.only().p_b_w)), 1e-3);
+    EXPECT_NEAR(r.only().separation_m, 1e-3, 1e-4);
+  }
+}
+
 TEST(finder, a_thin_plate_pushes_out_on_the_side_that_was_entered) {
   // The plate's lower side is within reach of the probe's bottom; it must not pull the probe through.
   for (const cut_into how : every_cut) {
