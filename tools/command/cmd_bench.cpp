@@ -1,5 +1,5 @@
 // asperity bench: what a contact costs, stage by stage, on this machine.
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <random>
@@ -10,6 +10,7 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "benchmark_models.hpp"
 #include "cli.hpp"
+#include "cpu_clock.hpp"
 #include "interrupt.hpp"
 #include "model_report.hpp"
 #include "options.hpp"
@@ -31,10 +32,6 @@ struct bench_command {
   std::size_t poses = 2000;
   std::uint64_t seed = 1;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point begin) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 /// Poses of a probe that scrubs over the place where it first touched, pressed in by a little.
 std::vector<pose> scrubbing_path(const pose& touch, const bench_command& options, double size_m) {
@@ -94,7 +91,7 @@ result<scene> bench_scene(const bench_command& options, progress_line& progress)
   return scene{std::move(probe).value(), {std::move(fixed).value()}};
 }
 
-/// Times of one quantity along the path, and the same divided by the contacts of the pose.
+/// CPU times along the path, one entry per pose; contact times are divided by the contacts of the pose.
 struct measured {
   std::vector<double> query_s;
   std::vector<double> soft_contact_s, central_contact_s;
@@ -122,9 +119,9 @@ result<measured> measure(const scene& bodies, const bench_command& options, prog
   std::vector<penetration> depths(soft_settings.limits.contacts);
   const std::vector<pose> path = scrubbing_path(*touch, options, size_m);
   const auto time = [](std::vector<double>& into, double share, auto&& call) {
-    const auto begin = std::chrono::steady_clock::now();
+    const double begin = cpu_seconds();
     static_cast<void>(call());
-    into.push_back(share * seconds_since(begin));
+    into.push_back(share * (cpu_seconds() - begin));
   };
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
@@ -169,6 +166,7 @@ answer report(const scene& bodies, const bench_command& options, const measured&
                   {"poses", options.poses},
                   {"seed", options.seed},
                   {"contacts", {{"mean", contacts}, {"max", most}}},
+                  {"time_is", "cpu"},
                   {"seconds",
                    {{"collision_query", to_json(query)},
                     {"contact_soft", to_json(soft)},
@@ -188,7 +186,7 @@ answer report(const scene& bodies, const bench_command& options, const measured&
     return b.name + " (" + std::to_string(b.pieces.size()) + " pieces)";
   };
   out.text = name(*bodies.probe) + " on " + name(*bodies.fixed.front()) + ", " + std::to_string(options.poses) +
-             " poses of a scrubbing path, " + brief(contacts) + " contacts on average, one core\n";
+             " poses of a scrubbing path, " + brief(contacts) + " contacts on average, CPU time of one core\n";
   out.text += row("collision query", to_text(query));
   out.text += row("contact, soft maximum", to_text(soft));
   out.text +=

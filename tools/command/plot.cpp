@@ -14,8 +14,8 @@ namespace {
 
 // Sizes in points of the SVG and pixels of the PNG.
 constexpr double page_width = 1200.0;
-constexpr double left = 90.0, right = 30.0, top = 80.0, bottom = 55.0;
-constexpr double panel_height = 235.0, panel_gap = 22.0;
+constexpr double left = 90.0, right = 30.0, top = 92.0, bottom = 55.0;
+constexpr double panel_height = 230.0, panel_gap = 30.0;
 
 struct colour {
   double r, g, b;
@@ -111,7 +111,7 @@ class painter {
     cairo_set_line_width(to_, 1.0);
     cairo_rectangle(to_, left, y_top, x_right - left, panel_height);
     cairo_stroke(to_);
-    legend(p, x_right - 10.0, y_top + 18.0);
+    legend(p, x_right, y_top - 7.0);
     cairo_save(to_);
     cairo_translate(to_, 22.0, 0.5 * (y_top + y_bottom));
     cairo_rotate(to_, -1.5707963267948966);
@@ -135,24 +135,19 @@ class painter {
     cairo_stroke(to_);
   }
 
-  // Right-aligned, on a plate that keeps the curves out of the words.
+  // Right-aligned above the panel, where no curve can run under the words.
   void legend(const plot_panel& p, double x_right, double y) {
-    constexpr double size = 13.0, dash = 22.0, gap = 16.0;
-    double width = 0.0;
-    for (const plot_line& line : p.lines) width += dash + 6.0 + width_of(line.label, size) + gap;
-    width -= gap;
-    cairo_set_source_rgba(to_, 1.0, 1.0, 1.0, 0.85);
-    cairo_rectangle(to_, x_right - width - 8.0, y - 14.0, width + 14.0, 22.0);
-    cairo_fill(to_);
-    double x = x_right - width;
+    constexpr double size = 13.0, dash = 22.0, space = 6.0, gap = 16.0;
+    double x = x_right + gap;
+    for (const plot_line& line : p.lines) x -= dash + space + width_of(line.label, size) + gap;
     for (std::size_t i = 0; i < p.lines.size(); ++i) {
       set(line_colour(i));
       cairo_set_line_width(to_, 3.0);
       cairo_move_to(to_, x, y - 4.0);
       cairo_line_to(to_, x + dash, y - 4.0);
       cairo_stroke(to_);
-      text(x + dash + 6.0, y, p.lines[i].label, size, anchor::start);
-      x += dash + 6.0 + width_of(p.lines[i].label, size) + gap;
+      text(x + dash + space, y, p.lines[i].label, size, anchor::start);
+      x += dash + space + width_of(p.lines[i].label, size) + gap;
     }
   }
 

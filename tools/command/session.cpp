@@ -9,18 +9,12 @@
 #include <time.h>
 #include <utility>
 
+#include "cpu_clock.hpp"
 #include "interrupt.hpp"
 #include "record_queue.hpp"
 
 namespace asperity::command {
 namespace {
-
-// What this thread has used of the processor: other programs on the machine do not count as slowness of a tick.
-double cpu_seconds() noexcept {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
 
 // A renderer with a stopwatch around it, so that no tick has to read a clock itself.
 class timed_renderer {
