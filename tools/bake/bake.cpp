@@ -28,8 +28,7 @@ constexpr std::uint32_t largest_texture = 8192;
 // Rays go a little past the measured distance between the surfaces: along a slanted normal the way is longer.
 constexpr double range_per_cage = 2.0;
 constexpr double least_range_in_diagonals = 0.005;
-constexpr double band_per_cage = 2.0;
-constexpr double least_band_texels = 4.0;
+constexpr double least_band_texels = 0.5;
 
 error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
 
@@ -96,10 +95,10 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (!charts) return charts.error();
 
   if (!monitor.begin("project")) return cancelled();
-  const double band = std::max(band_per_cage * *cage, least_band_texels * charts->texel_m);
   const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
-  auto projected = project(coarse->mesh, *charts, crease_normals(coarse->mesh, band), full_tree, range,
-                           options.texture_size, threads, monitor);
+  auto projected =
+      project(coarse->mesh, *charts, crease_normals(coarse->mesh, full_tree, least_band_texels * charts->texel_m),
+              full_tree, range, options.texture_size, threads, monitor);
   if (!projected) return projected.error();
 
   if (!monitor.begin("pieces")) return cancelled();

@@ -1,7 +1,7 @@
 #include "bake/crease_normals.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "bake/geometry.hpp"
 
@@ -9,6 +9,16 @@ namespace asperity::bake {
 namespace {
 
 constexpr double sharp_cosine = 0.766;  // 40 degrees between the faces
+constexpr double band_per_distance = 4.0;
+
+// Largest distance between an edge and the original.
+double distance_to(const triangle_bvh& full, const std::array<vec3, 2>& ends) {
+  constexpr int samples = 16;
+  double largest = 0.0;
+  for (int i = 0; i <= samples; ++i)
+    largest = std::max(largest, full.closest(glm::mix(ends[0], ends[1], static_cast<double>(i) / samples)).distance_m);
+  return largest;
+}
 
 // Sum over the fan of triangles around the origin of h that can be reached without crossing a sharp edge.
 vec3 fan_normal(const triangle_mesh& mesh, const connectivity& net, const std::vector<vec3>& faces,
@@ -34,7 +44,7 @@ vec3 fan_normal(const triangle_mesh& mesh, const connectivity& net, const std::v
 
 }  // namespace
 
-crease_normals::crease_normals(const triangle_mesh& coarse, double band_m) : band_m_(band_m) {
+crease_normals::crease_normals(const triangle_mesh& coarse, const triangle_bvh& full, double least_band_m) {
   const connectivity net = connect(coarse.triangles, coarse.positions.size());
   const std::size_t count = coarse.triangles.size();
   std::vector<vec3> faces(count);
@@ -44,10 +54,12 @@ crease_normals::crease_normals(const triangle_mesh& coarse, double band_m) : ban
     faces[t] = unit_normal(corners_[t]);
   }
   std::vector<bool> sharp(net.mate.size(), false);
-  std::vector<segment> edges;
+  std::vector<sharp_edge> edges;
   for (std::uint32_t h = 0; h < sharp.size(); ++h) {
     sharp[h] = net.mate[h] == no_halfedge || glm::dot(faces[h / 3], faces[net.mate[h] / 3]) < sharp_cosine;
-    if (sharp[h] && h < net.mate[h]) edges.push_back({corners_[h / 3][h % 3], corners_[h / 3][next_halfedge(h) % 3]});
+    if (!sharp[h] || net.mate[h] < h) continue;
+    const std::array<vec3, 2> ends{corners_[h / 3][h % 3], corners_[h / 3][next_halfedge(h) % 3]};
+    edges.push_back({ends, std::max(least_band_m, band_per_distance * distance_to(full, ends))});
   }
   sharp_edges_ = edges.size();
 
@@ -61,9 +73,9 @@ crease_normals::crease_normals(const triangle_mesh& coarse, double band_m) : ban
       one_sided_[t][k] = fan_normal(coarse, net, faces, sharp, 3 * t + k);
     }
     const bounds box = bounds_of(corners_[t]);
-    for (const segment& e : edges) {
-      const vec3 low = glm::min(e[0], e[1]) - band_m;
-      const vec3 high = glm::max(e[0], e[1]) + band_m;
+    for (const sharp_edge& e : edges) {
+      const vec3 low = glm::min(e.ends[0], e.ends[1]) - e.band_m;
+      const vec3 high = glm::max(e.ends[0], e.ends[1]) + e.band_m;
       if (glm::all(glm::lessThanEqual(low, box.high)) && glm::all(glm::greaterThanEqual(high, box.low)))
         near_.push_back(e);
     }
@@ -80,12 +92,11 @@ vec3 crease_normals::at(std::uint32_t t, const std::array<double, 3>& b) const n
   if (first_near_[t] == first_near_[t + 1]) return away;
   const auto& c = corners_[t];
   const vec3 p = b[0] * c[0] + b[1] * c[1] + b[2] * c[2];
-  double nearest2 = std::numeric_limits<double>::infinity();
+  double w = 1.0;
   for (std::uint32_t i = first_near_[t]; i < first_near_[t + 1]; ++i) {
-    const vec3 d = p - closest_on_segment(p, near_[i][0], near_[i][1]);
-    nearest2 = std::min(nearest2, glm::dot(d, d));
+    const auto& [ends, band_m] = near_[i];
+    w = std::min(w, smoothstep(glm::length(p - closest_on_segment(p, ends[0], ends[1])) / band_m));
   }
-  const double w = smoothstep(std::sqrt(nearest2) / band_m_);
   if (w >= 1.0) return away;
   return normalised((1.0 - w) * mix(smooth_[t], b) + w * away);
 }

@@ -3,23 +3,23 @@
 
 #include <array>
 #include <cstdint>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "asperity/model/triangle_mesh.hpp"
-#include "bake/halfedges.hpp"
+#include "bake/triangle_bvh.hpp"
 
 namespace asperity::bake {
 
 /// A unit direction for every point of a coarse mesh, continuous over the whole surface.
 /// Away from sharp edges it is the interpolation of normals that are averaged on one side of such edges only, so that a
-/// large flat face is projected straight, as the depth lookup (orthographic) wants it. In a band along sharp edges it
-/// turns into the ordinary interpolated normal, which both sides of the edge share: no crack opens there.
+/// large flat face is projected straight, as the depth lookup (orthographic) wants it. In a band along each sharp edge
+/// it turns into the ordinary interpolated normal, which both sides of the edge share: no crack opens there. The band
+/// is as wide as the original is far: where it has the same edge, the faces keep their direction up to it.
 class crease_normals {
  public:
-  /// @param band_m width of the band. @pre closed 2-manifold without degenerate triangles
-  crease_normals(const triangle_mesh& coarse, double band_m);
+  /// @param least_band_m narrowest band: half a texel, for a texture cannot follow a faster turn
+  /// @pre closed 2-manifold without degenerate triangles
+  crease_normals(const triangle_mesh& coarse, const triangle_bvh& full, double least_band_m);
 
   /// @param b barycentric coordinates in triangle t; they may lie a little outside of it
   [[nodiscard]] vec3 at(std::uint32_t t, const std::array<double, 3>& b) const noexcept;
@@ -27,17 +27,19 @@ class crease_normals {
   [[nodiscard]] std::size_t sharp_edges() const noexcept { return sharp_edges_; }
 
  private:
-  using segment = std::array<vec3, 2>;
+  struct sharp_edge {
+    std::array<vec3, 2> ends;
+    double band_m;
+  };
 
   [[nodiscard]] vec3 mix(const std::array<vec3, 3>& values, const std::array<double, 3>& b) const noexcept;
 
-  double band_m_;
   std::size_t sharp_edges_ = 0;
   std::vector<std::array<vec3, 3>> corners_;
   std::vector<std::array<vec3, 3>> smooth_;     // corner normals over all faces around the vertex
   std::vector<std::array<vec3, 3>> one_sided_;  // corner normals up to the nearest sharp edges
   std::vector<std::uint32_t> first_near_;       // per triangle: its range of near_
-  std::vector<segment> near_;                   // sharp edges within the band of a triangle
+  std::vector<sharp_edge> near_;                // those whose band reaches the triangle
 };
 
 }  // namespace asperity::bake
