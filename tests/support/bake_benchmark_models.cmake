@@ -1,6 +1,7 @@
 # Makes and bakes the six benchmark models with the command, for the tests that need real input.
 #   cmake -DCOMMAND=path/to/asperity -DDIR=folder -P bake_benchmark_models.cmake
 # A model that is newer than the command is kept, so that a second run costs nothing.
+cmake_minimum_required(VERSION 3.25)
 file(MAKE_DIRECTORY ${DIR})
 
 function(run)
