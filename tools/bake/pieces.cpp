@@ -193,8 +193,16 @@ class decomposition {
     return true;
   }
 
-  // Winding number of the mesh about p, from the solid angles of its triangles (van Oosterom and Strackee, 1983).
+  // Where the nearest point lies within a triangle, the side of that triangle tells; at edges and corners the winding
+  // number does, which costs a look at every triangle.
   bool is_inside(const vec3& p) const {
+    const auto nearest = tree_.closest(p);
+    const double height = glm::dot(planes_[nearest.triangle].normal, p - nearest.point);
+    return std::abs(height) > (1.0 - 1e-12) * nearest.distance_m ? height < 0.0 : winds_around(p);
+  }
+
+  // Winding number of the mesh about p, from the solid angles of its triangles (van Oosterom and Strackee, 1983).
+  bool winds_around(const vec3& p) const {
     double angle = 0.0;
     for (const index_triangle& t : mesh_.triangles) {
       const auto c = bake::corners(mesh_.positions, t);
@@ -215,7 +223,14 @@ class decomposition {
     out.triangles = p.triangles;
     std::sort(out.triangles.begin(), out.triangles.end());
     vec3 normal{0.0};
-    for (const std::uint32_t t : p.triangles) normal += area_normal(bake::corners(mesh_.positions, mesh_.triangles[t]));
+    double area = 0.0;
+    for (const std::uint32_t t : p.triangles) {
+      const vec3 a = area_normal(bake::corners(mesh_.positions, mesh_.triangles[t]));
+      normal += a;
+      area += glm::length(a);
+    }
+    // The normals of a piece that goes all the way round cancel: it has no direction in which it could be flat.
+    const bool one_sided = glm::length(normal) > 0.5 * area;
     normal = normalised(normal);
     double low = glm::dot(normal, mesh_.positions[p.vertices[0]]);
     double high = low;
@@ -223,7 +238,7 @@ class decomposition {
       low = std::min(low, glm::dot(normal, mesh_.positions[v]));
       high = std::max(high, glm::dot(normal, mesh_.positions[v]));
     }
-    out.flat = !p.hull.is_solid() || high - low <= flat_;
+    out.flat = !p.hull.is_solid() || (one_sided && high - low <= flat_);
     if (out.flat)
       finish_flat(p, normal, out);
     else
