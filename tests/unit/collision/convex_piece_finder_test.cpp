@@ -280,6 +280,57 @@ TEST(finder, a_new_contact_has_its_whole_window_at_once) {
   }
 }
 
+TEST(finder, a_new_contact_of_whole_convex_bodies_lies_on_their_common_line) {
+  // Both boxes are far larger than the place of contact, so the middle of what they share says little about it.
+  rig r(make_piece_model(box_mesh({0.02, 0.02, 0.02}), cut_into::one_piece),
+        make_piece_model(test::prism_mesh(test::regular_polygon(400, 0.05), 0.02), cut_into::one_piece));
+  const double tolerance = r.finder.settings(0).tolerance_m;
+  const vec3 out(std::sin(0.6), std::cos(0.6), 0.0);
+  const pose T{exp_rotation({0.0, 0.0, -0.6}), (0.07 + 0.98 * tolerance) * out + vec3(0.0, 0.0, 0.003)};
+  ASSERT_EQ(r.at(T), status::ok);
+  ASSERT_EQ(r.out.size(), 1U);
+  expect_sound(r, T);
+  EXPECT_LT(glm::distance(vec2(r.only().window.centre_w), 0.05 * vec2(out)), 1e-3);
+  EXPECT_NEAR(r.only().window.centre_w.z, 0.0015, 1e-3);
+  EXPECT_GE(r.only().window.half_size_m, 0.018);
+}
+
+TEST(finder, a_round_probe_of_triangles_is_followed_deeper_than_the_tolerance) {
+  // Far below the plate's top, no triangle of the probe's lowest part is near the plate's surface any more.
+  rig r(make_piece_model(test::torus_mesh(0.03, 0.01, 24, 16), cut_into::triangles),
+        make_piece_model(box_mesh({0.05, 0.05, 0.02}, 2), cut_into::flat_faces));
+  const quat upright = exp_rotation({std::acos(0.0), 0.0, 0.0});
+  double lowest = 0.0;
+  for (const vec3& p : r.bodies.probe->mesh.positions) lowest = std::min(lowest, (upright * p).z);
+  ASSERT_LT(r.finder.settings(0).tolerance_m, 1e-3);
+  for (const double depth : {1e-4, 1e-3, 2e-3, 4e-3}) {
+    const pose T{upright, {0.003, 0.002, 0.02 - lowest - depth}};
+    ASSERT_EQ(r.at(T), status::ok);
+    ASSERT_EQ(r.out.size(), 1U) << "depth " << depth;
+    expect_sound(r, T);
+    EXPECT_LT(r.only().window.n_ab_w.z, -0.99);
+    EXPECT_NEAR(r.only().separation_m, -depth, 0.1 * depth + 1e-4);
+  }
+  EXPECT_GT(r.finder.statistics().deep_pairs, 0U);
+}
+
+TEST(finder, the_axes_do_not_spin_while_the_normal_turns) {
+  // Both bodies turn together: the axis that any_orthogonal would choose changes on the way.
+  rig r = box_on_plate(cut_into::flat_faces);
+  contact_window last;
+  for (int k = 0; k <= 1000; ++k) {
+    const pose turn{exp_rotation({2e-3 * k, 1e-3 * k, 0.0}), vec3(0.0)};
+    r.T_wb[0] = turn;
+    ASSERT_EQ(r.at(turn * pose{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0299}}), status::ok);
+    ASSERT_EQ(r.out.size(), 1U);
+    EXPECT_EQ(r.only().id, 0U);
+    if (k > 0) {
+      EXPECT_LT(glm::distance(r.only().window.u_w, last.u_w), 4e-3) << "tick " << k;
+    }
+    last = r.only().window;
+  }
+}
+
 TEST(finder, a_thin_plate_pushes_out_on_the_side_that_was_entered) {
   // The plate's lower side is within reach of the probe's bottom; it must not pull the probe through.
   for (const cut_into how : every_cut) {
