@@ -1,5 +1,6 @@
 // What a session leaves behind: the same bytes every time, and a closed recording when somebody stops it.
 #include <algorithm>
+#include <cmath>
 
 #include "command_process.hpp"
 
@@ -62,6 +63,11 @@ TEST_F(session, recording_is_a_table_that_ends_with_no_wrench) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     EXPECT_EQ(std::stod(rows[i][0]), static_cast<double>(i - 1) / 1e3);
     largest = std::max(largest, std::stod(rows[i][column("hand_fz_n")]));
+    // Written with every digit, a rotation is still one when it is read.
+    double square = 0.0;
+    for (const char* q : {"probe_qx", "probe_qy", "probe_qz", "probe_qw"})
+      square += std::pow(std::stod(rows[i][column(q)]), 2);
+    ASSERT_NEAR(square, 1.0, 1e-13);
   }
   EXPECT_GT(largest, 0.1);  // the hand was pushed up
   for (const char* component : {"hand_fx_n", "hand_fy_n", "hand_fz_n", "hand_tx_n_m", "hand_ty_n_m", "hand_tz_n_m"}) {
