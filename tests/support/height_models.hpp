@@ -57,6 +57,11 @@ class plate_builder {
 
  private:
   using vertex = std::uint32_t;
+  static constexpr std::uint32_t wall_texels = 8;
+
+  [[nodiscard]] static std::uint32_t wall_left(std::size_t k) {
+    return static_cast<std::uint32_t>(k) * (wall_texels + 2 * gutter);
+  }
 
   void resize_texture(std::uint32_t width, std::uint32_t height) {
     model_.texture.width = width;
@@ -88,7 +93,8 @@ class plate_builder {
     const std::uint32_t charts_x = s_.chart_per_cell ? nx : 1, charts_y = s_.chart_per_cell ? ny : 1;
     const std::uint32_t tx = s_.texels / charts_x, ty = s_.texels / charts_y;
     top_height_ = charts_y * (ty + 2 * gutter);
-    resize_texture(std::max(charts_x * (tx + 2 * gutter), 64 + 2 * gutter), top_height_ + 2 * (16 + 2 * gutter));
+    resize_texture(std::max(charts_x * (tx + 2 * gutter), wall_left(2 * (nx + ny))),
+                   top_height_ + 2 * (16 + 2 * gutter));
     const auto x_of = [&](double a) { return s_.half_x * (2.0 * a - 1.0); };
     const auto y_of = [&](double b) { return s_.half_y * (2.0 * b - 1.0); };
     for (std::uint32_t cj = 0; cj < charts_y; ++cj) {
@@ -126,7 +132,7 @@ class plate_builder {
   void fan() {
     constexpr std::uint32_t sides = 360;
     top_height_ = s_.texels + 2 * gutter;
-    resize_texture(std::max(top_height_, 64 + 2 * gutter), top_height_ + 2 * (16 + 2 * gutter));
+    resize_texture(std::max(top_height_, wall_left(2)), top_height_ + 2 * (16 + 2 * gutter));
     fill(0, 0, s_.texels, s_.texels,
          [&](double a, double b) { return fine(s_.half_x * (2.0 * a - 1.0), s_.half_x * (2.0 * b - 1.0)); });
     const auto z = [&](vertex k) {
@@ -149,12 +155,15 @@ class plate_builder {
     const double reach = std::max(s_.half_x, s_.half_y);
     const std::size_t n = rim_.size();
     const auto rim_at = [&](std::size_t k) { return model_.mesh.positions[rim_[k % n]]; };
-    fill(0, wall_low, 64, 16, [&](double a, double b) {
-      const double s = std::clamp(a, 0.0, 1.0) * static_cast<double>(n);
-      const auto k = static_cast<std::size_t>(s);
-      const vec3 top = glm::mix(rim_at(k), rim_at(k + 1), s - static_cast<double>(k));
+    const auto wall = [&](std::size_t k, double a, double b) {
+      const vec3 top = glm::mix(rim_at(k), rim_at(k + 1), a);
       return vec3(top.x, top.y, -s_.thickness + b * (top.z + s_.thickness));
-    });
+    };
+    // A chart per wall keeps its corners sharp; the walls of a disc share one, which nothing looks at.
+    const std::size_t charts = s_.disc ? 1 : n;
+    for (std::size_t k = 0; k < charts; ++k) {
+      fill(wall_left(k), wall_low, wall_texels, 16, [&](double a, double b) { return wall(k, a, b); });
+    }
     fill(0, bottom_low, 16, 16,
          [&](double a, double b) { return vec3(reach * (2.0 * a - 1.0), reach * (2.0 * b - 1.0), -s_.thickness); });
     std::vector<vertex> low;
@@ -167,9 +176,11 @@ class plate_builder {
     model_.mesh.positions.emplace_back(0.0, 0.0, -s_.thickness);
     for (std::size_t k = 0; k < n; ++k) {
       const std::size_t k1 = (k + 1) % n;
-      const auto w = [&](std::size_t c, double b) { return uv(0, wall_low, 64, 16, double(c) / double(n), b); };
-      add({low[k], low[k1], rim_[k1]}, {w(k, 0), w(k + 1, 0), w(k + 1, 1)});
-      add({low[k], rim_[k1], rim_[k]}, {w(k, 0), w(k + 1, 1), w(k, 1)});
+      const auto w = [&](double a, double b) {
+        return uv(wall_left(s_.disc ? 0 : k), wall_low, wall_texels, 16, a, b);
+      };
+      add({low[k], low[k1], rim_[k1]}, {w(0, 0), w(1, 0), w(1, 1)});
+      add({low[k], rim_[k1], rim_[k]}, {w(0, 0), w(1, 1), w(0, 1)});
       const auto f = [&](vertex v) {
         const vec3& p = model_.mesh.positions[v];
         return uv(0, bottom_low, 16, 16, 0.5 + 0.5 * p.x / reach, 0.5 + 0.5 * p.y / reach);
@@ -217,14 +228,22 @@ class plate_builder {
   return out;
 }
 
-/// Depth of the one contact that covers both bodies whole, fixed body at T_wb.
+/// Depth of the one contact that covers both bodies whole, fixed bodies at the origin.
 template <class Backend>
-[[nodiscard]] penetration measure_whole(Backend& backend, const scene& s, const contact_window& w, const pose& T_wa,
-                                        const pose& T_wb = {}) {
+[[nodiscard]] penetration measure_whole(Backend& backend, const scene& s, const contact_window& w, const pose& T_wa) {
   const contact_set contacts = whole_contact(s, w);
+  const std::vector<pose> T_wb(s.fixed.size());
   penetration out;
-  static_cast<void>(backend.measure({T_wa, std::span(&T_wb, 1)}, contacts, std::span(&out, 1)));
+  static_cast<void>(backend.measure({T_wa, T_wb}, contacts, std::span(&out, 1)));
   return out;
+}
+
+/// Largest entry of a penetration's gradient and curvature.
+[[nodiscard]] inline double largest_entry(const penetration& p) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < 6; ++i) worst = std::max(worst, std::fabs(p.gradient[i]));
+  for (const double x : p.curvature.m) worst = std::max(worst, std::fabs(x));
+  return worst;
 }
 
 /// The probe moved by q = (translation of its centre of mass; rotation about it), world axes.

@@ -102,11 +102,11 @@ struct mat6 {
   return true;
 }
 
-/// Adds s * a * a^T.
+/// Adds s * a * a^T; what was symmetric stays so to the bit.
 /// @rt safe
 inline void add_outer(mat6& to, double s, const vec6& a) noexcept {
   for (std::size_t i = 0; i < 6; ++i) {
-    for (std::size_t j = 0; j < 6; ++j) to(i, j) += s * a[i] * a[j];
+    for (std::size_t j = 0; j < 6; ++j) to(i, j) += s * (a[i] * a[j]);
   }
 }
 
