@@ -49,23 +49,31 @@ void draw(const sample_grid& g, const std::array<vec3, 3>& t, Visit&& visit) {
   }
 }
 
-// Height of the coarse patch over each sample, NaN where there is none. sign: +1 for A (the highest counts), -1 for B.
-std::vector<double> coarse_heights(const sample_grid& g, const body& b, double sign) {
-  std::vector<double> h(g.size(), nan);
+// The coarse patch over a sample: NaN where there is none.
+struct coarse_sample {
+  double height = nan;
+  double reach = 0.0;  // how far along n the fine surface may be
+};
+
+// sign: +1 for A (the highest crossing counts), -1 for B (the lowest).
+std::vector<coarse_sample> coarse_samples(const sample_grid& g, const body& b, double sign) {
+  std::vector<coarse_sample> out(g.size());
   for (const std::uint32_t index : b.patch) {
     auto t = corners(*b.coarse, index);
     for (vec3& p : t) p = g.to_uvn(b.T_w * p);
     const vec3 n = area_normal(t);
-    if (!(sign * n.z > facing * glm::length(n))) continue;
+    const double cosine = sign * n.z / glm::length(n);
+    if (!(cosine > facing)) continue;
     draw(g, t, [&](std::size_t k, double height) {
-      if (!(sign * h[k] >= sign * height)) h[k] = height;
+      if (!(sign * out[k].height >= sign * height)) out[k] = {height, b.displacement_m / cosine};
     });
   }
-  return h;
+  return out;
 }
 
 // Height of the full-resolution surface over each sample: of the crossing nearest to the coarse height.
-std::vector<double> full_heights(const sample_grid& g, const body& b, double sign, const std::vector<double>& coarse) {
+std::vector<double> full_heights(const sample_grid& g, const body& b, double sign,
+                                 const std::vector<coarse_sample>& coarse) {
   std::vector<vec3> points;
   points.reserve(b.full->positions.size());
   for (const vec3& p : b.full->positions) points.push_back(g.to_uvn(b.T_w * p));
@@ -74,8 +82,8 @@ std::vector<double> full_heights(const sample_grid& g, const body& b, double sig
     const std::array<vec3, 3> t{points[v[0]], points[v[1]], points[v[2]]};
     if (!(sign * area_normal(t).z > 0.0)) continue;
     draw(g, t, [&](std::size_t k, double height) {
-      if (std::isnan(coarse[k])) return;
-      if (!(std::fabs(h[k] - coarse[k]) <= std::fabs(height - coarse[k]))) h[k] = height;
+      const double away = std::fabs(height - coarse[k].height);
+      if (away <= coarse[k].reach && !(std::fabs(h[k] - coarse[k].height) <= away)) h[k] = height;
     });
   }
   return h;
@@ -98,8 +106,8 @@ double slope_at(const sample_grid& g, const std::vector<double>& h, int i, int j
 brute_force_depth measure_brute_force(const body& a, const body& b, const contact_window& window, int grid,
                                       int refinement) {
   const sample_grid dense{window, grid * refinement};
-  const auto a_h = full_heights(dense, a, +1.0, coarse_heights(dense, a, +1.0));
-  const auto b_h = full_heights(dense, b, -1.0, coarse_heights(dense, b, -1.0));
+  const auto a_h = full_heights(dense, a, +1.0, coarse_samples(dense, a, +1.0));
+  const auto b_h = full_heights(dense, b, -1.0, coarse_samples(dense, b, -1.0));
 
   brute_force_depth out;
   out.dense_m = out.grid_m = -std::numeric_limits<double>::infinity();

@@ -20,6 +20,7 @@ struct body {
   const coarse_mesh* coarse;
   std::span<const std::uint32_t> patch;  ///< coarse triangles of the contact
   pose T_w;                              ///< body to world
+  double displacement_m;                 ///< largest distance between the original and the coarse surface
 };
 
 struct brute_force_depth {

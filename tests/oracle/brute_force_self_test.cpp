@@ -47,8 +47,8 @@ TEST(brute_force, sine_ridges_on_sine_ridges_agree_with_the_closed_form) {
   const height_field b(0.012, 600, [&](double x, double) { return amplitude_b * std::cos(k * x); });
   const double overlap = 0.0002;
   for (const double shift : {0.0, 0.0007, 0.0013, 0.002}) {
-    const auto d = oracle::measure_brute_force({&a.full, &a.coarse, both, {upside_down, {shift, 0, -overlap}}},
-                                               {&b.full, &b.coarse, both, {}}, down, 100, 5);
+    const auto d = oracle::measure_brute_force({&a.full, &a.coarse, both, {upside_down, {shift, 0, -overlap}}, 0.001},
+                                               {&b.full, &b.coarse, both, {}, 0.003}, down, 100, 5);
     const double expected = overlap + std::sqrt(amplitude_a * amplitude_a + amplitude_b * amplitude_b +
                                                 2 * amplitude_a * amplitude_b * std::cos(k * shift));
     // 600 facets over 24 mm: a facet lies below the sine by at most amplitude (k h)^2 / 8
@@ -65,8 +65,8 @@ TEST(brute_force, sphere_on_sphere_agrees_with_the_closed_form) {
   const height_field a(0.012, 400, cap(ra));
   const height_field b(0.012, 400, cap(rb));
   const vec3 offset{0.0008, -0.0005, -0.0002};  // of A's apex from B's apex
-  const auto d = oracle::measure_brute_force({&a.full, &a.coarse, both, {upside_down, offset}},
-                                             {&b.full, &b.coarse, both, {}}, down, 64, 5);
+  const auto d = oracle::measure_brute_force({&a.full, &a.coarse, both, {upside_down, offset}, 0.003},
+                                             {&b.full, &b.coarse, both, {}, 0.003}, down, 64, 5);
   const double horizontal2 = offset.x * offset.x + offset.y * offset.y;
   const double expected = std::sqrt((ra + rb) * (ra + rb) - horizontal2) - (ra + rb + offset.z);
   EXPECT_NEAR(d.dense_m, expected, 2e-7);
@@ -83,8 +83,8 @@ TEST(brute_force, the_crossing_next_to_the_coarse_surface_counts_not_another_she
     a.full.triangles.push_back(v);
   }
   const height_field b(0.012, 40, [](double, double) { return 0.0; });
-  const auto d = oracle::measure_brute_force({&a.full, &a.coarse, both, {upside_down, {0, 0, -0.0002}}},
-                                             {&b.full, &b.coarse, both, {}}, down, 50, 3);
+  const auto d = oracle::measure_brute_force({&a.full, &a.coarse, both, {upside_down, {0, 0, -0.0002}}, 0.001},
+                                             {&b.full, &b.coarse, both, {}, 0.003}, down, 50, 3);
   EXPECT_NEAR(d.dense_m, 0.0003, 1e-12);
 }
 
