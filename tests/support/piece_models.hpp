@@ -24,9 +24,10 @@ enum class cut_into {
 
 namespace detail {
 
-inline std::array<std::vector<std::uint32_t>, 2> flood_coplanar(const coarse_mesh& mesh) {
+/// For every triangle, the lowest index among the triangles of its flat face.
+inline std::vector<std::uint32_t> flat_faces_of(const coarse_mesh& mesh) {
   const std::size_t count = mesh.triangles.size();
-  std::vector<std::uint32_t> face(count), order;
+  std::vector<std::uint32_t> face(count);
   for (std::uint32_t t = 0; t < count; ++t) face[t] = t;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges;
   for (bool changed = true; changed;) {
@@ -48,8 +49,7 @@ inline std::array<std::vector<std::uint32_t>, 2> flood_coplanar(const coarse_mes
       }
     }
   }
-  for (std::uint32_t t = 0; t < count; ++t) order.push_back(t);
-  return {face, order};
+  return face;
 }
 
 inline convex_piece piece_of(const coarse_mesh& mesh, std::vector<std::uint32_t> triangles, bool flat) {
@@ -85,7 +85,7 @@ inline convex_piece piece_of(const coarse_mesh& mesh, std::vector<std::uint32_t>
   } else if (how == cut_into::triangles) {
     for (std::uint32_t t = 0; t < count; ++t) m->pieces.push_back(detail::piece_of(m->mesh, {t}, true));
   } else {
-    const auto face = detail::flood_coplanar(m->mesh)[0];
+    const auto face = detail::flat_faces_of(m->mesh);
     for (std::uint32_t t = 0; t < count; ++t) {
       if (face[t] != t) continue;
       std::vector<std::uint32_t> members;
