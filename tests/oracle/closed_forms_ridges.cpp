@@ -1,4 +1,6 @@
 // Periodic textures: ridges and egg crates on each other, stripes that turn, a ball on a sine.
+#include <array>
+#include <map>
 #include <numbers>
 
 #include "oracle/closed_forms.hpp"
@@ -22,17 +24,22 @@ double missed(double amplitude, double pitch, double lambda) {
 /// Probe at (x, y) with its plane d below the fixed body's (all mm).
 pose above(double x, double y, double d) { return {face_down(), mm * vec3(x, y, -d)}; }
 
-scene ridges_on_ridges(double a, double b, double lambda) {
+/// Kept from call to call: the cases come in groups with the same ridges.
+const scene& ridges_on_ridges(double a, double b, double lambda) {
+  static std::map<std::array<double, 3>, scene> made;
   const double K = 2.0 * pi / lambda;
-  return {make_plate(plate_mm(3.2 * lambda, 1024, [=](double x, double) { return a * std::cos(K * x); })),
-          {make_plate(plate_mm(2.2 * lambda, 1024, [=](double x, double) { return b * std::cos(K * x); }))}};
+  const auto [at, is_new] = made.try_emplace({a, b, lambda});
+  if (!is_new) return at->second;
+  at->second = {make_plate(plate_mm(3.2 * lambda, 1024, [=](double x, double) { return a * std::cos(K * x); })),
+                {make_plate(plate_mm(2.2 * lambda, 1024, [=](double x, double) { return b * std::cos(K * x); }))}};
+  return at->second;
 }
 
 TEST(ClosedForms, RidgesOnRidgesTranslated) {
   error_table table("O1: sine ridges on sine ridges (depths in mm)");
   for (const json& c : cases("O1_sine_ridges_translation")) {
     const double a = c["a"], b = c["b"], lambda = c["lam"], d = c["d"], s = c["s"], K = 2.0 * pi / lambda;
-    const scene bodies = ridges_on_ridges(a, b, lambda);
+    const scene& bodies = ridges_on_ridges(a, b, lambda);
     const contact_window window = window_downwards(2.0 * lambda * mm);
 
     cpu_depth fine(bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
@@ -45,10 +52,10 @@ TEST(ClosedForms, RidgesOnRidgesTranslated) {
     table.add("depth, N = 50, against the sampling bound", std::fabs(p.depth_m / mm - double(c["delta"])), bound);
 
     // The difference quotient is that of the closed form over the same step; what differs is the sampled maximum.
-    cpu_depth differences(bodies, settings_for(gradient_scheme::central_difference, 400, 0.01, 0.1));
+    cpu_depth differences(bodies, settings_for(gradient_scheme::central_difference, 200, 0.01, 0.1));
     const penetration q = measure_whole(differences, bodies, window, above(s, 0, d));
     const auto depth = [&](double at) { return d + sum_amplitude(a, b, K, at); };
-    table.add("d(depth)/ds, central difference, N = 400",
+    table.add("d(depth)/ds, central difference, N = 200",
               std::fabs(q.gradient.linear.x - (depth(s + 0.1) - depth(s - 0.1)) / 0.2), 1e-2);
 
     for (cpu_depth* backend : {&coarse, &fine}) {
@@ -66,7 +73,7 @@ TEST(ClosedForms, SoftMaximumOfRidges) {
   error_table table("O10: soft maximum of sine ridges over whole wavelengths (depths in mm)");
   for (const json& c : cases("O10_lse_ridges")) {
     const double a = c["a"], b = c["b"], lambda = c["lam"];
-    const scene bodies = ridges_on_ridges(a, b, lambda);
+    const scene& bodies = ridges_on_ridges(a, b, lambda);
     depth_settings settings = settings_for(gradient_scheme::soft_max, 400, c["tau"], 0.0);
     settings.taper_window = false;  // the closed form weighs all samples alike
     settings.reference_area_m2 = 16.0 * lambda * lambda * mm * mm;
@@ -93,12 +100,12 @@ TEST(ClosedForms, EggCrates) {
       cpu_depth backend(bodies, settings_for(gradient_scheme::soft_max, n, 0.01, 0.0));
       const penetration p = measure_whole(backend, bodies, window, above(sx, sy, d));
       table.add("depth, N = " + std::to_string(n), std::fabs(p.depth_m / mm - delta), n == 400 ? 1e-3 : bound);
-      if (n == 400) {
+      if (n == 400 && sx != 1.5) {
         const vec6 g = gradient_of({c["Fx"], c["Fy"], c["Fz"]}, vec3(0.0), 1.0, delta);
-        // Where the crates stand valley on valley the maximum is not differentiable; these cases have a unique slope.
+        // At half a wavelength, 1.5 mm, four witnesses tie; the closed form gives a slope everywhere else.
         table.add("gradient, soft maximum, N = 400",
                   std::max(std::fabs(p.gradient.linear.x - g.linear.x), std::fabs(p.gradient.linear.y - g.linear.y)),
-                  sx == 1.5 ? 1e9 : 2e-2);
+                  2e-2);
       }
     }
   }
@@ -114,13 +121,13 @@ TEST(ClosedForms, StripedDiscTurns) {
     const scene bodies{make_plate(disc),
                        {make_plate(plate_mm(1.1 * w, 1024, [=](double x, double) { return a * std::cos(K * x); }))}};
     const quat turn = exp_rotation(vec3(0.0, 0.0, theta));
-    cpu_depth backend(bodies, settings_for(gradient_scheme::central_difference, 400, 0.01, 0.1));
-    const double pitch = 2.04 * w / 400;
+    cpu_depth backend(bodies, settings_for(gradient_scheme::central_difference, 200, 0.01, 0.1));
+    const double pitch = 2.04 * w / 200;
     const penetration p =
         measure_whole(backend, bodies, window_downwards(1.02 * w * mm), {turn * face_down(), mm * vec3(0.0, 0.0, -d)});
     // Crests missed on both bodies, and a rim that the samples reach to within a pitch.
     const double bound = 2.0 * missed(a, pitch, lambda) + a * K * theta * pitch + 1e-4;
-    table.add("depth, N = 400", std::fabs(p.depth_m / mm - double(c["delta"])), bound);
+    table.add("depth, N = 200", std::fabs(p.depth_m / mm - double(c["delta"])), bound);
     if (theta > 0.004 && theta < 0.9 * lambda / (2.0 * w)) {
       turned += 1.0;
       opposing += -p.gradient.angular.z * theta < 0.0 ? 1.0 : 0.0;
@@ -137,7 +144,7 @@ TEST(ClosedForms, BallOnSine) {
     const double half = std::min(0.65 * R, lambda);
     const scene bodies{
         make_plate(plate_mm(half, 1024, [=](double x, double y) { return std::sqrt(R * R - x * x - y * y) - R; })),
-        {make_plate(plate_mm(2.2 * lambda, 2048, [=](double x, double) { return a * std::cos(K * x); }))}};
+        {make_plate(plate_mm(2.2 * lambda, 1024, [=](double x, double) { return a * std::cos(K * x); }))}};
     const double depth = 0.1, centre_z = double(c["offset_height"]) - depth;
     const contact_window window = window_downwards(half * mm, mm * vec3(s, 0.0, 0.0));
     const pose T_wa{face_down(), mm * vec3(s, 0.0, centre_z - R)};
