@@ -90,9 +90,14 @@ class projector {
   projector(const triangle_mesh& coarse, const crease_normals& directions, const triangle_bvh& full, double range_m)
       : coarse_(coarse), directions_(directions), full_(full), range_m_(range_m) {}
 
-  vec3 operator()(std::uint32_t t, const barycentric& b, tally* count) const {
+  // The plane of coarse triangle t.
+  [[nodiscard]] vec3 base(std::uint32_t t, const barycentric& b) const noexcept {
     const auto c = corners(coarse_.positions, coarse_.triangles[t]);
-    const vec3 p = b[0] * c[0] + b[1] * c[1] + b[2] * c[2];
+    return b[0] * c[0] + b[1] * c[1] + b[2] * c[2];
+  }
+
+  vec3 operator()(std::uint32_t t, const barycentric& b, tally* count) const {
+    const vec3 p = base(t, b);
     const vec3 d = directions_.at(t, b);
     const auto crossing = full_.nearest_front_crossing(p, d, range_m_);
     const vec3 q = crossing ? crossing->point : full_.closest(p).point;
@@ -137,8 +142,11 @@ result<projection> project(const triangle_mesh& coarse, const atlas& charts, con
       } else {
         const vec2 edge = triangle.clamp(p);
         const vec2 mirror = triangle.clamp(2.0 * edge - p);
-        q = 2.0 * surface(o.triangle, triangle.coordinates(edge), nullptr) -
-            surface(o.triangle, triangle.coordinates(mirror), nullptr);
+        const auto displacement = [&](const vec2& at) {
+          const barycentric b = triangle.coordinates(at);
+          return surface(o.triangle, b, nullptr) - surface.base(o.triangle, b);
+        };
+        q = surface.base(o.triangle, triangle.coordinates(p)) + 2.0 * displacement(edge) - displacement(mirror);
       }
       out.texture.texels[i] = glm::vec3(q);
     }

@@ -25,8 +25,8 @@ struct projection {
 
 /// Fills every texel inside a chart with the point where the direction of its coarse surface point, followed both ways,
 /// first meets the front of the original within range_m; where it meets none, with the point of the original closest to
-/// it. Texels of the gutter continue the chart's own surface linearly, 2 f(edge) - f(mirror), so that a bilinear lookup
-/// at the edge of a chart gives f(edge). All others are NaN.
+/// it. Texels of the gutter continue the chart's own surface: the coarse triangle's plane, plus a displacement of
+/// 2 d(edge) - d(mirror), so that a bilinear lookup at the edge of a chart gives the edge. All others are NaN.
 /// @return cancelled
 [[nodiscard]] result<projection> project(const triangle_mesh& coarse, const atlas& charts,
                                          const crease_normals& directions, const triangle_bvh& full, double range_m,

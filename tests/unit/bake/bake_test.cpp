@@ -1,0 +1,227 @@
+#include "asperity/bake/bake.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <gtest/gtest.h>
+#include <set>
+#include <string>
+
+#include "asperity/model/validate.hpp"
+#include "bake/geometry.hpp"
+#include "bake/halfedges.hpp"
+#include "shapes.hpp"
+
+namespace asperity::bake {
+namespace {
+
+const shapes::wavy_torus wavy;
+
+const triangle_mesh& full_torus() {
+  static const triangle_mesh mesh = wavy.mesh(160, 72);
+  return mesh;
+}
+
+bake_options small_options(unsigned threads = 2) {
+  bake_options options;
+  options.name = "wavy torus";
+  options.triangles = 300;
+  options.texture_size = 256;
+  options.threads = threads;
+  return options;
+}
+
+const textured_model& baked_torus() {
+  static const textured_model model = *bake(full_torus(), small_options());
+  return model;
+}
+
+TEST(Bake, MakesAModelThatPassesTheModelCheck) {
+  const textured_model& model = baked_torus();
+  const auto r = validate(model);
+  EXPECT_TRUE(r.has_value()) << r.error().message;
+  EXPECT_EQ(model.name, "wavy torus");
+  EXPECT_EQ(model.mesh.triangles.size(), 300u);
+  EXPECT_EQ(model.report.full_triangles, 23040u);
+  EXPECT_GT(model.report.texels, 256u * 256u / 3u);
+  EXPECT_GT(model.pieces.size(), 1u);
+  EXPECT_NEAR(model.box.high.x, 0.07, 0.002);
+  // Volume of a torus: 2 pi^2 R r^2; chords and the fit to the relief nearly cancel.
+  const double volume = 2.0 * std::pow(std::numbers::pi, 2) * wavy.major_m * wavy.minor_m * wavy.minor_m;
+  EXPECT_NEAR(model.mass.volume_m3 / volume, 1.0, 0.02);
+  EXPECT_LT(glm::length(model.mass.centre_of_mass), 2e-4);
+}
+
+TEST(Bake, TextureSamplesLieOnTheFormula) {
+  const textured_model& model = baked_torus();
+  shapes::dice roll(1);
+  double squares = 0.0;
+  double worst = 0.0;
+  constexpr int samples = 20000;
+  for (int i = 0; i < samples; ++i) {
+    const auto& t = model.mesh.triangles[roll.below(model.mesh.triangles.size())];
+    const auto b = roll.barycentric();
+    const double offset =
+        std::abs(wavy.radial_offset(model.texture.sample(b[0] * t.uv[0] + b[1] * t.uv[1] + b[2] * t.uv[2])));
+    squares += offset * offset;
+    worst = std::max(worst, offset);
+  }
+  // Chords across a wave of curvature a (2 pi / 11 mm)^2: facets of 2 mm cost a sixth of the amplitude a in the middle,
+  // and texels of 1 mm, both ways, a tenth.
+  EXPECT_LT(worst, 0.4 * wavy.amplitude_m);
+  EXPECT_LT(std::sqrt(squares / samples), 0.15 * wavy.amplitude_m);
+}
+
+TEST(Bake, ReportsWhatItMeasured) {
+  const bake_report& report = baked_torus().report;
+  const double diagonal = baked_torus().box.diagonal();
+  EXPECT_GT(report.rms_error_m, 0.0);
+  EXPECT_LT(report.rms_error_m, 5e-4 * diagonal);
+  EXPECT_LT(report.max_error_m, 4e-3 * diagonal);
+  EXPECT_GT(report.relief_m, 2.0 * wavy.amplitude_m);
+  EXPECT_GE(report.max_displacement_m, 0.5 * report.relief_m);
+  EXPECT_EQ(report.fallback_texels, 0u);
+}
+
+TEST(Bake, TheTextureIsWholeAcrossTheEdgesOfItsCharts) {
+  const coarse_mesh& mesh = baked_torus().mesh;
+  std::vector<index_triangle> triangles;
+  for (const coarse_triangle& t : mesh.triangles) triangles.push_back(t.vertex);
+  const connectivity net = connect(triangles, mesh.positions.size());
+  double worst = 0.0;
+  for (std::uint32_t h = 0; h < net.mate.size(); ++h) {
+    const std::uint32_t m = net.mate[h];
+    for (int i = 0; i <= 20; ++i) {
+      const double s = i / 20.0;
+      const auto& a = mesh.triangles[h / 3].uv;
+      const auto& b = mesh.triangles[m / 3].uv;
+      const vec3 here = baked_torus().texture.sample((1.0 - s) * a[h % 3] + s * a[next_halfedge(h) % 3]);
+      const vec3 there = baked_torus().texture.sample((1.0 - s) * b[next_halfedge(m) % 3] + s * b[m % 3]);
+      worst = std::max(worst, glm::length(here - there));
+    }
+  }
+  EXPECT_LT(worst, 0.003 * baked_torus().box.diagonal());
+}
+
+TEST(Bake, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const auto one = bake(full_torus(), small_options(1));
+  const auto four = bake(full_torus(), small_options(4));
+  ASSERT_TRUE(one && four);
+  EXPECT_EQ(one->mesh.positions, four->mesh.positions);
+  ASSERT_EQ(one->texture.texels.size(), four->texture.texels.size());
+  EXPECT_EQ(std::memcmp(one->texture.texels.data(), four->texture.texels.data(),
+                        one->texture.texels.size() * sizeof(glm::vec3)),
+            0);
+  EXPECT_EQ(one->pieces.size(), four->pieces.size());
+  EXPECT_EQ(one->report.rms_error_m, four->report.rms_error_m);
+  EXPECT_EQ(one->report.max_error_m, four->report.max_error_m);
+  EXPECT_EQ(one->report.relief_m, four->report.relief_m);
+}
+
+TEST(Bake, KeepsWhatAFileKeeps) {
+  for (const vec3& p : baked_torus().mesh.positions) EXPECT_EQ(p, to_float32(p));
+  for (const coarse_triangle& t : baked_torus().mesh.triangles)
+    for (const vec2& uv : t.uv) {
+      EXPECT_EQ(uv.x, to_float32(uv.x));
+      EXPECT_EQ(uv.y, to_float32(uv.y));
+    }
+}
+
+// A box with ridges along y on its top that fade out towards the rim, and its coarse partner of 12 triangles.
+const vec3 block_size{0.04, 0.04, 0.02};
+double ridge(const vec3& p) {
+  const double edge = std::min(0.02 - std::abs(p.x), 0.02 - std::abs(p.y));
+  return 0.0005 * std::cos(2.0 * std::numbers::pi * p.x / 0.004) * smoothstep(edge / 0.004);
+}
+triangle_mesh ridged_block() {
+  return shapes::box(block_size, {160, 80, 4}, [](vec3 p) {
+    if (p.z > 0.0099) p.z += ridge(p);
+    return p;
+  });
+}
+
+TEST(Bake, AGivenCoarseBoxKeepsTheRidgesInTheTexture) {
+  bake_options options = small_options();
+  options.texture_size = 512;
+  options.coarse = shapes::box(block_size, {1, 1, 1});
+  const auto model = bake(ridged_block(), options);
+  ASSERT_TRUE(model.has_value()) << model.error().message;
+  EXPECT_TRUE(validate(*model).has_value());
+  EXPECT_EQ(model->mesh.triangles.size(), 12u);
+  ASSERT_EQ(model->pieces.size(), 1u);
+  EXPECT_NEAR(model->report.relief_m, 0.001, 0.0001);
+  EXPECT_LT(model->report.rms_error_m, 1e-4 * model->box.diagonal());
+  // The depth lookup is orthographic: over a point of the top the texture must hold that very point's height.
+  shapes::dice roll(2);
+  double worst_height = 0.0;
+  double worst_slide = 0.0;
+  for (const coarse_triangle& t : model->mesh.triangles) {
+    const std::array<vec3, 3> c{model->mesh.positions[t.vertex[0]], model->mesh.positions[t.vertex[1]],
+                                model->mesh.positions[t.vertex[2]]};
+    if (unit_normal(c).z < 0.5) continue;
+    for (int i = 0; i < 2000; ++i) {
+      const auto b = roll.barycentric();
+      const vec3 p = b[0] * c[0] + b[1] * c[1] + b[2] * c[2];
+      const vec3 q = model->texture.sample(b[0] * t.uv[0] + b[1] * t.uv[1] + b[2] * t.uv[2]);
+      worst_height = std::max(worst_height, std::abs(q.z - p.z - ridge(p)));
+      worst_slide = std::max(worst_slide, std::hypot(q.x - p.x, q.y - p.y));
+    }
+  }
+  // Facets and texels of a quarter of a millimetre each cut 2 % off a ridge of 4 mm; the fade-out adds a little.
+  EXPECT_LT(worst_height, 0.06 * 0.0005);
+  EXPECT_LT(worst_slide, 1e-4);
+}
+
+TEST(Bake, RefusesACoarseMeshOfOtherUnits) {
+  bake_options options = small_options();
+  options.coarse = shapes::scaled(shapes::box(block_size, {1, 1, 1}), 1000.0);
+  const auto r = bake(ridged_block(), options);
+  ASSERT_FALSE(r.has_value());
+  EXPECT_EQ(r.error().code, error_code::bad_mesh);
+  EXPECT_NE(r.error().message.find("times larger"), std::string::npos) << r.error().message;
+}
+
+TEST(Bake, RefusesABadCoarseMeshByName) {
+  bake_options options = small_options();
+  options.coarse = shapes::box(block_size, {1, 1, 1});
+  options.coarse->triangles.pop_back();
+  const auto r = bake(ridged_block(), options);
+  ASSERT_FALSE(r.has_value());
+  EXPECT_EQ(r.error().message.rfind("the coarse mesh is not closed", 0), 0u) << r.error().message;
+}
+
+TEST(Bake, RefusesOptionsOutOfRange) {
+  bake_options few = small_options();
+  few.triangles = 3;
+  EXPECT_EQ(bake(full_torus(), few).error().code, error_code::invalid_argument);
+  bake_options tiny = small_options();
+  tiny.texture_size = 1;
+  EXPECT_EQ(bake(full_torus(), tiny).error().code, error_code::invalid_argument);
+  bake_options huge = small_options();
+  huge.texture_size = 1U << 20;
+  EXPECT_EQ(bake(full_torus(), huge).error().code, error_code::invalid_argument);
+}
+
+TEST(Bake, TellsOfItsStagesAndStopsAtAnyOfThem) {
+  std::vector<std::string> stages;
+  bake_options options = small_options();
+  const triangle_mesh mesh = wavy.mesh(60, 30);
+  options.progress = [&](std::string_view stage, double done) {
+    EXPECT_GE(done, 0.0);
+    EXPECT_LE(done, 1.0);
+    if (stages.empty() || stages.back() != stage) stages.emplace_back(stage);
+    return true;
+  };
+  ASSERT_TRUE(bake(mesh, options).has_value());
+  EXPECT_EQ(stages,
+            (std::vector<std::string>{"check", "simplify", "compare", "atlas", "project", "pieces", "measure"}));
+  for (const std::string& last : stages) {
+    options.progress = [&](std::string_view stage, double) { return stage != last; };
+    const auto r = bake(mesh, options);
+    ASSERT_FALSE(r.has_value()) << last;
+    EXPECT_EQ(r.error().code, error_code::cancelled) << last;
+  }
+}
+
+}  // namespace
+}  // namespace asperity::bake
