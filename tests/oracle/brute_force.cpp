@@ -110,20 +110,19 @@ brute_force_depth measure_brute_force(const body& a, const body& b, const contac
   const auto b_h = full_heights(dense, b, -1.0, coarse_samples(dense, b, -1.0));
 
   brute_force_depth out;
-  out.dense_m = out.grid_m = -std::numeric_limits<double>::infinity();
+  out.dense.depth_m = out.grid.depth_m = -std::numeric_limits<double>::infinity();
+  const auto keep_deepest = [&](deepest_place& best, double depth, int i, int j) {
+    if (depth > best.depth_m) best = {depth, slope_at(dense, a_h, i, j), slope_at(dense, b_h, i, j)};
+  };
   for (int j = 0; j < dense.side; ++j) {
     for (int i = 0; i < dense.side; ++i) {
       const std::size_t k =
           static_cast<std::size_t>(j) * static_cast<std::size_t>(dense.side) + static_cast<std::size_t>(i);
       const double d = a_h[k] - b_h[k];
       if (std::isnan(d)) continue;
-      if (d > out.dense_m) {
-        out.dense_m = d;
-        out.slope_a = slope_at(dense, a_h, i, j);
-        out.slope_b = slope_at(dense, b_h, i, j);
-      }
+      keep_deepest(out.dense, d, i, j);
       if (i % refinement == refinement / 2 && j % refinement == refinement / 2) {
-        out.grid_m = std::max(out.grid_m, d);
+        keep_deepest(out.grid, d, i, j);
         ++out.samples;
       }
     }

@@ -23,11 +23,16 @@ struct body {
   double displacement_m;                 ///< largest distance between the original and the coarse surface
 };
 
+/// A largest height difference and how steep the two surfaces are there (|dh/du, dh/dv|).
+struct deepest_place {
+  double depth_m = 0.0;
+  double slope_a = 0.0, slope_b = 0.0;
+};
+
 struct brute_force_depth {
-  double dense_m = 0.0;                 ///< largest height difference on a grid refined `refinement` times
-  double grid_m = 0.0;                  ///< largest height difference on the cell centres of the N x N grid itself
-  std::size_t samples = 0;              ///< samples of the N x N grid where both surfaces exist
-  double slope_a = 0.0, slope_b = 0.0;  ///< |dh/du, dh/dv| of either surface at the dense maximum
+  deepest_place dense;      ///< on a grid refined `refinement` times
+  deepest_place grid;       ///< on the cell centres of the N x N grid itself
+  std::size_t samples = 0;  ///< samples of the N x N grid where both surfaces exist
 };
 
 /// Depth along window.n_ab_w over the window. A line (u, v) counts where it crosses both coarse patches on a side that

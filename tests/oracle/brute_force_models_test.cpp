@@ -105,15 +105,25 @@ bool touching_pose(renderer& r, std::mt19937_64& rng, pose& T_wa) {
 }
 
 struct row {
-  int poses = 0, contacts = 0, beyond = 0;
-  double worst_share = 0.0;  // of the bound
-  std::vector<double> errors_m;
+  int poses = 0, contacts = 0;
+  int beyond = 0;                    // further from the true depth than sampling and bakes explain
+  double worst_share = 0.0;          // of that bound
+  double rms_error_m = 0.0;          // of both bakes
+  std::vector<double> errors_m;      // from the originals on the finer grid
+  std::vector<double> on_grid_m;     // from the originals on the same grid: what sampling has no part in
+  std::vector<double> untextured_m;  // the same of the coarse surfaces alone: what a lost texture would show
 };
 
 double percentile(std::vector<double> v, double p) {
   if (v.empty()) return 0.0;
   std::sort(v.begin(), v.end());
   return v[std::min(v.size() - 1, static_cast<std::size_t>(p * static_cast<double>(v.size())))];
+}
+
+triangle_mesh bare(const coarse_mesh& mesh) {
+  triangle_mesh out{mesh.positions, {}, {}};
+  for (const coarse_triangle& t : mesh.triangles) out.triangles.push_back(t.vertex);
+  return out;
 }
 
 row compare(const std::string& probe_name, const std::string& fixed_name, std::uint64_t seed) {
@@ -128,6 +138,9 @@ row compare(const std::string& probe_name, const std::string& fixed_name, std::u
     ADD_FAILURE() << made.error().message;
     return out;
   }
+  out.rms_error_m = a.model->report.rms_error_m + b.model->report.rms_error_m;
+  const triangle_mesh bare_a = bare(a.model->mesh);
+  const triangle_mesh bare_b = bare(b.model->mesh);
   const std::array<pose, 1> fixed{};
   std::mt19937_64 rng(seed);
   for (int attempt = 0; out.poses < poses_per_pair && attempt < 4 * poses_per_pair; ++attempt) {
@@ -150,22 +163,26 @@ row compare(const std::string& probe_name, const std::string& fixed_name, std::u
         continue;
       }
       ++out.contacts;
-      const double error = std::fabs(p.depth_m - truth.dense_m);
-      // What the grid misses of the originals themselves, and the bakes' own largest errors. Those are distances
-      // across the surface; along n a slope makes them longer (a wall, where it has no limit, counts as 45 degrees).
+      // A bake's error is a distance across the surface; along n a slope makes it longer. A wall, where that has no
+      // limit, counts as 45 degrees.
       const auto along_n = [](double slope) { return std::hypot(1.0, std::min(slope, 1.0)); };
-      const double bound = (truth.dense_m - truth.grid_m) + along_n(truth.slope_a) * a.model->report.max_error_m +
-                           along_n(truth.slope_b) * b.model->report.max_error_m;
-      out.errors_m.push_back(error);
+      // What the grid misses of the originals themselves, and the bakes' own largest errors.
+      const double bound = (truth.dense.depth_m - truth.grid.depth_m) +
+                           along_n(truth.dense.slope_a) * a.model->report.max_error_m +
+                           along_n(truth.dense.slope_b) * b.model->report.max_error_m;
+      const double error = std::fabs(p.depth_m - truth.dense.depth_m);
       out.worst_share = std::max(out.worst_share, error / bound);
       if (error > bound) {
         ++out.beyond;
-        std::printf(
-            "    beyond: pose %d contact %zu  depth %.6f mm  truth %.6f mm  grid %.6f mm  bound %.6f mm  slopes %.2f "
-            "%.2f  window %.2f mm\n",
-            out.poses, i, p.depth_m * 1e3, truth.dense_m * 1e3, truth.grid_m * 1e3, bound * 1e3, truth.slope_a,
-            truth.slope_b, c.window.half_size_m * 1e3);
+        std::printf("    pose %d contact %zu: depth %.4f mm, originals %.4f mm, on the same grid %.4f mm\n", out.poses,
+                    i, p.depth_m * 1e3, truth.dense.depth_m * 1e3, truth.grid.depth_m * 1e3);
       }
+      const auto untextured = oracle::measure_brute_force(
+          {&bare_a, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
+          {&bare_b, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)}, c.window, grid, 1);
+      out.errors_m.push_back(error);
+      out.on_grid_m.push_back(std::fabs(p.depth_m - truth.grid.depth_m));
+      out.untextured_m.push_back(std::fabs(untextured.grid.depth_m - truth.grid.depth_m));
     }
   }
   return out;
@@ -176,16 +193,21 @@ TEST(brute_force_models, depth_agrees_with_the_full_resolution_meshes) {
     const char *probe, *fixed;
     std::uint64_t seed;
   };
-  std::printf("  %-18s %6s %9s   %s\n", "pair", "poses", "contacts",
-              "|error| um: median   p95   max   largest share of its bound");
+  std::printf("  |depth - originals| in um: on a grid %d times finer, on the same grid, and there without texture\n",
+              refinement);
+  std::printf("  %-20s %5s %8s %10s %7s %7s %6s %9s %7s %7s %9s\n", "pair", "poses", "contacts", "finer: p50", "p95",
+              "max", "share", "same: p50", "p95", "max", "bare: p50");
   int poses = 0;
   for (const pair& p : {pair{"block", "gear", 11}, pair{"file", "cad_part", 12}, pair{"hammer", "torus", 13}}) {
     const row r = compare(p.probe, p.fixed, p.seed);
-    std::printf("  %-8s on %-8s %5d %9d   %19.3f %6.3f %6.3f   %.2f\n", p.probe, p.fixed, r.poses, r.contacts,
-                percentile(r.errors_m, 0.5) * 1e6, percentile(r.errors_m, 0.95) * 1e6,
-                percentile(r.errors_m, 1.0) * 1e6, r.worst_share);
+    const auto um = [](const std::vector<double>& v, double share) { return percentile(v, share) * 1e6; };
+    std::printf("  %-8s on %-8s %5d %8d %10.1f %7.1f %7.1f %6.2f %9.2f %7.2f %7.2f %9.1f\n", p.probe, p.fixed, r.poses,
+                r.contacts, um(r.errors_m, 0.5), um(r.errors_m, 0.95), um(r.errors_m, 1.0), r.worst_share,
+                um(r.on_grid_m, 0.5), um(r.on_grid_m, 0.95), um(r.on_grid_m, 1.0), um(r.untextured_m, 0.5));
     poses += r.poses;
     EXPECT_EQ(r.beyond, 0) << p.probe << " on " << p.fixed << " (seed " << p.seed << ")";
+    EXPECT_LE(percentile(r.on_grid_m, 0.5), r.rms_error_m) << "half the contacts are as good as the bakes' mean error";
+    EXPECT_GT(percentile(r.untextured_m, 0.5), 5.0 * percentile(r.on_grid_m, 0.5)) << "a lost texture would not show";
   }
   EXPECT_GE(poses, 200);
 }

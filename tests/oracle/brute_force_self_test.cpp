@@ -52,9 +52,10 @@ TEST(brute_force, sine_ridges_on_sine_ridges_agree_with_the_closed_form) {
     const double expected = overlap + std::sqrt(amplitude_a * amplitude_a + amplitude_b * amplitude_b +
                                                 2 * amplitude_a * amplitude_b * std::cos(k * shift));
     // 600 facets over 24 mm: a facet lies below the sine by at most amplitude (k h)^2 / 8
-    EXPECT_NEAR(d.dense_m, expected, (amplitude_a + amplitude_b) * std::pow(k * 0.024 / 600, 2) / 4) << shift;
-    EXPECT_LE(d.grid_m, d.dense_m);
-    EXPECT_GE(d.grid_m, d.dense_m - (amplitude_a + amplitude_b) * (1 - std::cos(k * 0.016 / 100 / 2)) - 1e-9);
+    EXPECT_NEAR(d.dense.depth_m, expected, (amplitude_a + amplitude_b) * std::pow(k * 0.024 / 600, 2) / 4) << shift;
+    EXPECT_LE(d.grid.depth_m, d.dense.depth_m);
+    EXPECT_GE(d.grid.depth_m,
+              d.dense.depth_m - (amplitude_a + amplitude_b) * (1 - std::cos(k * 0.016 / 100 / 2)) - 1e-9);
   }
 }
 
@@ -69,7 +70,7 @@ TEST(brute_force, sphere_on_sphere_agrees_with_the_closed_form) {
                                              {&b.full, &b.coarse, both, {}, 0.003}, down, 64, 5);
   const double horizontal2 = offset.x * offset.x + offset.y * offset.y;
   const double expected = std::sqrt((ra + rb) * (ra + rb) - horizontal2) - (ra + rb + offset.z);
-  EXPECT_NEAR(d.dense_m, expected, 2e-7);
+  EXPECT_NEAR(d.dense.depth_m, expected, 2e-7);
 }
 
 TEST(brute_force, the_crossing_next_to_the_coarse_surface_counts_not_another_sheet) {
@@ -85,7 +86,7 @@ TEST(brute_force, the_crossing_next_to_the_coarse_surface_counts_not_another_she
   const height_field b(0.012, 40, [](double, double) { return 0.0; });
   const auto d = oracle::measure_brute_force({&a.full, &a.coarse, both, {upside_down, {0, 0, -0.0002}}, 0.001},
                                              {&b.full, &b.coarse, both, {}, 0.003}, down, 50, 3);
-  EXPECT_NEAR(d.dense_m, 0.0003, 1e-12);
+  EXPECT_NEAR(d.dense.depth_m, 0.0003, 1e-12);
 }
 
 }  // namespace
