@@ -62,6 +62,10 @@ result<simplified_mesh> coarse_of(const checked_mesh& full, const triangle_bvh& 
   return out;
 }
 
+void remark(const bake_options& options, std::string_view sentence) {
+  if (options.remark && !sentence.empty()) options.remark(sentence);
+}
+
 coarse_mesh with_uvs(const triangle_mesh& mesh, const atlas& charts) {
   coarse_mesh out;
   out.positions = mesh.positions;
@@ -80,12 +84,14 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (const auto sound = check_options(options); !sound) return sound.error();
   const auto full = check(full_mesh);
   if (!full) return full.error();
+  if (full->flipped) remark(options, "the mesh was inside-out and has been turned");
   const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles);
   const double diagonal = bounds_of(full->mesh.positions).diagonal();
 
   if (!monitor.begin("simplify")) return cancelled();
   const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);
   if (!coarse) return coarse.error();
+  remark(options, coarse->note);
   if (!monitor.begin("compare")) return cancelled();
   const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
   if (!cage) return cage.error();

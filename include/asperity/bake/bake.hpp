@@ -14,16 +14,23 @@
 namespace asperity::bake {
 
 struct bake_options {
-  std::string name;                          ///< name of the model, kept in the file
-  std::size_t triangles = 600;               ///< coarse triangles to aim for; ignored where `coarse` is given
-  std::optional<triangle_mesh> coarse;       ///< a coarse mesh to use instead of simplifying
-  std::uint32_t texture_size = 1024;         ///< texels per side
-  unsigned threads = 0;                      ///< 0: as many as the machine has; the result does not depend on it
+  std::string name;                     ///< name of the model, kept in the file
+  std::size_t triangles = 600;          ///< coarse triangles to aim for; ignored where `coarse` is given
+  std::optional<triangle_mesh> coarse;  ///< a coarse mesh to use instead of simplifying
+  std::uint32_t texture_size = 1024;    ///< texels per side
+  unsigned threads = 0;                 ///< 0: as many as the machine has; the result does not depend on it
   /// Told of every stage and its share done, 0 to 1; returning false cancels the bake.
   std::function<bool(std::string_view stage, double done)> progress;
+  /// Told, one sentence each, of what was done differently from what was asked: a mesh turned the right way out, a
+  /// coarse mesh of more triangles.
+  std::function<void(std::string_view sentence)> remark;
 };
 
-/// The textured model of a full-resolution mesh.
+/// The textured model of a full-resolution mesh, in seven stages: check the mesh, simplify it (or take the coarse mesh
+/// given), compare the two, lay an atlas on the coarse mesh, project its texels onto the original, split the coarse
+/// mesh into convex pieces, and measure how far the textured surface and the original are apart. The mesh has to be
+/// closed, 2-manifold and in metres; several components and cavities are allowed. Positions and texture coordinates of
+/// the model are exact in float32. The same input gives the same bits.
 /// @return bad_mesh | invalid_argument | limit_exceeded | cancelled, with the fault, its place and the mend
 [[nodiscard]] result<textured_model> bake(const triangle_mesh& full, const bake_options& options);
 

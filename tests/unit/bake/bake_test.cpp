@@ -4,8 +4,9 @@
 #include <cmath>
 #include <cstring>
 #include <gtest/gtest.h>
-#include <set>
+#include <numbers>
 #include <string>
+#include <vector>
 
 #include "asperity/model/validate.hpp"
 #include "bake/geometry.hpp"
@@ -188,6 +189,22 @@ TEST(Bake, RefusesABadCoarseMeshByName) {
   const auto r = bake(ridged_block(), options);
   ASSERT_FALSE(r.has_value());
   EXPECT_EQ(r.error().message.rfind("the coarse mesh is not closed", 0), 0u) << r.error().message;
+}
+
+TEST(Bake, RemarksOnWhatItDidDifferently) {
+  std::vector<std::string> remarks;
+  bake_options options = small_options();
+  options.texture_size = 64;
+  options.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
+  const triangle_mesh box = shapes::box(block_size, {2, 2, 2});
+  ASSERT_TRUE(bake(box, options).has_value());
+  EXPECT_TRUE(remarks.empty());
+  options.coarse = shapes::reversed(shapes::box(block_size, {1, 1, 1}));
+  const auto model = bake(shapes::reversed(box), options);
+  ASSERT_TRUE(model.has_value()) << model.error().message;
+  EXPECT_GT(model->mass.volume_m3, 0.0);
+  EXPECT_EQ(remarks, (std::vector<std::string>{"the mesh was inside-out and has been turned",
+                                               "the coarse mesh was inside-out and has been turned"}));
 }
 
 TEST(Bake, RefusesOptionsOutOfRange) {
