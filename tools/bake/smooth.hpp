@@ -10,16 +10,14 @@
 
 namespace asperity::bake {
 
-/// Passes that remove nine tenths of a relief whose wavelength is a third of a coarse triangle's edge, and more of a
-/// finer one. Twice as many, for longer waves, cost more at sharp edges than they gain: the error of the CAD part rose
-/// by a third. A pass multiplies a wave by 1 - (pi h / wavelength)^2 / 2, h the edge of a fine triangle; the squared
-/// ratio of the edges is the ratio of the triangle counts.
+/// Passes that remove relief of wavelengths below half the edge of a coarse triangle.
+/// One pass widens the filter's Gaussian by h^2 / 4 (h: edge of a fine triangle); damping such a wave tenfold takes a
+/// width of 0.17 coarse edges, and the squared ratio of the edges is the ratio of the triangle counts.
 [[nodiscard]] std::size_t smoothing_passes(std::size_t full_triangles, std::size_t coarse_triangles) noexcept;
 
-/// Vertex positions after `passes` halfway steps towards the mean of the neighbours, followed by the same filter on
-/// what they removed, which is then put back (twicing, J. W. Tukey, 1977): a wave that the filter multiplies by g comes
-/// out as 2 g - g^2 of itself. Fine waves vanish all the same, while curvature and volume stay where the filter alone
-/// would have shrunk them. Connectivity is not touched.
+/// Vertex positions after `passes` of Taubin's filter: a step towards the mean of the neighbours and a slightly longer
+/// step back, so that waves vanish while the volume stays. Connectivity is not touched.
+/// @source G. Taubin, A signal processing approach to fair surface design, 1995
 /// @return empty where the bake was cancelled
 [[nodiscard]] std::vector<vec3> smooth(const triangle_mesh& mesh, std::size_t passes, unsigned threads,
                                        stage_monitor& monitor);
