@@ -148,7 +148,7 @@ TYPED_TEST_P(DepthBackendContract, AgreesWithTheCpuReference) {
     settings.gradient = g;
     cpu_depth reference(s, settings);
     for (int i = 0; i < 6; ++i) {
-      const pose T{exp_rotation(vec3(0.05 * uniform(), 0.05 * uniform(), uniform())) * test_support::face_down(),
+      const pose T{exp_rotation(vec3{0.05 * uniform(), 0.05 * uniform(), uniform()}) * test_support::face_down(),
                    {1e-3 * uniform(), 1e-3 * uniform(), 1e-4 * uniform()}};
       const contact_window w = test_support::window_downwards(6e-3);
       const penetration p = test_support::measure_whole(backend, s, w, T),

@@ -81,7 +81,8 @@ struct fine_hit {
 template <class Wanted>
 [[nodiscard]] bool look_up(const body_view& body, const sample_grid& grid, parallax_mode mode, height_field& field,
                            Wanted wanted) noexcept {
-  const double tolerance_m = 1e-8 * grid.half_m;
+  // The last step may cross a texel border, where the slope has a kink: what is left must be far below any depth.
+  const double tolerance_m = 1e-10 * grid.half_m;
   bool all_finite = true;
   for (std::size_t row = 0, i = 0; row < grid.side; ++row) {
     const double v = grid.coordinate(row);

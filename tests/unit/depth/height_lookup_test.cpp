@@ -19,7 +19,7 @@ TEST(TextureCell, AgreesWithTheTexturesOwnLookupAndItsDerivatives) {
   std::mt19937_64 bits(5);
   const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-53; };
   for (int i = 0; i < 2000; ++i) {
-    const vec2 uv(1.1 * uniform() - 0.05, 1.1 * uniform() - 0.05);  // a little beyond the image too
+    const vec2 uv{1.1 * uniform() - 0.05, 1.1 * uniform() - 0.05};  // a little beyond the image too
     const vec2 z = uv * vec2(texture.width, texture.height) - 0.5;
     EXPECT_LT(glm::length(read(texture, z).point - texture.sample(uv)), 1e-15);
     const texture_cell cell(texture, z);

@@ -31,8 +31,8 @@ TEST(Raster, LeavesNoHoleBetweenTrianglesInAnyPose) {
   std::mt19937_64 bits(11);
   const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
   for (int i = 0; i < 200; ++i) {
-    const pose T{exp_rotation(vec3(0.4 * uniform(), 0.4 * uniform(), 3.0 * uniform())) * face_down(),
-                 1e-3 * vec3(uniform(), uniform(), uniform())};
+    const pose T{exp_rotation(vec3{0.4 * uniform(), 0.4 * uniform(), 3.0 * uniform()}) * face_down(),
+                 1e-3 * vec3{uniform(), uniform(), uniform()}};
     r.run(window_downwards(5e-3), T, layer::highest);  // inside the face, whatever the pose
     EXPECT_EQ(std::count(r.field.kind.begin(), r.field.kind.end(), hit::none), 0) << "pose " << i;
   }
