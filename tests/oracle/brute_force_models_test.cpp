@@ -80,8 +80,8 @@ bool touching_pose(renderer& r, std::mt19937_64& rng, pose& T_wa) {
   const quat rotation = random_rotation(rng);
   const vec3 from = random_direction(rng);
   const vec3 centre_b = 0.5 * (b.box.low + b.box.high);
-  const vec3 target =
-      centre_b + 0.3 * uniform(rng, 0.0, 1.0) * b.box.diagonal() * glm::cross(from, random_direction(rng));
+  const vec3 aside = glm::cross(from, random_direction(rng));
+  const vec3 target = centre_b + 0.3 * uniform(rng, 0.0, 1.0) * b.box.diagonal() * aside;
   const vec3 centre_a = 0.5 * (a.box.low + a.box.high);
   const double wanted = uniform(rng, 0.0, 0.0004);
   const auto at = [&](double distance) { return pose{rotation, target + distance * from - rotation * centre_a}; };

@@ -182,6 +182,39 @@ TEST(Pieces, ASlotIsNotBridged) {
   expect_good_pieces(slotted, pieces);
 }
 
+TEST(Pieces, AShallowDentStaysOutOfTheHullAround) {
+  // 0.3 % of the diagonal: the lid may bridge so much air, but the dent's own triangles lie too deep below it.
+  const triangle_mesh dented = shapes::box({0.04, 0.04, 0.06}, {2, 2, 1}, [](vec3 p) {
+    return p.x == 0.0 && p.y == 0.0 && p.z > 0.0 ? p - vec3(0.0, 0.0, 0.00024) : p;
+  });
+  const auto pieces = pieces_of(dented);
+  expect_good_pieces(dented, pieces);
+}
+
+TEST(Pieces, AChamberBehindANarrowSlitStaysEmpty) {
+  // The slit is narrower than the air that a hull may bridge; what lies behind it is not.
+  const triangle_mesh keyhole =
+      shapes::cells({{{-0.02, -0.008, -0.00005, 0.00005, 0.008, 0.02}, {-0.015, 0.015}, {0.0, 0.006, 0.014, 0.02}}},
+                    [](const std::array<int, 3>& c) {
+                      const bool chamber = c[2] == 1 && c[0] >= 1 && c[0] <= 3;
+                      const bool slit = c[2] == 2 && c[0] == 2;
+                      return !chamber && !slit;
+                    });
+  ASSERT_TRUE(check(keyhole).has_value()) << check(keyhole).error().message;
+  const auto pieces = pieces_of(keyhole);
+  expect_good_pieces(keyhole, pieces);
+  const vec3 centre{0.001, 0.0, 0.0105};
+  for (const convex_piece& p : pieces) {
+    if (p.flat) continue;
+    double outside = 0.0;
+    for (const auto& f : p.hull) {
+      const auto c = corners(p.vertices, f);
+      outside = std::max(outside, glm::dot(unit_normal(c), centre - c[0]));
+    }
+    EXPECT_GT(outside, 0.0);
+  }
+}
+
 TEST(Pieces, ASaddleGivesFlatPieces) {
   stage_monitor monitor;
   shapes::wavy_torus torus;

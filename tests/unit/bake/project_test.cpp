@@ -84,6 +84,27 @@ TEST(Project, AFlatSurfaceIsReproducedUpToTheEdgesOfItsCharts) {
   EXPECT_LT(worst, 1e-3 * p.charts.texel_m);  // float32 texture coordinates
 }
 
+TEST(Project, ASlopeGoesOnAcrossTheEdgesBetweenCharts) {
+  // The top of the original is tilted against the coarse top; away from the rim both charts at an edge have to say so.
+  const vec3 size{0.04, 0.04, 0.02};
+  const auto tilt = [](vec3 p) { return p.z > 0.0099 ? p + vec3(0.0, 0.0, 0.05 * p.x) : p; };
+  const triangle_mesh coarse = shapes::box(size, {8, 8, 1});
+  const projected p = run(coarse, shapes::box(size, {8, 8, 1}, tilt), 0.005);
+  std::size_t edges = 0;
+  for (std::size_t t = 0; t < coarse.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k)
+      for (const double s : {0.1, 0.35, 0.5, 0.8}) {
+        std::array<double, 3> b{};
+        b[k] = 1.0 - s;
+        b[(k + 1) % 3] = s;
+        const vec3 at = p.point(t, b);
+        if (at.z < 0.0099 || std::abs(at.x) > 0.011 || std::abs(at.y) > 0.011) continue;
+        EXPECT_LT(glm::length(p.out.texture.sample(p.uv(t, b)) - tilt(at)), 1e-3 * 0.05 * p.charts.texel_m);
+        ++edges;
+      }
+  EXPECT_GT(edges, 100u);
+}
+
 TEST(Project, TexelsOutsideChartsAndGuttersHoldNoPosition) {
   const triangle_mesh box = shapes::box({0.04, 0.03, 0.02}, {1, 1, 1});
   const projected p = run(box, box, 0.005);
