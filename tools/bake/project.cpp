@@ -135,7 +135,8 @@ result<projection> project(const triangle_mesh& coarse, const atlas& charts, con
       const owner& o = owners[i];
       if (o.triangle == no_halfedge) continue;
       const image_triangle triangle(charts.uv[o.triangle], texture_size);
-      const vec2 p{static_cast<double>(i % texture_size) + 0.5, static_cast<double>(i / texture_size) + 0.5};
+      const std::size_t row = i / texture_size;
+      const vec2 p{static_cast<double>(i % texture_size) + 0.5, static_cast<double>(row) + 0.5};
       vec3 q;
       if (o.distance == 0.0F) {
         q = surface(o.triangle, triangle.coordinates(p), &of_block[block]);

@@ -319,8 +319,8 @@ class body_reader {
   bool read_list(const property& q) {
     double length = 0.0;
     if (!number(*q.list_count, length)) return false;
-    if (!(length >= 0.0 && length == std::floor(length) &&
-          length <= static_cast<double>(source_.left() / Source::least_bytes(q.type)))) {
+    const std::size_t room = source_.left() / Source::least_bytes(q.type);
+    if (!(length >= 0.0 && length == std::floor(length) && length <= static_cast<double>(room))) {
       what_ = "follows a list length that the rest of the file cannot hold";
       return false;
     }

@@ -25,7 +25,7 @@ double wrinkles(double u, double v) {
 
 triangle_mesh make_torus() {
   triangle_mesh mesh;
-  mesh.positions.reserve(around * across);
+  mesh.positions.reserve(std::size_t{around} * across);
   for (std::uint32_t i = 0; i < around; ++i) {
     const double u = two_pi * i / around;
     for (std::uint32_t j = 0; j < across; ++j) {
