@@ -24,10 +24,10 @@ namespace asperity {
 struct depth_tag {};
 
 template <class P>
-concept depth_backend =
-    std::derived_from<typename P::policy_tag, depth_tag> &&
+concept depth_backend = std::derived_from<typename P::policy_tag, depth_tag> &&
     requires(P& backend, const scene_pose& at, const contact_set& contacts, std::span<penetration> out) {
-      { backend.measure(at, contacts, out) } noexcept -> std::same_as<status>;
-    };
+  { backend.measure(at, contacts, out) }
+  noexcept->std::same_as<status>;
+};
 
 }  // namespace asperity

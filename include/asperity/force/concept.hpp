@@ -5,7 +5,8 @@
 //   world axes, and its stiffness J = dW/dq, q = (translation of c_A; rotation about c_A). B feels the opposite.
 // - No contact, no overlap or a gap everywhere: exactly zero wrench and zero stiffness.
 // - J is symmetric negative semidefinite, so that an implicit step may use it whatever its size.
-// - Nothing in accumulate() allocates, locks, throws, prints or reads a clock. The model may keep nothing between calls.
+// - Nothing in accumulate() allocates, locks, throws, prints or reads a clock. The model may keep nothing between
+// calls.
 #pragma once
 
 #include <concepts>
@@ -29,9 +30,9 @@ struct force_tag {};
 
 template <class P>
 concept force_model = std::derived_from<typename P::policy_tag, force_tag> &&
-                      requires(const P& model, const contact_set& contacts, std::span<const penetration> depths,
-                               contact_force& out) {
-                        { model.accumulate(contacts, depths, out) } noexcept -> std::same_as<status>;
-                      };
+    requires(const P& model, const contact_set& contacts, std::span<const penetration> depths, contact_force& out) {
+  { model.accumulate(contacts, depths, out) }
+  noexcept->std::same_as<status>;
+};
 
 }  // namespace asperity

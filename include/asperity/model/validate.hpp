@@ -70,11 +70,11 @@ inline result<void> check_triangles(const coarse_mesh& mesh) {
 
 /// Closed and consistently oriented: every edge is used once in each direction.
 inline result<void> check_closed(const coarse_mesh& mesh) {
-  struct half_edge {
+  struct directed_edge {
     std::uint32_t low, high, triangle;
     bool forward;
   };
-  std::vector<half_edge> edges;
+  std::vector<directed_edge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& v = mesh.triangles[t].vertex;
@@ -84,7 +84,7 @@ inline result<void> check_closed(const coarse_mesh& mesh) {
       edges.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(t), a < b});
     }
   }
-  std::sort(edges.begin(), edges.end(), [](const half_edge& a, const half_edge& b) {
+  std::sort(edges.begin(), edges.end(), [](const directed_edge& a, const directed_edge& b) {
     return std::pair(a.low, a.high) != std::pair(b.low, b.high) ? std::pair(a.low, a.high) < std::pair(b.low, b.high)
                                                                 : a.triangle < b.triangle;
   });

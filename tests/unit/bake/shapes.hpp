@@ -8,6 +8,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "asperity/model/triangle_mesh.hpp"
 
@@ -57,6 +58,49 @@ inline triangle_mesh box(const vec3& size, const std::array<int, 3>& cells,
           }
         }
   }
+  return mesh;
+}
+
+/// Surface of the cells of a grid that are solid; grid[axis] are the planes between the cells. Welded.
+/// @pre no two solid cells touch in an edge or a corner only
+inline triangle_mesh cells(const std::array<std::vector<double>, 3>& grid,
+                           const std::function<bool(const std::array<int, 3>&)>& solid) {
+  triangle_mesh mesh;
+  std::map<std::array<int, 3>, std::uint32_t> number;
+  const auto count = [&](std::size_t axis) { return static_cast<int>(grid[axis].size()) - 1; };
+  const auto is_solid = [&](const std::array<int, 3>& c) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (c[k] < 0 || c[k] >= count(k)) return false;
+    return solid(c);
+  };
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [entry, added] = number.try_emplace(at, static_cast<std::uint32_t>(mesh.positions.size()));
+    const auto plane = [&](std::size_t k) { return grid[k][static_cast<std::size_t>(at[k])]; };
+    if (added) mesh.positions.emplace_back(plane(0), plane(1), plane(2));
+    return entry->second;
+  };
+  const auto wall = [&](const std::array<int, 3>& cell, std::size_t axis, bool upper) {
+    std::array<std::uint32_t, 4> ring{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      std::array<int, 3> at = cell;
+      at[axis] += upper ? 1 : 0;
+      at[(axis + 1) % 3] += i == 1 || i == 2 ? 1 : 0;
+      at[(axis + 2) % 3] += i >= 2 ? 1 : 0;
+      ring[upper ? i : 3 - i] = vertex(at);
+    }
+    mesh.triangles.push_back({ring[0], ring[1], ring[2]});
+    mesh.triangles.push_back({ring[0], ring[2], ring[3]});
+  };
+  std::array<int, 3> c{};
+  for (c[0] = 0; c[0] < count(0); ++c[0])
+    for (c[1] = 0; c[1] < count(1); ++c[1])
+      for (c[2] = 0; c[2] < count(2); ++c[2])
+        for (std::size_t axis = 0; axis < 3 && is_solid(c); ++axis)
+          for (const bool upper : {false, true}) {
+            std::array<int, 3> beside = c;
+            beside[axis] += upper ? 1 : -1;
+            if (!is_solid(beside)) wall(c, axis, upper);
+          }
   return mesh;
 }
 
