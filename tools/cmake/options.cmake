@@ -6,7 +6,9 @@ target_compile_options(asperity_build_options INTERFACE
 if(ASPERITY_SANITIZE)
   list(JOIN ASPERITY_SANITIZE "," _sanitizers)
   target_compile_options(asperity_build_options INTERFACE
-    -fsanitize=${_sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    -fsanitize=${_sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all
+    # GCC 12 takes the empty std::optional for uninitialised once the sanitizers have rewritten the code.
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(asperity_build_options INTERFACE -fsanitize=${_sanitizers})
 endif()
 

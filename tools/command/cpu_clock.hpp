@@ -1,7 +1,7 @@
 // A stopwatch for code that shares its machine with others.
 #pragma once
 
-#include <time.h>
+#include <ctime>
 
 namespace asperity::command {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <thread>
-#include <time.h>
 #include <utility>
 
 #include "cpu_clock.hpp"
