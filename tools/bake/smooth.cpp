@@ -10,7 +10,7 @@ namespace {
 
 constexpr double step = 0.5;
 constexpr double step_back = -0.52;
-constexpr double passes_per_triangle_ratio = 0.25;
+constexpr double passes_per_triangle_ratio = 0.116;
 constexpr std::size_t most_passes = 400;
 
 // Neighbours of every vertex, one after the other. In a closed mesh each edge leaves each of its ends once.

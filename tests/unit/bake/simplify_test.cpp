@@ -70,8 +70,8 @@ TEST(Simplify, SmoothingTakesReliefOffTheFinerTheMore) {
   // Waves of 5.6 mm (40 around, 16 across, at a slant) under coarse edges of 17 mm, then waves of half that.
   shapes::wavy_torus wavy;
   wavy.amplitude_m = 0.001;
-  wavy.waves_around = 60;
-  wavy.waves_across = 24;
+  wavy.waves_around = 40;
+  wavy.waves_across = 16;
   const double longer = relief_left(wavy, 240, 120);
   EXPECT_LT(longer, 0.45);
   wavy.waves_around = 80;
@@ -138,25 +138,6 @@ TEST(Simplify, CollapseStopsBeforeItPinchesAHandle) {
   const connectivity net = connect(least->triangles, least->positions.size());
   EXPECT_TRUE(net.closed_manifold());
   EXPECT_EQ(net.euler, 0);
-}
-
-TEST(Simplify, CollapseKeepsEveryTunnelOfASponge) {
-  // A cube of 3 x 3 x 3 cells without its centre and the middles of its faces: genus 5. The shaking makes each round
-  // another order of collapses.
-  const auto sponge = [](const std::array<int, 3>& c) { return (c[0] == 1) + (c[1] == 1) + (c[2] == 1) < 2; };
-  const std::vector<double> planes{0.0, 0.01, 0.013, 0.023};
-  stage_monitor monitor;
-  shapes::dice roll(9);
-  for (int round = 0; round < 30; ++round) {
-    triangle_mesh mesh = shapes::cells({planes, planes, planes}, sponge);
-    for (vec3& p : mesh.positions) p += vec3(roll(-1, 1), roll(-1, 1), roll(-1, 1)) * 0.0012;
-    ASSERT_EQ(check(mesh)->euler, -8);
-    const triangle_mesh coarse = *collapse_edges(mesh, 4, monitor);
-    const connectivity net = connect(coarse.triangles, coarse.positions.size());
-    EXPECT_LT(coarse.triangles.size(), mesh.triangles.size());
-    EXPECT_TRUE(net.closed_manifold());
-    EXPECT_EQ(net.euler, -8);
-  }
 }
 
 TEST(Simplify, DoesNotDependOnTheNumberOfThreads) {
