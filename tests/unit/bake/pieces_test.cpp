@@ -193,13 +193,13 @@ TEST(Pieces, AShallowDentStaysOutOfTheHullAround) {
 
 TEST(Pieces, AChamberBehindANarrowSlitStaysEmpty) {
   // The slit is narrower than the air that a hull may bridge; what lies behind it is not.
-  const triangle_mesh keyhole =
-      shapes::cells({{{-0.02, -0.008, -0.00005, 0.00005, 0.008, 0.02}, {-0.015, 0.015}, {0.0, 0.006, 0.014, 0.02}}},
-                    [](const std::array<int, 3>& c) {
-                      const bool chamber = c[2] == 1 && c[0] >= 1 && c[0] <= 3;
-                      const bool slit = c[2] == 2 && c[0] == 2;
-                      return !chamber && !slit;
-                    });
+  const triangle_mesh keyhole = shapes::cells(
+      {{{-0.02, -0.008, -0.00005, 0.00005, 0.008, 0.02}, {-0.02, -0.01, 0.01, 0.02}, {0.0, 0.006, 0.014, 0.02}}},
+      [](const std::array<int, 3>& c) {
+        const bool chamber = c[1] == 1 && c[2] == 1 && c[0] >= 1 && c[0] <= 3;
+        const bool slit = c[1] == 1 && c[2] == 2 && c[0] == 2;
+        return !chamber && !slit;
+      });
   ASSERT_TRUE(check(keyhole).has_value()) << check(keyhole).error().message;
   const auto pieces = pieces_of(keyhole);
   expect_good_pieces(keyhole, pieces);
