@@ -86,6 +86,7 @@ check_asan_ubsan() {
   left_out long "too slow under the address sanitizer"
   left_out install "a consumer's program is not built with sanitizers"
   configure_and_build asan-ubsan
+  export LSAN_OPTIONS=suppressions=$PWD/tools/dev/leaks.supp:print_suppressions=0
   test_preset asan-ubsan asan-ubsan -LE 'long|install'
 }
 
