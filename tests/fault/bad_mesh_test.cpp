@@ -61,7 +61,18 @@ TEST_F(bad_mesh, all_vertices_in_one_point) {
 
 TEST_F(bad_mesh, open_surface) {
   const std::string message = expect_refused("mesh.obj", std::string(cube_vertices) + cube_without_lid, "bad_mesh");
-  EXPECT_TRUE(message.find("open") != std::string::npos || message.find("boundary") != std::string::npos) << message;
+  EXPECT_NE(message.find("4 open edges"), std::string::npos) << message;
+  EXPECT_NE(message.find("--close-holes"), std::string::npos) << message;
+}
+
+// What can be mended without a doubt is mended, and said.
+TEST_F(bad_mesh, inside_out_is_turned_and_reported) {
+  write("mesh.obj", std::string(cube_vertices) +
+                        "f 1 2 3\nf 1 3 4\nf 5 7 6\nf 5 8 7\nf 1 6 2\nf 1 5 6\nf 2 7 3\nf 2 6 7\n" +
+                        "f 3 8 4\nf 3 7 8\nf 4 5 1\nf 4 8 5\n");
+  const json baked = expect_document({"bake", path("mesh.obj"), "-o", path("out.glb"), "--texture", "64"}, "asperity.bake/1");
+  ASSERT_FALSE(baked.at("warnings").empty());
+  EXPECT_EQ(baked.at("warnings").at(0), "the mesh was inside-out and has been turned");
 }
 
 TEST_F(bad_mesh, nan_and_infinite_vertices) {

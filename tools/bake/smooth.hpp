@@ -10,9 +10,11 @@
 
 namespace asperity::bake {
 
-/// Passes that remove relief of wavelengths below half the edge of a coarse triangle.
-/// One pass widens the filter's Gaussian by h^2 / 4 (h: edge of a fine triangle); damping such a wave tenfold takes a
-/// width of 0.17 coarse edges, and the squared ratio of the edges is the ratio of the triangle counts.
+/// Passes before a mesh is simplified: in proportion to the ratio of the triangle counts, at most 400.
+/// The filter's response to a wave of length L is exp(-n (0.26 k^2 - 0.02 k)) after n passes, k = (pi h / L)^2 and h
+/// the edge of a fine triangle. With this many passes it takes nine tenths off waves shorter than a third of a coarse
+/// edge at a ratio of 100, a sixth at 1000. Twice as many closed cracks along coarse edges further, but rounded
+/// silhouettes by more than the bake's own error.
 [[nodiscard]] std::size_t smoothing_passes(std::size_t full_triangles, std::size_t coarse_triangles) noexcept;
 
 /// Vertex positions after `passes` of Taubin's filter: a step towards the mean of the neighbours and a slightly longer

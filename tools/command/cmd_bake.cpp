@@ -70,8 +70,8 @@ result<void> check_paths(const bake_command& options) {
 }
 
 answer report(const bake_command& options, const textured_model& model, const bake::hole_report& holes,
-              const stage_clock& clock) {
-  const std::vector<std::string> notes = warnings(model);
+              const stage_clock& clock, std::vector<std::string> notes) {
+  for (std::string& warning : warnings(model)) notes.push_back(std::move(warning));
   answer out;
   out.document = {{"file", options.out}, {"source", options.full}, {"scale", options.scale}};
   out.document.update(describe(model));
@@ -128,6 +128,8 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.texture_size = options.texture;
   settings.threads = options.threads;
   settings.progress = enter;
+  std::vector<std::string> remarks;
+  settings.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
   if (!options.coarse.empty()) {
     result<triangle_mesh> coarse = io::load_mesh(options.coarse);
     if (!coarse) return coarse.error();
@@ -140,7 +142,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!enter("write", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
   if (const result<void> saved = io::save_textured_model(*model, options.out); !saved) return saved.error();
   clock.leave();
-  return report(options, *model, holes, clock);
+  return report(options, *model, holes, clock, std::move(remarks));
 }
 
 }  // namespace
