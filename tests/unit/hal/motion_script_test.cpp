@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <vector>
 
 #include <asperity/hal/simulated/motion_script.hpp>
 
@@ -6,7 +9,8 @@ namespace {
 
 using namespace asperity;
 
-constexpr motion_kind kinds[] = {motion_kind::press, motion_kind::scrub, motion_kind::twist, motion_kind::free};
+constexpr motion_kind kinds[] = {motion_kind::press, motion_kind::scrub, motion_kind::twist, motion_kind::tap,
+                                 motion_kind::free};
 
 motion_config tilted(motion_kind kind) {
   return {.kind = kind,
@@ -52,6 +56,40 @@ TEST(motion_script, approaches_and_then_moves_as_told) {
   const motion_script twist(tilted(motion_kind::twist));
   const vec3 turned = log_rotation(twist.at(c.approach_s + 1.25).T_dh.rotation * glm::conjugate(c.T_dh.rotation));
   EXPECT_LT(glm::length(turned - 0.9 * c.direction_d), 1e-9);
+}
+
+TEST(motion_script, taps_in_an_uneven_rhythm_between_the_pressed_pose_and_the_lift) {
+  motion_config c = tilted(motion_kind::tap);
+  c.frequency_hz = 4.0;
+  const vec3 pressed = c.T_dh.position + c.depth_m * c.direction_d;
+  std::vector<double> blows_s;
+  double low = 1.0;
+  double high = 0.0;
+  const auto lift_at = [&](std::uint64_t seed, double t) {
+    const vec3 off = motion_script(c, seed).at(t).T_dh.position - pressed;
+    EXPECT_LT(glm::length(off - glm::dot(off, c.direction_d) * c.direction_d), 1e-15);
+    return -glm::dot(off, c.direction_d);
+  };
+  for (double t = c.approach_s + 0.3; t < 10.0; t += 0.001) {
+    const double lift = lift_at(1, t);
+    low = std::min(low, lift);
+    high = std::max(high, lift);
+    if (lift < lift_at(1, t - 0.001) && lift < lift_at(1, t + 0.001)) blows_s.push_back(t);
+  }
+  EXPECT_GE(low, -1e-15);
+  EXPECT_LT(low, 1e-5);
+  EXPECT_LE(high, c.amplitude_m);
+  EXPECT_GT(high, 0.999 * c.amplitude_m);
+  ASSERT_GE(blows_s.size(), 30U);  // four per second
+  ASSERT_LE(blows_s.size(), 45U);
+  double shortest_s = 1.0;
+  double longest_s = 0.0;
+  for (std::size_t i = 1; i < blows_s.size(); ++i) {
+    shortest_s = std::min(shortest_s, blows_s[i] - blows_s[i - 1]);
+    longest_s = std::max(longest_s, blows_s[i] - blows_s[i - 1]);
+  }
+  EXPECT_GT(longest_s, 1.05 * shortest_s);
+  EXPECT_NE(lift_at(1, 3.3), lift_at(2, 3.3));
 }
 
 TEST(motion_script, wanders_by_seed_inside_its_box) {

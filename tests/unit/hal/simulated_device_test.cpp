@@ -65,6 +65,28 @@ TEST(simulated_device, is_deflected_as_hand_and_force_say) {
 }
 
 // Free plant without damping: a force held for t moves it by F t^2 / 2m.
+// What went in is in the dampers, in the plant's motion, or was taken out by the implicit step: nothing else.
+TEST(simulated_device, closes_the_energy_book_of_its_plant) {
+  for (const hand_config& hand : {soft_hand(), hand_config{}, firm_hand()}) {
+    simulated_config c;
+    c.motion = {.kind = motion_kind::free, .amplitude_m = 0.02, .amplitude_rad = 0.5, .frequency_hz = 3.0};
+    c.hand = hand;
+    simulated_device d = armed(c);
+    device_sample s;
+    for (int i = 0; i < 2000; ++i) {
+      ASSERT_EQ(d.read(i * ms, s), status::ok);
+      const double a = 0.05 * i;
+      const wrench w{{2.0 * std::sin(a), std::cos(0.3 * a), -1.0}, {0.01 * std::cos(a), 0.02, 0.03 * std::sin(a)}};
+      ASSERT_EQ(d.write(i * ms, {w, wrench_frame::device_base, i * ms + 10 * ms, 1}), status::ok);
+      const plant_energy& e = d.energy();
+      ASSERT_NEAR(e.by_device_j + e.by_hand_j - e.damped_j - e.numerical_j, d.kinetic_j(), 1e-13);
+    }
+    EXPECT_EQ(d.delivered_j(), d.energy().by_device_j);
+    EXPECT_GT(d.energy().damped_j, 1e-3);
+    EXPECT_LT(d.energy().numerical_j, 0.1 * d.energy().damped_j);
+  }
+}
+
 TEST(simulated_device, moves_as_newton_says) {
   simulated_config c = still_hand();
   c.hand = {0.0, 0.0, 0.0, 0.0, 0.0};

@@ -16,6 +16,7 @@ enum class motion_kind : std::uint8_t {
   press,  ///< approach along a direction, then hold
   scrub,  ///< approach, then to and fro sideways
   twist,  ///< approach, then turn to and fro about the direction
+  tap,    ///< approach, then lift off and come down again and again, in a seeded, slightly uneven rhythm
   free,   ///< wander in a box, seeded, without a direction
 };
 
@@ -27,9 +28,9 @@ struct motion_config {
   vec3 sideways_d{1.0, 0.0, 0.0};    ///< of scrub; unit
   double depth_m = 0.01;             ///< length of the approach
   double approach_s = 0.5;           ///< time of the approach, smooth at both ends
-  double amplitude_m = 0.01;         ///< of scrub, and half the box's size of free
+  double amplitude_m = 0.01;         ///< of scrub, height of tap's lift, and half the box's size of free
   double amplitude_rad = 0.2;        ///< of twist and free
-  double frequency_hz = 1.0;         ///< of scrub and twist, and typical of free
+  double frequency_hz = 1.0;         ///< of scrub and twist, mean of tap, and typical of free
 };
 
 /// Where the hand wants the handle, and how fast it means to move.
@@ -78,8 +79,12 @@ class motion_script {
 
     const double since = t_s - config_.approach_s;
     if (config_.kind == motion_kind::press || since <= 0.0) return out;
-    const double w = two_pi * config_.frequency_hz;
     const double grown = smoothstep(since / ramp_s);
+    if (config_.kind == motion_kind::tap) {
+      add_taps(since, grown, out);
+      return out;
+    }
+    const double w = two_pi * config_.frequency_hz;
     const double sway = grown * std::sin(w * since);
     const double rate =
         grown * w * std::cos(w * since) + smoothstep_slope(since / ramp_s) / ramp_s * std::sin(w * since);
@@ -91,6 +96,20 @@ class motion_script {
       out.velocity_d.angular = config_.amplitude_rad * rate * config_.direction_d;
     }
     return out;
+  }
+
+  // Up from the pressed pose and back to it. A slow seeded wave goes before or behind the mean rhythm, by less than a
+  // beat, so that blows do not keep step with any period of the loops.
+  void add_taps(double since, double grown, hand_target& out) const noexcept {
+    constexpr double uneven_rad = 0.8;
+    const wave& sway = waves_[0];
+    const double slow = 0.5 * sway.rate_rad_per_s * since + sway.phase_rad;
+    const double beat = two_pi * config_.frequency_hz * since + uneven_rad * std::sin(slow);
+    const double beat_rate = two_pi * config_.frequency_hz + uneven_rad * 0.5 * sway.rate_rad_per_s * std::cos(slow);
+    const double lift = 0.5 * (1.0 - std::cos(beat));
+    const double rate = smoothstep_slope(since / ramp_s) / ramp_s * lift + grown * 0.5 * std::sin(beat) * beat_rate;
+    out.T_dh.position -= config_.amplitude_m * grown * lift * config_.direction_d;
+    out.velocity_d.linear -= config_.amplitude_m * rate * config_.direction_d;
   }
 
   [[nodiscard]] hand_target wander(double t_s) const noexcept {

@@ -45,6 +45,26 @@ struct hand_config {
   double tremor_m = 2e-5;  ///< amplitude of each of three seeded waves between 8 and 12 Hz, along each axis
 };
 
+/// A relaxed grip, two fingers and a thumb: gives way, damps little.
+/// Measured hands differ by more than a factor of two at the same grip. These presets are the two ends of the range in
+/// which measured fingers and wrists lie, not a model of anybody.
+[[nodiscard]] inline hand_config soft_hand() noexcept {
+  return {.stiffness_n_per_m = 150.0,
+          .damping_n_s_per_m = 2.0,
+          .stiffness_n_m_per_rad = 0.6,
+          .damping_n_m_s_per_rad = 0.006,
+          .tremor_m = 2e-5};
+}
+
+/// A firm grip with a stiff wrist; see soft_hand(). Tremor grows with grip force.
+[[nodiscard]] inline hand_config firm_hand() noexcept {
+  return {.stiffness_n_per_m = 1200.0,
+          .damping_n_s_per_m = 10.0,
+          .stiffness_n_m_per_rad = 5.0,
+          .damping_n_m_s_per_rad = 0.05,
+          .tremor_m = 5e-5};
+}
+
 /// A light arm with six free axes, gravity balanced.
 struct plant_config {
   double mass_kg = 0.15;
@@ -88,6 +108,16 @@ struct measurement_config {
           .needs_homing = false,
           .device_side_watchdog = true};
 }
+
+/// Where the energy of the plant went since the first read(), J. Works are of the wrench at the end of a plant step, as
+/// the step uses it, so that by_device_j + by_hand_j - damped_j - numerical_j is the kinetic energy gained, to
+/// rounding.
+struct plant_energy {
+  double by_device_j = 0.0;  ///< work of the device's wrench
+  double by_hand_j = 0.0;    ///< work of the hand's spring and damper
+  double damped_j = 0.0;     ///< lost in the plant's own dampers
+  double numerical_j = 0.0;  ///< taken out by the implicit step
+};
 
 struct simulated_config {
   std::uint64_t seed = 1;
@@ -196,7 +226,15 @@ class simulated_device {
   [[nodiscard]] const pose& true_T_dh() const noexcept { return plant_.T_dh; }
   [[nodiscard]] const twist& true_velocity_d() const noexcept { return plant_.velocity_d; }
   /// Work of the device's wrench on the hand's side of the port since the first read(), J.
-  [[nodiscard]] double delivered_j() const noexcept { return delivered_j_; }
+  [[nodiscard]] double delivered_j() const noexcept { return energy_.by_device_j; }
+  /// The whole book of the plant.
+  [[nodiscard]] const plant_energy& energy() const noexcept { return energy_; }
+  /// Kinetic energy of the plant, J.
+  [[nodiscard]] double kinetic_j() const noexcept {
+    const twist& v = plant_.velocity_d;
+    return 0.5 * (config_.plant.mass_kg * glm::dot(v.linear, v.linear) +
+                  config_.plant.inertia_kg_m2 * glm::dot(v.angular, v.angular));
+  }
   [[nodiscard]] const simulated_config& config() const noexcept { return config_; }
 
  private:
@@ -266,16 +304,33 @@ class simulated_device {
         g.damping_n_m_s_per_rad * hand.velocity_d.angular + put_out.torque;
     const double b = g.damping_n_s_per_m + p.damping_n_s_per_m;
     const double br = g.damping_n_m_s_per_rad + p.damping_n_m_s_per_rad;
+    const twist before = plant_.velocity_d;
     twist& v = plant_.velocity_d;
     v.linear = (p.mass_kg * v.linear + h * pull) / (p.mass_kg + h * b);
     v.angular = (p.inertia_kg_m2 * v.angular + h * turn) / (p.inertia_kg_m2 + h * br);
     plant_.T_dh.position += h * v.linear;
     plant_.T_dh.rotation = glm::normalize(exp_rotation(h * v.angular) * plant_.T_dh.rotation);
-    delivered_j_ += h * (glm::dot(put_out.force, v.linear) + glm::dot(put_out.torque, v.angular));
+    book(h, before, put_out, {pull - put_out.force, turn - put_out.torque});
 
     plant_ns_ += plant_step_ns;
     past_next_ = (past_next_ + 1) % past_size;
     past_[past_next_] = {plant_, plant_ns_};
+  }
+
+  // `pull` is the hand's wrench before its damper took part in the step.
+  void book(double h, const twist& before, const wrench& put_out, const wrench& pull) noexcept {
+    const hand_config& g = config_.hand;
+    const plant_config& p = config_.plant;
+    const twist& v = plant_.velocity_d;
+    const double v2 = glm::dot(v.linear, v.linear);
+    const double w2 = glm::dot(v.angular, v.angular);
+    const vec3 dv = v.linear - before.linear;
+    const vec3 dw = v.angular - before.angular;
+    energy_.by_device_j += h * (glm::dot(put_out.force, v.linear) + glm::dot(put_out.torque, v.angular));
+    energy_.by_hand_j += h * (glm::dot(pull.force, v.linear) - g.damping_n_s_per_m * v2 +
+                              glm::dot(pull.torque, v.angular) - g.damping_n_m_s_per_rad * w2);
+    energy_.damped_j += h * (p.damping_n_s_per_m * v2 + p.damping_n_m_s_per_rad * w2);
+    energy_.numerical_j += 0.5 * (p.mass_kg * glm::dot(dv, dv) + p.inertia_kg_m2 * glm::dot(dw, dw));
   }
 
   [[nodiscard]] vec3 tremor(double t_s) const noexcept {
@@ -336,7 +391,7 @@ class simulated_device {
   device_command command_{};
   device_sample newest_{};
   std::uint64_t sequence_ = 0;
-  double delivered_j_ = 0.0;
+  plant_energy energy_{};
 };
 
 static_assert(haptic_device<simulated_device>);
