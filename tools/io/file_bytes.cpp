@@ -2,8 +2,13 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <fcntl.h>
+#include <iterator>
 #include <memory>
+#include <sys/stat.h>
 #include <system_error>
+#include <unistd.h>
+#include <utility>
 
 namespace asperity::io {
 namespace {
@@ -15,7 +20,63 @@ struct close_file {
 };
 using file_handle = std::unique_ptr<std::FILE, close_file>;
 
+/// An open file, closed with its end.
+class descriptor {
+ public:
+  explicit descriptor(int fd) noexcept : fd_(fd) {}
+  descriptor(descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  descriptor& operator=(descriptor&& other) noexcept {
+    std::swap(fd_, other.fd_);
+    return *this;
+  }
+  ~descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  [[nodiscard]] int get() const noexcept { return fd_; }
+  [[nodiscard]] explicit operator bool() const noexcept { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+/// Should a pipe stand where a file was seen a moment ago, opening it does not wait.
+constexpr int open_to_read = O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+
 std::string reason() { return std::generic_category().message(errno); }
+
+error not_found(const fs::path& file) { return fault(error_code::io_failed, file, "cannot be found; check the path"); }
+
+result<void> check_kind(const struct stat& about, const fs::path& file) {
+  if (S_ISDIR(about.st_mode)) return fault(error_code::io_failed, file, "is a directory; name a file in it");
+  if (!S_ISREG(about.st_mode)) {  // opening a pipe would wait for ever
+    return fault(error_code::io_failed, file, "is not a regular file; save its contents to one first");
+  }
+  return {};
+}
+
+/// All bytes of a file that was just opened, if that worked.
+result<std::string> read_open(const descriptor& in, const fs::path& file, std::uintmax_t limit) {
+  struct stat about {};
+  if (!in || ::fstat(in.get(), &about) != 0) {
+    return fault(error_code::io_failed, file, "cannot be opened: " + reason() + "; check its permissions");
+  }
+  if (const auto regular = check_kind(about, file); !regular) return regular.error();
+  const auto size = static_cast<std::uintmax_t>(about.st_size);
+  if (size == 0) return fault(error_code::bad_format, file, "is empty; export it again");
+  if (size > limit) {
+    return fault(error_code::limit_exceeded, file,
+                 "has " + std::to_string(size) + " bytes, more than the limit of " + std::to_string(limit) +
+                     "; reduce it first");
+  }
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t n = ::read(in.get(), bytes.data() + done, bytes.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return fault(error_code::io_failed, file, "cannot be read to its end; check the disk");
+    done += static_cast<std::size_t>(n);
+  }
+  return bytes;
+}
 
 /// The path that a chain of links ends in, whether a file is there or not.
 fs::path behind_links(fs::path path) {
@@ -43,35 +104,50 @@ error fault(error_code code, const fs::path& file, std::string_view what) {
   return {code, file.string() + ": " + std::string(what)};
 }
 
-result<void> check_regular_file(const fs::path& file) {
-  std::error_code ec;
-  const fs::file_status status = fs::status(file, ec);
-  if (!fs::exists(status)) return fault(error_code::io_failed, file, "cannot be found; check the path");
-  if (fs::is_directory(status)) return fault(error_code::io_failed, file, "is a directory; name a file in it");
-  if (!fs::is_regular_file(status)) {  // opening a pipe would wait for ever
-    return fault(error_code::io_failed, file, "is not a regular file; save its contents to one first");
+std::string with_mend(std::string what, std::string_view mend) {
+  if (what.find("; ") == std::string::npos) what.append("; ").append(mend);
+  return what;
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  std::string out(1, '\'');
+  out += word.substr(0, longest);
+  for (char& c : out) {
+    if (c < ' ' || c > '~') c = '?';
   }
-  return {};
+  out += word.size() > longest ? "...'" : "'";
+  return out;
+}
+
+result<void> check_regular_file(const fs::path& file) {
+  struct stat about {};
+  if (::stat(file.c_str(), &about) != 0) return not_found(file);
+  return check_kind(about, file);
 }
 
 result<std::string> read_file(const fs::path& file, std::uintmax_t limit) {
   if (const auto regular = check_regular_file(file); !regular) return regular.error();
-  std::error_code ec;
-  const std::uintmax_t size = fs::file_size(file, ec);
-  if (ec) return fault(error_code::io_failed, file, "has no size: " + ec.message() + "; check the path");
-  if (size == 0) return fault(error_code::bad_format, file, "is empty; export it again");
-  if (size > limit) {
-    return fault(error_code::limit_exceeded, file,
-                 "has " + std::to_string(size) + " bytes, more than the limit of " + std::to_string(limit) +
-                     "; reduce it first");
+  return read_open(descriptor(::open(file.c_str(), open_to_read)), file, limit);
+}
+
+result<std::string> read_file_below(const fs::path& folder, const fs::path& name, std::uintmax_t limit) {
+  const fs::path file = folder / name;
+  descriptor at(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  for (auto step = name.begin(); step != name.end(); ++step) {
+    const bool last = std::next(step) == name.end();
+    struct stat about {};
+    if (!at || ::fstatat(at.get(), step->c_str(), &about, AT_SYMLINK_NOFOLLOW) != 0) return not_found(file);
+    if (S_ISLNK(about.st_mode)) {
+      return fault(error_code::io_failed, file, "is or lies behind a link, which is not followed; put the file there");
+    }
+    if (last) {
+      if (const auto regular = check_kind(about, file); !regular) return regular.error();
+    }
+    const int how = last ? open_to_read : O_PATH | O_DIRECTORY | O_CLOEXEC;
+    at = descriptor(::openat(at.get(), step->c_str(), how | O_NOFOLLOW));
   }
-  const file_handle in(std::fopen(file.c_str(), "rb"));
-  if (!in) return fault(error_code::io_failed, file, "cannot be opened: " + reason() + "; check its permissions");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (std::fread(bytes.data(), 1, bytes.size(), in.get()) != bytes.size()) {
-    return fault(error_code::io_failed, file, "cannot be read to its end; check the disk");
-  }
-  return bytes;
+  return read_open(at, file, limit);
 }
 
 result<void> write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {

@@ -25,12 +25,25 @@ inline constexpr std::uintmax_t max_model_bytes = std::uintmax_t{256} << 20;
 /// "file: what is wrong, where; how to mend it".
 [[nodiscard]] error fault(error_code code, const std::filesystem::path& file, std::string_view what);
 
+/// The message of a rejection with a mend at its end, where it has none of its own.
+[[nodiscard]] std::string with_mend(std::string what, std::string_view mend);
+
+/// A word from a file as it may stand in a message: in quotes, printable, at most 40 characters of it.
+[[nodiscard]] std::string in_quotes(std::string_view word);
+
 /// @return io_failed for what is absent, a directory or a device
 [[nodiscard]] result<void> check_regular_file(const std::filesystem::path& file);
 
 /// All bytes of a regular, non-empty file.
 /// @return io_failed (absent, directory, device, unreadable), bad_format (empty), limit_exceeded
 [[nodiscard]] result<std::string> read_file(const std::filesystem::path& file, std::uintmax_t limit);
+
+/// The same for a file below a folder. No link is followed on the way down, so nothing outside the folder is opened,
+/// even where somebody changes the folder meanwhile.
+/// @pre `name` is relative, normal and without ".."
+/// @return as read_file(); io_failed for a link
+[[nodiscard]] result<std::string> read_file_below(const std::filesystem::path& folder,
+                                                  const std::filesystem::path& name, std::uintmax_t limit);
 
 /// Writes a file from parts, under another name beside it first: it appears whole or not at all.
 /// @return io_failed; nothing is left behind
@@ -60,7 +73,8 @@ template <class Function>
   } catch (const std::bad_alloc&) {
     return fault(error_code::limit_exceeded, file, "does not fit into memory; use a smaller mesh");
   } catch (const std::exception& e) {
-    return fault(error_code::io_failed, file, std::string("cannot be processed: ") + e.what());
+    return fault(error_code::io_failed, file,
+                 std::string("cannot be processed: ") + e.what() + "; check the path and the free memory");
   }
 }
 

@@ -11,6 +11,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// JSON of a .gltf may be larger than that of a .glb: buffers can stand in it as text.
+constexpr std::size_t max_text_bytes = std::size_t{256} << 20;
+/// Each buffer is a file that is opened, or a text that is decoded.
+constexpr std::size_t max_buffers = 64;
+
 std::string accessor_name(int accessor) { return "accessors[" + std::to_string(accessor) + "]"; }
 
 /// A URI's %20 and the like as characters. Throws rejection.
@@ -32,18 +37,19 @@ std::string percent_decoded(const std::string& uri, const std::string& place) {
   return out;
 }
 
-/// The file that a relative URI names, if it lies in the document's own folder or below. Throws rejection.
-fs::path beside(const fs::path& file, const std::string& uri, const std::string& place) {
-  const fs::path name(percent_decoded(uri, place));
-  std::error_code ec;
-  const fs::path folder = fs::weakly_canonical(fs::absolute(file).parent_path(), ec);
-  const fs::path target = fs::weakly_canonical(folder / name, ec);  // follows links and ".."
-  const auto [end_of_folder, rest] = std::mismatch(folder.begin(), folder.end(), target.begin(), target.end());
+/// The file that a relative URI names, by its path from the document's folder, where it lies in that folder or below.
+/// Names alone decide here; links are the opener's to refuse. Throws rejection.
+fs::path below(const std::string& uri, const std::string& place) {
+  const std::string name = percent_decoded(uri, place);
+  if (std::any_of(name.begin(), name.end(), [](unsigned char c) { return c < ' ' || c == 0x7f || c == '\\'; })) {
+    reject(place + " holds a backslash or a control character; give the buffer a plain name");
+  }
+  const fs::path path = fs::path(name).lexically_normal();
   const bool has_scheme = uri.find(':') != std::string::npos;
-  if (ec || has_scheme || name.is_absolute() || end_of_folder != folder.end() || rest == target.end()) {
+  if (has_scheme || path.is_absolute() || path.filename().empty() || *path.begin() == ".." || *path.begin() == ".") {
     reject(place + " leads out of the document's folder; put the buffer beside it");
   }
-  return target;
+  return path;
 }
 
 /// Refuses every file: the guard has read what may be read.
@@ -55,11 +61,12 @@ tinygltf::FsCallbacks no_files() {
 
 }  // namespace
 
-gltf_document::gltf_document(std::string_view bytes, const fs::path& file, buffer_policy policy,
-                             const gltf_limits& limits) {
+gltf_document::gltf_document(std::string_view bytes, const fs::path& file, buffer_policy policy) {
   glb_chunks chunks;
+  json_limits limits;
   if (policy == buffer_policy::own_folder && !bytes.starts_with("glTF")) {
     chunks.json = bytes;
+    limits.bytes = max_text_bytes;
   } else {
     chunks = split_glb(bytes);
   }
@@ -83,6 +90,10 @@ gltf_document::gltf_document(std::string_view bytes, const fs::path& file, buffe
 void gltf_document::collect_buffers(std::string_view bin, const fs::path& file, buffer_policy policy) {
   const json_object root(source_, "the document");
   const std::size_t count = root.array("buffers").size();
+  if (count > max_buffers) {
+    throw rejection{error_code::limit_exceeded,
+                    "has " + std::to_string(count) + " buffers, more than the limit of " + std::to_string(max_buffers)};
+  }
   owned_.reserve(count);  // views into these strings must not move
   for (std::size_t i = 0; i < count; ++i) {
     const json_object buffer = root.element("buffers", i);
@@ -104,8 +115,7 @@ void gltf_document::collect_buffers(std::string_view bin, const fs::path& file, 
   }
 }
 
-std::string gltf_document::outside_buffer(const std::string& uri, const std::string& place,
-                                          const fs::path& file) const {
+std::string gltf_document::outside_buffer(const std::string& uri, const std::string& place, const fs::path& file) {
   if (uri.starts_with("data:")) {
     std::vector<unsigned char> decoded;
     std::string mime_type;
@@ -113,7 +123,13 @@ std::string gltf_document::outside_buffer(const std::string& uri, const std::str
       reject(place + " is no base64 data URI of a buffer");
     return {decoded.begin(), decoded.end()};
   }
-  auto bytes = read_file(beside(file, uri, place), max_mesh_bytes);
+  const fs::path name = below(uri, place);
+  if (!opened_.insert(name).second) {
+    reject(place + " names a file that another buffer has named; give each buffer a file of its own");
+  }
+  std::uintmax_t total = 0;
+  for (const std::string& other : owned_) total += other.size();
+  auto bytes = read_file_below(fs::absolute(file).parent_path(), name, max_mesh_bytes - total);
   if (!bytes) throw rejection{bytes.error().code, place + " names " + bytes.error().message};
   return std::move(bytes).value();
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <tiny_gltf.h>
@@ -24,8 +25,7 @@ class gltf_document {
  public:
   /// Opens a .glb, or a .gltf where the bytes do not begin like a .glb. Throws rejection.
   /// @pre `bytes` outlives the document
-  gltf_document(std::string_view bytes, const std::filesystem::path& file, buffer_policy policy,
-                const gltf_limits& limits);
+  gltf_document(std::string_view bytes, const std::filesystem::path& file, buffer_policy policy);
 
   /// Meshes, nodes and scenes.
   [[nodiscard]] const tinygltf::Model& geometry() const noexcept { return geometry_; }
@@ -34,6 +34,11 @@ class gltf_document {
 
   /// Bytes of a buffer view. @pre view < geometry().bufferViews.size()
   [[nodiscard]] std::string_view view_bytes(std::size_t view) const;
+  /// Elements of an accessor. Whoever reads several that belong together compares their counts first: an accessor of
+  /// bytes takes many times its own size once it is read.
+  [[nodiscard]] std::size_t count(int accessor) const {
+    return geometry_.accessors[static_cast<std::size_t>(accessor)].count;
+  }
   /// POSITION. Throws rejection where the accessor is of another type or a coordinate is not finite.
   [[nodiscard]] std::vector<vec3> positions(int accessor) const;
   /// TEXCOORD_0, float32 or normalised integers. Throws rejection.
@@ -44,12 +49,13 @@ class gltf_document {
  private:
   void collect_buffers(std::string_view bin, const std::filesystem::path& file, buffer_policy policy);
   [[nodiscard]] std::string outside_buffer(const std::string& uri, const std::string& place,
-                                           const std::filesystem::path& file) const;
+                                           const std::filesystem::path& file);
   [[nodiscard]] const char* element(const tinygltf::Accessor& a, std::size_t i) const;
 
   json source_;
   tinygltf::Model geometry_;
   std::vector<std::string> owned_;  // buffers that are not the BIN chunk
+  std::set<std::filesystem::path> opened_;
   std::vector<std::string_view> buffers_;
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
+#include <string>
 
 #include "file_bytes.hpp"
 
@@ -68,13 +70,13 @@ class geometry_checker {
   void check_asset() const {
     const std::string version = root_.object("asset").text("version");
     if (!version.starts_with("2.")) {
-      throw rejection{error_code::unsupported, "is glTF version " + version.substr(0, 20) + ", not 2.0"};
+      throw rejection{error_code::unsupported, "is glTF version " + in_quotes(version) + ", not 2.0"};
     }
     for (const json& name : root_.array("extensionsRequired")) {
       if (!name.is_string()) reject("extensionsRequired holds something that is not a string");
       const auto text = name.get<std::string>();
       if (!leaves_geometry_alone(text)) {
-        throw rejection{error_code::unsupported, "requires the extension " + text.substr(0, 80) +
+        throw rejection{error_code::unsupported, "requires the extension " + in_quotes(text) +
                                                      ", which asperity does not read; export it without"};
       }
     }
@@ -214,6 +216,56 @@ class geometry_checker {
   std::vector<bool> used_;  // accessors that some primitive names
 };
 
+/// Counts levels and items without a parser. Throws rejection.
+void check_extent(std::string_view text, const json_limits& limits) {
+  int depth = 0;
+  std::size_t items = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') {
+        ++i;
+      } else if (c == '"') {
+        in_string = false;
+      }
+      continue;
+    }
+    if (c == '"') in_string = true;
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') --depth;
+    if (c == '[' || c == '{' || c == ',') ++items;
+    if (depth > limits.depth) {
+      throw rejection{error_code::limit_exceeded, "nests its JSON deeper than " + std::to_string(limits.depth) +
+                                                      " levels at byte " + std::to_string(i) + " of it"};
+    }
+    if (items > limits.items) {
+      throw rejection{error_code::limit_exceeded, "holds more than " + std::to_string(limits.items) +
+                                                      " JSON items, the last at byte " + std::to_string(i) + " of it"};
+    }
+  }
+}
+
+/// The names of every object that is open at this point of a parse.
+class unique_names {
+ public:
+  /// Throws rejection where an object has a name twice.
+  void see(json::parse_event_t event, const json& value) {
+    if (event == json::parse_event_t::object_start) {
+      open_.emplace_back();
+    } else if (event == json::parse_event_t::object_end) {
+      open_.pop_back();
+    } else if (event == json::parse_event_t::key) {
+      const auto& name = value.get_ref<const std::string&>();
+      if (!open_.back().insert(name).second)
+        reject("holds JSON with the name " + in_quotes(name) + " twice in one object");
+    }
+  }
+
+ private:
+  std::vector<std::set<std::string>> open_;
+};
+
 }  // namespace
 
 glb_chunks split_glb(std::string_view bytes) {
@@ -248,41 +300,26 @@ glb_chunks split_glb(std::string_view bytes) {
   return chunks;
 }
 
-json parse_bounded(std::string_view text, const gltf_limits& limits) {
-  if (text.size() > limits.json_bytes) {
+json parse_bounded(std::string_view text, const json_limits& limits) {
+  if (text.size() > limits.bytes) {
     throw rejection{error_code::limit_exceeded, "holds " + std::to_string(text.size()) +
                                                     " bytes of JSON, more than the limit of " +
-                                                    std::to_string(limits.json_bytes)};
+                                                    std::to_string(limits.bytes)};
   }
-  int depth = 0;
-  std::size_t items = 0;
-  bool in_string = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (in_string) {
-      if (c == '\\') {
-        ++i;
-      } else if (c == '"') {
-        in_string = false;
-      }
-      continue;
-    }
-    if (c == '"') in_string = true;
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') --depth;
-    if (c == '[' || c == '{' || c == ',') ++items;
-    if (depth > limits.json_depth) {
-      throw rejection{error_code::limit_exceeded,
-                      "nests its JSON deeper than " + std::to_string(limits.json_depth) + " levels"};
-    }
-    if (items > limits.json_items) {
-      throw rejection{error_code::limit_exceeded,
-                      "holds more than " + std::to_string(limits.json_items) + " JSON items"};
-    }
+  check_extent(text, limits);
+  unique_names names;
+  try {
+    json document = json::parse(text.begin(), text.end(), [&](int, json::parse_event_t event, const json& value) {
+      names.see(event, value);
+      return true;
+    });
+    if (!document.is_object()) reject("holds JSON that does not parse as an object");
+    return document;
+  } catch (const json::parse_error& e) {
+    reject("holds JSON that does not parse: byte " + std::to_string(e.byte) + " of it is wrong");
+  } catch (const json::out_of_range&) {
+    reject("holds JSON that does not parse: a number in it is too large");
   }
-  json document = json::parse(text.begin(), text.end(), nullptr, false);
-  if (!document.is_object()) reject("holds JSON that does not parse as an object");
-  return document;
 }
 
 json checked_geometry(const json& document, const std::vector<std::size_t>& buffer_bytes) {

@@ -10,11 +10,11 @@
 
 namespace asperity::io {
 
-/// Sizes beyond which a file is refused before anything recursive sees it.
-struct gltf_limits {
-  std::size_t json_bytes;
-  std::size_t json_items;
-  int json_depth = 32;
+/// Sizes beyond which JSON is refused before anything recursive sees it.
+struct json_limits {
+  std::size_t bytes = std::size_t{16} << 20;
+  std::size_t items = 200'000;
+  int depth = 32;
 };
 
 /// The two chunks of a .glb.
@@ -26,8 +26,9 @@ struct glb_chunks {
 /// Splits a .glb; every length must agree with the file's. Throws rejection.
 [[nodiscard]] glb_chunks split_glb(std::string_view bytes);
 
-/// Parses JSON whose depth and number of items are within the limits. Throws rejection.
-[[nodiscard]] json parse_bounded(std::string_view text, const gltf_limits& limits);
+/// Parses JSON whose depth and number of items are within the limits, and in which no object has a name twice: of two
+/// values under one name, every reader believes another. Throws rejection.
+[[nodiscard]] json parse_bounded(std::string_view text, const json_limits& limits = {});
 
 /// Copy of a document that holds its geometry and nothing else: buffer views, the accessors that meshes use, meshes,
 /// nodes and scenes, each field checked, every index and byte range inside its bounds. Images, extensions and extras

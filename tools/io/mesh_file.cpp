@@ -6,7 +6,7 @@
 
 #include "asperity/core/float32.hpp"
 #include "file_bytes.hpp"
-#include "mesh_formats.hpp"
+#include "file_formats.hpp"
 
 namespace asperity::io {
 namespace {

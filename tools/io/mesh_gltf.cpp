@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "file_bytes.hpp"
+#include "file_formats.hpp"
 #include "gltf_document.hpp"
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 
 namespace asperity::io {
 namespace {
 
-constexpr gltf_limits limits{.json_bytes = max_mesh_bytes, .json_items = 1'000'000};
 /// Limits for triangles and for vertices. A scene can place one mesh many times over, so the file's size bounds
 /// neither.
 constexpr std::size_t max_triangles = 20'000'000;
@@ -106,11 +105,11 @@ void add_primitive(const gltf_document& document, const tinygltf::Primitive& pri
     reject(place + " has " + std::to_string(indices.size()) + " corners, not a multiple of 3");
   const auto uv = primitive.attributes.find("TEXCOORD_0");
   all_have_uvs = all_have_uvs && uv != primitive.attributes.end();
-  const auto uvs = all_have_uvs ? document.uvs(uv->second) : std::vector<vec2>();
-  if (all_have_uvs && uvs.size() != positions.size()) {
-    reject(place + " has " + std::to_string(uvs.size()) + " texture coordinates for " +
+  if (all_have_uvs && document.count(uv->second) != positions.size()) {
+    reject(place + " has " + std::to_string(document.count(uv->second)) + " texture coordinates for " +
            std::to_string(positions.size()) + " vertices");
   }
+  const auto uvs = all_have_uvs ? document.uvs(uv->second) : std::vector<vec2>();
 
   const auto first = static_cast<std::uint32_t>(soup.positions.size());
   for (const vec3& p : positions) {
@@ -133,7 +132,7 @@ void add_primitive(const gltf_document& document, const tinygltf::Primitive& pri
 result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file) {
   polygon_soup soup;
   try {
-    const gltf_document document(bytes, file, buffer_policy::own_folder, limits);
+    const gltf_document document(bytes, file, buffer_policy::own_folder);
     const tinygltf::Model& model = document.geometry();
     bool all_have_uvs = true;
     const std::vector<placed_mesh> scene = placed_meshes(model);
@@ -147,7 +146,7 @@ result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::p
     }
     if (!all_have_uvs) soup.corner_uvs.clear();
   } catch (const rejection& r) {
-    return fault(r.code, file, r.what + "; export the mesh again");
+    return fault(r.code, file, with_mend(r.what, "export the mesh again"));
   }
   return build_mesh(std::move(soup), file);
 }

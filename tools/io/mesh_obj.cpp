@@ -3,8 +3,8 @@
 #include <string>
 
 #include "file_bytes.hpp"
+#include "file_formats.hpp"
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 #include "text_cursor.hpp"
 
 namespace asperity::io {
@@ -41,7 +41,7 @@ class obj_reader {
     vec3 p{0.0};
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = cursor_.word();
-      if (!to_number(word, p[axis])) return bad("needs three numbers after v, but has '" + std::string(word) + "'");
+      if (!to_number(word, p[axis])) return bad("needs three numbers after v, but has " + in_quotes(word));
     }
     if (!is_finite(p)) return bad("has a coordinate that is not finite");
     soup_.positions.push_back(p);
@@ -62,7 +62,7 @@ class obj_reader {
   bool resolve(std::string_view word, std::size_t known, std::uint32_t& index) {
     std::int64_t given = 0;
     if (!to_number(word, given) || given == 0) {
-      return bad("has '" + std::string(word) + "' where an index from 1 or a negative one belongs");
+      return bad("has " + in_quotes(word) + " where an index from 1 or a negative one belongs");
     }
     const std::int64_t at = given > 0 ? given - 1 : static_cast<std::int64_t>(known) + given;
     if (at < 0 || at > static_cast<std::int64_t>(max_soup_index)) {

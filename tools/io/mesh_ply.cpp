@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "file_bytes.hpp"
+#include "file_formats.hpp"
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 #include "text_cursor.hpp"
 
 namespace asperity::io {
@@ -57,6 +57,9 @@ struct element {
 
 enum class encoding : std::uint8_t { none, ascii, little, big };
 
+/// Limit for elements, and for the properties of one: both are searched by name.
+constexpr std::size_t max_header_items = 256;
+
 struct ply_header {
   encoding format = encoding::none;
   std::vector<element> elements;
@@ -91,7 +94,7 @@ class header_reader {
       } else if (keyword == "property") {
         good = read_property();
       } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-        return bad("has the unknown keyword '" + std::string(keyword.substr(0, 40)) + "'");
+        return bad("has the unknown keyword " + in_quotes(keyword));
       }
       if (!good) return bad(what_);
       if (!cursor_.next_line()) return bad("ends before 'end_header', so the file is cut off");
@@ -123,6 +126,8 @@ class header_reader {
     e.name = cursor_.word();
     what_ = "needs a name and a number after 'element'";
     if (e.name.empty() || !to_number(cursor_.word(), e.count)) return false;
+    what_ = "is one element more than the limit of " + std::to_string(max_header_items);
+    if (header_.elements.size() == max_header_items) return false;
     header_.elements.push_back(std::move(e));
     return true;
   }
@@ -141,7 +146,7 @@ class header_reader {
       type = cursor_.word();
     }
     const auto known = scalar_named(type);
-    what_ = "has the unknown property type '" + std::string(type.substr(0, 40)) + "'";
+    what_ = "has the unknown property type " + in_quotes(type);
     if (!known) return false;
     p.type = *known;
     p.meaning = role_of(owner.name, cursor_.word(), list);
@@ -149,6 +154,8 @@ class header_reader {
     if (p.meaning != role::none && owner.has(p.meaning)) return false;
     what_ = "has vertex indices that are not of an integer type";
     if (p.meaning == role::corners && p.type >= scalar::f32) return false;
+    what_ = "is one property more than the limit of " + std::to_string(max_header_items);
+    if (owner.properties.size() == max_header_items) return false;
     owner.properties.push_back(p);
     return true;
   }
@@ -251,12 +258,12 @@ class body_reader {
     for (const element& e : header.elements) {
       if (e.properties.empty()) continue;  // nothing is stored of it, whatever its count
       if (!fits(e)) {
-        return bad("begins " + std::to_string(e.count) + " elements '" + e.name + "', more than the " +
+        return bad("begins " + std::to_string(e.count) + " elements " + in_quotes(e.name) + ", more than the " +
                    std::to_string(source_.left()) +
                    " bytes that follow can hold: the file is cut off or its header wrong");
       }
       for (index_ = 0; index_ < e.count; ++index_) {
-        if (!read_one(e)) return bad(what_ + " (" + e.name + " " + std::to_string(index_) + ")");
+        if (!read_one(e)) return bad(what_ + " (" + name_of(e) + " " + std::to_string(index_) + ")");
       }
     }
     if (!source_.at_end()) return bad("has more data than the header announces");
@@ -288,6 +295,11 @@ class body_reader {
       soup_.corners.reserve(static_cast<std::size_t>(e.count) * 3);
     }
     return true;
+  }
+
+  /// The element as messages name it: "vertex" and "face" without quotes.
+  static std::string name_of(const element& e) {
+    return e.name == "vertex" || e.name == "face" ? e.name : in_quotes(e.name);
   }
 
   bool number(scalar type, double& value) {
@@ -357,7 +369,7 @@ std::optional<error> check_elements(const ply_header& header, const std::filesys
   };
   for (const element& e : header.elements) {
     if (find(e.name) != header.elements.begin() + (&e - header.elements.data())) {
-      return fault(error_code::bad_format, file, "has two elements '" + e.name + "'; export the mesh again");
+      return fault(error_code::bad_format, file, "has two elements " + in_quotes(e.name) + "; export the mesh again");
     }
   }
   const auto vertex = find("vertex");

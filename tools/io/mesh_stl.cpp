@@ -4,8 +4,8 @@
 #include <string>
 
 #include "file_bytes.hpp"
+#include "file_formats.hpp"
 #include "mesh_builder.hpp"
-#include "mesh_formats.hpp"
 #include "text_cursor.hpp"
 
 namespace asperity::io {
@@ -59,7 +59,7 @@ class ascii_reader {
         closed = is_keyword(word, "endsolid");
         if (!cursor_.next_line()) break;  // the rest of the line is a name
       } else if (!is_keyword(word, "facet")) {
-        return bad("has '" + std::string(word) + "' where 'facet' or 'endsolid' belongs");
+        return bad("has " + in_quotes(word) + " where 'facet' or 'endsolid' belongs");
       } else if (!read_facet()) {
         return bad(what_);
       }
@@ -76,8 +76,8 @@ class ascii_reader {
   bool expect(std::string_view keyword) {
     const std::string_view word = cursor_.word_anywhere();
     if (is_keyword(word, keyword)) return true;
-    what_ = word.empty() ? "ends before '" + std::string(keyword) + "', so the file is cut off"
-                         : "has '" + std::string(word) + "' where '" + std::string(keyword) + "' belongs";
+    what_ = word.empty() ? "ends before " + in_quotes(keyword) + ", so the file is cut off"
+                         : "has " + in_quotes(word) + " where " + in_quotes(keyword) + " belongs";
     return false;
   }
 
@@ -92,7 +92,7 @@ class ascii_reader {
       for (int axis = 0; axis < 3; ++axis) {
         const std::string_view word = cursor_.word_anywhere();
         if (!to_number(word, p[axis])) {
-          what_ = "needs three numbers after 'vertex', but has '" + std::string(word) + "'";
+          what_ = "needs three numbers after 'vertex', but has " + in_quotes(word);
           return false;
         }
       }

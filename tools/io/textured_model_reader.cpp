@@ -8,13 +8,17 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "asperity/model/validate.hpp"
 #include "file_bytes.hpp"
+#include "file_formats.hpp"
 #include "gltf_document.hpp"
 #include "haptic_texture_extension.hpp"
 
 namespace asperity::io {
 namespace {
 
-constexpr gltf_limits limits{.json_bytes = std::size_t{16} << 20, .json_items = 200'000};
+/// Bytes of the buffer view that a field names. Throws rejection.
+std::size_t view_size(const gltf_document& document, const json_object& from, const char* key) {
+  return document.view_bytes(from.index(key, document.geometry().bufferViews.size())).size();
+}
 
 /// All numbers of a buffer view. Throws rejection where its length is no multiple of theirs.
 template <class T>
@@ -54,19 +58,31 @@ coarse_mesh read_mesh(const gltf_document& document, std::size_t m, const json_o
       primitives[0].attributes.count("TEXCOORD_0") == 0) {
     reject("meshes[" + std::to_string(m) + "] is not a single list of triangles with TEXCOORD_0");
   }
-  const auto positions = document.positions(primitives[0].attributes.at("POSITION"));
-  const auto uvs = document.uvs(primitives[0].attributes.at("TEXCOORD_0"));
-  const auto indices = document.indices(primitives[0].indices, positions.size());
+  const int position = primitives[0].attributes.at("POSITION");
+  const int uv = primitives[0].attributes.at("TEXCOORD_0");
+  const int index = primitives[0].indices;
   const json_object merged = haptic.object("meshVertices");
-  const auto mesh_vertex = numbers<std::uint32_t>(document, merged, "bufferView");
   const std::uint64_t count = merged.whole("count");
-  if (uvs.size() != positions.size() || mesh_vertex.size() != positions.size() || count > positions.size()) {
-    reject("the mesh has " + std::to_string(positions.size()) + " positions, " + std::to_string(uvs.size()) +
-           " texture coordinates, " + std::to_string(mesh_vertex.size()) + " entries and " + std::to_string(count) +
+  const std::size_t vertices = document.count(position);
+  const std::size_t corners = index < 0 ? vertices : document.count(index);
+  // Every size is compared before anything of that size is made.
+  const std::size_t entries = view_size(document, merged, "bufferView") / sizeof(std::uint32_t);
+  if (document.count(uv) != vertices || entries != vertices || count > vertices) {
+    reject("the mesh has " + std::to_string(vertices) + " positions, " + std::to_string(document.count(uv)) +
+           " texture coordinates, " + std::to_string(entries) + " entries and " + std::to_string(count) +
            " vertices in " + merged.path());
   }
-  if (indices.size() % 3 != 0)
-    reject("the mesh has " + std::to_string(indices.size()) + " corners, not a multiple of 3");
+  if (corners % 3 != 0) reject("the mesh has " + std::to_string(corners) + " corners, not a multiple of 3");
+  if (corners / 3 > max_coarse_triangles || vertices > 3 * max_coarse_triangles) {
+    throw rejection{error_code::limit_exceeded,
+                    "the mesh has " + std::to_string(corners / 3) + " triangles and " + std::to_string(vertices) +
+                        " corners of them, more than the limit " + std::to_string(max_coarse_triangles) +
+                        " of a coarse mesh; bake it with fewer"};
+  }
+  const auto positions = document.positions(position);
+  const auto uvs = document.uvs(uv);
+  const auto indices = document.indices(index, vertices);
+  const auto mesh_vertex = numbers<std::uint32_t>(document, merged, "bufferView");
 
   coarse_mesh mesh;
   mesh.positions.resize(static_cast<std::size_t>(count));
@@ -104,16 +120,29 @@ haptic_texture read_texture(const gltf_document& document, const json_object& fr
   }
   texture.width = static_cast<std::uint32_t>(width);
   texture.height = static_cast<std::uint32_t>(height);
-  texture.texels = numbers<glm::vec3>(document, from, "bufferView");
-  if (texture.texels.size() != width * height) {
-    throw rejection{error_code::bad_texture, from.path("bufferView") + " holds " +
-                                                 std::to_string(texture.texels.size()) + " texels, not " +
-                                                 std::to_string(width * height)};
+  const std::size_t bytes = view_size(document, from, "bufferView");
+  if (bytes != width * height * sizeof(glm::vec3)) {
+    throw rejection{error_code::bad_texture, from.path("bufferView") + " holds " + std::to_string(bytes) +
+                                                 " bytes, not the " +
+                                                 std::to_string(width * height * sizeof(glm::vec3)) + " of " +
+                                                 std::to_string(width) + " x " + std::to_string(height) + " texels"};
   }
+  texture.texels = numbers<glm::vec3>(document, from, "bufferView");
   return texture;
 }
 
 std::vector<convex_piece> read_pieces(const gltf_document& document, const json_object& from, const coarse_mesh& mesh) {
+  // A piece covers a triangle at least, has no vertices but theirs, and a hull of two faces for each of those at most.
+  const std::size_t covered = mesh.triangles.size();
+  for (const auto& [key, most] : {std::pair{"table", extension::table_columns * sizeof(std::uint32_t) * covered},
+                                  std::pair{"vertices", 3 * sizeof(std::uint32_t) * covered},
+                                  std::pair{"hull", 6 * 3 * sizeof(std::uint32_t) * covered},
+                                  std::pair{"triangles", sizeof(std::uint32_t) * covered}}) {
+    if (const std::size_t bytes = view_size(document, from, key); bytes > most) {
+      reject(from.path(key) + " has " + std::to_string(bytes) + " bytes, more than the " + std::to_string(most) +
+             " that the pieces of " + std::to_string(covered) + " triangles can take");
+    }
+  }
   const auto table = numbers<std::uint32_t>(document, from, "table");
   const auto vertices = numbers<std::uint32_t>(document, from, "vertices");
   const auto hull = numbers<std::array<std::uint32_t, 3>>(document, from, "hull");
@@ -196,16 +225,16 @@ bounds bounds_of(const std::vector<vec3>& positions) {
   return box;
 }
 
-result<textured_model> load(const std::filesystem::path& file) {
-  const auto bytes = read_file(file, max_model_bytes);
-  if (!bytes) return bytes.error();
+result<textured_model> read_checked(std::string_view bytes, const std::filesystem::path& file) {
   textured_model model;
   try {
-    model = read_model(gltf_document(*bytes, file, buffer_policy::own_chunk_only, limits));
+    model = read_model(gltf_document(bytes, file, buffer_policy::own_chunk_only));
   } catch (const rejection& r) {
-    return fault(r.code, file, r.what);
+    return fault(r.code, file, with_mend(r.what, "bake the model again"));
   }
-  if (const auto valid = validate(model); !valid) return fault(valid.error().code, file, valid.error().message);
+  if (const auto valid = validate(model); !valid) {
+    return fault(valid.error().code, file, with_mend(valid.error().message, "bake the model again"));
+  }
   model.mass = compute_mass_properties(model.mesh);
   model.box = bounds_of(model.mesh.positions);
   return model;
@@ -213,8 +242,16 @@ result<textured_model> load(const std::filesystem::path& file) {
 
 }  // namespace
 
+result<textured_model> read_textured_model(std::string_view bytes, const std::filesystem::path& file) {
+  return without_exceptions(file, [&] { return read_checked(bytes, file); });
+}
+
 result<textured_model> load_textured_model(const std::filesystem::path& file) {
-  return without_exceptions(file, [&] { return load(file); });
+  return without_exceptions(file, [&]() -> result<textured_model> {
+    const auto bytes = read_file(file, max_model_bytes);
+    if (!bytes) return bytes.error();
+    return read_checked(*bytes, file);
+  });
 }
 
 }  // namespace asperity::io

@@ -17,6 +17,8 @@ namespace asperity {
 
 /// Largest magnitude of a coordinate in a model, metres. More than this is a wrong unit or a broken file.
 inline constexpr double max_coordinate_m = 1e4;
+/// Most triangles of a coarse mesh. A tick looks at some hundred; this is where memory and checks end.
+inline constexpr std::size_t max_coarse_triangles = 1'000'000;
 
 namespace detail {
 
@@ -33,6 +35,11 @@ inline result<void> check_triangles(const coarse_mesh& mesh) {
   if (mesh.triangles.size() < 4) {
     return error{error_code::bad_mesh, "the coarse mesh has " + std::to_string(mesh.triangles.size()) +
                                            " triangles, but no closed surface has fewer than 4; bake it again"};
+  }
+  if (mesh.triangles.size() > max_coarse_triangles) {
+    return error{error_code::limit_exceeded, "the coarse mesh has " + std::to_string(mesh.triangles.size()) +
+                                                 " triangles, more than the limit of " +
+                                                 std::to_string(max_coarse_triangles) + "; bake it with fewer"};
   }
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if (!is_usable(mesh.positions[v])) {
@@ -109,6 +116,47 @@ inline result<void> check_closed(const coarse_mesh& mesh) {
   if (!(compute_mass_properties(mesh).volume_m3 > 0.0)) {
     return error{error_code::bad_mesh,
                  "the coarse mesh is inside out (its volume is not positive); flip its triangles"};
+  }
+  return {};
+}
+
+/// The triangles around a vertex form one fan: nowhere does the surface touch itself in a point, where no direction
+/// could be told from its two sides. @pre check_closed() passed
+inline result<void> check_fans(const coarse_mesh& mesh) {
+  // A corner is where a triangle leaves a vertex along an edge. The corner after it, counter-clockwise, leaves along
+  // the edge by which the triangle comes back. Where more than one cycle of corners has the same vertex, fans touch.
+  struct corner {
+    std::uint32_t from, to, back;
+  };
+  const auto before = [](const corner& a, const corner& b) {
+    return std::pair(a.from, a.to) < std::pair(b.from, b.to);
+  };
+  std::vector<corner> around;
+  around.reserve(3 * mesh.triangles.size());
+  for (const coarse_triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      around.push_back({t.vertex[k], t.vertex[(k + 1) % 3], t.vertex[(k + 2) % 3]});
+    }
+  }
+  std::sort(around.begin(), around.end(), before);
+  for (std::size_t first = 0; first < around.size();) {
+    const std::uint32_t v = around[first].from;
+    std::size_t corners = 1;
+    while (first + corners < around.size() && around[first + corners].from == v) ++corners;
+    const auto begin = around.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(corners);
+    std::size_t in_fan = 0;
+    auto at = begin;
+    do {
+      at = std::lower_bound(begin, end, corner{v, at->back, 0}, before);
+      ++in_fan;
+    } while (at != begin);
+    if (in_fan != corners) {
+      return error{error_code::bad_mesh, vertex_name(v) +
+                                             " of the coarse mesh joins surfaces that touch only there; split it into "
+                                             "one vertex for each and bake again"};
+    }
+    first += corners;
   }
   return {};
 }
@@ -278,11 +326,14 @@ inline result<void> check_pieces(const textured_model& model) {
 }  // namespace detail
 
 /// Checks everything that a tick relies on. Whoever makes a model by hand or by a tool calls this once before using it.
-/// @return bad_mesh: indices, coordinates (finite, within 10 km), areas, closedness, orientation, pieces;
+/// @return bad_mesh: indices, coordinates (finite, within 10 km), areas, closedness, orientation, one fan per vertex,
+///         pieces;
+///         limit_exceeded: more than max_coarse_triangles;
 ///         bad_texture: size, coordinates, a texel under a chart that holds no position. The message names the place.
 [[nodiscard]] inline result<void> validate(const textured_model& model) {
   if (auto r = detail::check_triangles(model.mesh); !r) return r;
   if (auto r = detail::check_closed(model.mesh); !r) return r;
+  if (auto r = detail::check_fans(model.mesh); !r) return r;
   if (auto r = detail::check_charts(model.mesh); !r) return r;
   if (auto r = detail::check_texels(model); !r) return r;
   return detail::check_pieces(model);

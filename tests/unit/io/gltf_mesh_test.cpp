@@ -71,13 +71,14 @@ TEST(Gltf, NeverLeavesItsFolder) {
   };
   EXPECT_TRUE(load("deeper/fine.bin"));
   EXPECT_TRUE(load("./deeper/../deeper/fine.bin"));
-  for (const std::string uri : {"../secret.bin", "%2e%2e/secret.bin", "deeper/../../secret.bin", "link.bin",
-                                "/etc/passwd", "file:///etc/passwd", "", ".", ".."}) {
+  for (const std::string uri : {"../secret.bin", "%2e%2e/secret.bin", "deeper/../../secret.bin", "/etc/passwd",
+                                "file:///etc/passwd", "", ".", ".."}) {
     SCOPED_TRACE(uri);
     expect_error(load(uri), error_code::bad_format, "leads out of the document's folder");
   }
   (void)outer.file("secret.bin", bytes_of(triangle_positions));
   expect_error(load(outer.file("secret.bin").string()), error_code::bad_format, "leads out of");
+  expect_error(load("link.bin"), error_code::io_failed, "link.bin: is or lies behind a link");
   expect_error(load("absent.bin"), error_code::io_failed, "absent.bin: cannot be found");
   expect_error(load("deeper"), error_code::io_failed, "is a directory");
   expect_error(load("%zz"), error_code::bad_format, "broken % code");
@@ -169,7 +170,7 @@ TEST(Gltf, NamesWhatItCannotRead) {
     return io::load_mesh(folder.file("f.glb", glb(document, bin)));
   };
   using enum error_code;
-  expect_error(with("/asset/version", "1.0"), unsupported, "glTF version 1.0");
+  expect_error(with("/asset/version", "1.0"), unsupported, "glTF version '1.0'");
   expect_error(with("/extensionsRequired", {"KHR_draco_mesh_compression"}), unsupported, "KHR_draco_mesh_compression");
   EXPECT_TRUE(with("/extensionsRequired", {"KHR_materials_unlit"}));
   expect_error(with("/accessors/0/sparse", json::object()), unsupported, "accessors[0] is sparse");

@@ -1,7 +1,6 @@
 // Files made to break a loader. Each must end in an error or in a valid model, quickly, whatever its bytes.
 #include <functional>
 #include <gtest/gtest.h>
-#include <random>
 #include <string>
 
 #include "asperity/io/mesh_file.hpp"
@@ -80,44 +79,6 @@ TEST_F(HostileGlb, EveryPrefixWithACorrectedLengthIsRefused) {
     header.seekp(8).write(reinterpret_cast<const char*>(&length), 4).flush();
     ASSERT_FALSE(io::load_textured_model(file)) << n << " bytes";
     ASSERT_FALSE(io::load_mesh(file)) << n << " bytes";
-  }
-}
-
-TEST_F(HostileGlb, FlippedBytesNeverCrash) {
-  std::mt19937_64 random(20041);
-  const std::size_t json_end = good_.find("BIN");
-  std::size_t loaded = 0;
-  for (int round = 0; round < 2000; ++round) {
-    std::string bytes = good_;
-    for (std::uint64_t flips = 1 + random() % 3; flips > 0; --flips) {
-      // Half of them in the header and the JSON, which are a small part of the file.
-      const std::size_t at = random() % (random() % 2 == 0 ? json_end : bytes.size());
-      bytes[at] = static_cast<char>(random());
-    }
-    if (load(bytes)) ++loaded;
-  }
-  EXPECT_GT(loaded, 0U) << "flips in the picture or in a name do no harm";
-  EXPECT_LT(loaded, 2000U);
-}
-
-TEST_F(HostileGlb, NumbersInTheJsonNeverCrash) {
-  std::mt19937_64 random(9);
-  const std::vector<json> values{
-      0,     1,       -1,   3,   0.5,           255,           65536, 2147483647, 4294967295U, 18446744073709551615U,
-      1e300, nullptr, true, "x", json::array(), json::object()};
-  std::vector<json::json_pointer> places;
-  const json flat = glb_editor(good_).json.flatten();
-  for (const auto& item : flat.items()) places.emplace_back(item.key());
-  for (int round = 0; round < 1000; ++round) {
-    glb_editor glb(good_);
-    for (std::uint64_t edits = 1 + random() % 2; edits > 0; --edits) {
-      const auto& place = places[random() % places.size()];
-      try {
-        glb.json[place] = values[random() % values.size()];
-      } catch (const json::exception&) {  // an earlier edit took the place away
-      }
-    }
-    (void)load(glb.bytes());
   }
 }
 
@@ -212,7 +173,8 @@ TEST_F(HostileGlb, Extension) {
   expect_edit_refused("merges positions that differ or names vertex 8 of 8",
                       [](e g) { g.put(4, 0, std::uint32_t{8}); });
   expect_edit_refused("is 24 x 4294967295 texels", [](e g) { g.haptic()["texture"]["height"] = 4294967295U; });
-  expect_edit_refused("holds 576 texels, not 552", [](e g) { g.haptic()["texture"]["height"] = 23; });
+  expect_edit_refused("holds 6912 bytes, not the 6624 of 24 x 23 texels",
+                      [](e g) { g.haptic()["texture"]["height"] = 23; });
   expect_edit_refused("bufferView is 99", [](e g) { g.haptic()["texture"]["bufferView"] = 99; });
   expect_edit_refused("is not a position", [](e g) { g.put(5, 3 * (24 * 4 + 4), NAN); });
   expect_edit_refused("texels of another kind", [](e g) { g.haptic()["texture"]["componentType"] = 5131; });

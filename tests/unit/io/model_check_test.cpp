@@ -6,6 +6,7 @@
 #include <string>
 
 #include "asperity/model/validate.hpp"
+#include "support/piece_models.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity {
@@ -49,6 +50,30 @@ TEST(ModelCheck, NamesFaultsOfTheMesh) {
   expect_fault(bad, "inside out", [](m x) {
     for (auto& t : x.mesh.triangles) std::swap(t.vertex[0], t.vertex[1]);
   });
+}
+
+TEST(ModelCheck, NamesAVertexWhereSurfacesTouchInAPoint) {
+  using m = textured_model&;
+  // A second box, corner 0 of it at corner 7 of the first: as a vertex of its own, or as the same one.
+  const auto add_box = [](textured_model& x, bool shared) {
+    const coarse_mesh box = x.mesh;
+    for (std::size_t v = shared ? 1 : 0; v < 8; ++v) x.mesh.positions.push_back(box.positions[v] + 2.0);
+    for (coarse_triangle t : box.triangles) {
+      for (std::uint32_t& v : t.vertex) v = shared && v == 0 ? 7 : v + (shared ? 7 : 8);
+      x.mesh.triangles.push_back(t);
+    }
+  };
+  expect_fault(error_code::bad_mesh, "vertex 7 of the coarse mesh joins surfaces that touch only there",
+               [&](m x) { add_box(x, true); });
+  textured_model apart = make_flat_box({1, 1, 1}, 48);
+  add_box(apart, false);
+  EXPECT_TRUE(detail::check_fans(apart.mesh));
+  EXPECT_TRUE(detail::check_fans(test::torus_mesh(2.0, 1.0, 7, 5)));
+}
+
+TEST(ModelCheck, NamesAMeshBeyondTheLimit) {
+  expect_fault(error_code::limit_exceeded, "has 1000001 triangles, more than the limit of 1000000",
+               [](textured_model& x) { x.mesh.triangles.resize(max_coarse_triangles + 1); });
 }
 
 TEST(ModelCheck, NamesFaultsOfTheTexture) {

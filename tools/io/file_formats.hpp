@@ -1,10 +1,11 @@
-// One reader per mesh format. Each gets the file's bytes and its name for messages.
+// One reader per format. Each gets the file's bytes, and its name for messages.
 #pragma once
 
 #include <filesystem>
 #include <string_view>
 
 #include "asperity/core/status.hpp"
+#include "asperity/model/textured_model.hpp"
 #include "asperity/model/triangle_mesh.hpp"
 
 namespace asperity::io {
@@ -14,5 +15,7 @@ namespace asperity::io {
 [[nodiscard]] result<triangle_mesh> read_stl(std::string_view bytes, const std::filesystem::path& file);
 /// .glb and .gltf; buffers of the latter are read from the file's own folder only.
 [[nodiscard]] result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file);
+/// A .glb with the extension; the model has passed validate().
+[[nodiscard]] result<textured_model> read_textured_model(std::string_view bytes, const std::filesystem::path& file);
 
 }  // namespace asperity::io
