@@ -11,6 +11,7 @@
 
 #include "asperity/collision/aabb_tree.hpp"
 #include "asperity/collision/close_pair.hpp"
+#include "asperity/core/reserve_resident.hpp"
 
 namespace asperity {
 
@@ -36,11 +37,11 @@ struct pair_cluster {
 class pair_clustering {
  public:
   pair_clustering(std::size_t max_pairs, std::size_t max_clusters) : max_clusters_(max_clusters) {
-    clusters_.reserve(max_clusters);
-    order_.reserve(max_pairs);
-    taken_.reserve(max_pairs);
+    detail::reserve_resident(clusters_, max_clusters);
+    detail::reserve_resident(order_, max_pairs);
+    detail::reserve_resident(taken_, max_pairs);
     // A passive pair may be listed once per cluster.
-    members_.reserve(max_pairs * (1 + max_clusters));
+    detail::reserve_resident(members_, max_pairs * (1 + max_clusters));
   }
 
   /// Clusters of these pairs, heaviest first.
@@ -83,6 +84,9 @@ class pair_clustering {
   }
   /// Clusters that did not fit in the last build().
   [[nodiscard]] std::size_t left_out() const noexcept { return left_out_; }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(clusters_, order_, members_, taken_);
+  }
 
  private:
   /// Appends the seed's cluster to members_; drops it again where the clusters are full. @return its active pairs

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
+#include "asperity/core/reserve_resident.hpp"
 
 namespace asperity {
 
@@ -43,8 +46,8 @@ struct contact_limits {
 class contact_set {
  public:
   explicit contact_set(contact_limits limits = {}) : limits_(limits) {
-    contacts_.reserve(limits.contacts);
-    triangles_.reserve(limits.triangles);
+    detail::reserve_resident(contacts_, limits.contacts);
+    detail::reserve_resident(triangles_, limits.triangles);
   }
 
   /// @rt safe
@@ -86,6 +89,7 @@ class contact_set {
   /// Contacts that did not fit since clear(): raise contact_limits.
   [[nodiscard]] std::size_t dropped() const noexcept { return dropped_; }
   [[nodiscard]] const contact_limits& limits() const noexcept { return limits_; }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(contacts_, triangles_); }
 
  private:
   contact_limits limits_;

@@ -14,6 +14,7 @@
 #include "asperity/collision/finder_settings.hpp"
 #include "asperity/collision/patch_window.hpp"
 #include "asperity/core/pose.hpp"
+#include "asperity/core/reserve_resident.hpp"
 
 namespace asperity {
 
@@ -34,9 +35,11 @@ namespace asperity {
 class contact_builder {
  public:
   contact_builder(std::size_t triangles_a, std::size_t triangles_b) {
-    patch_a_.reserve(triangles_a);
-    patch_b_.reserve(triangles_b);
+    detail::reserve_resident(patch_a_, triangles_a);
+    detail::reserve_resident(patch_b_, triangles_b);
   }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(patch_a_, patch_b_); }
 
   /// Fills window, witness points and separation; out.window.u_w must hold the wanted axis, orthogonal to n_w.
   /// @return false where a body has no facing triangle in the window: there is no contact

@@ -15,6 +15,7 @@
 #include "asperity/collision/concept.hpp"
 #include "asperity/collision/contact_builder.hpp"
 #include "asperity/collision/finder_settings.hpp"
+#include "asperity/core/reserve_resident.hpp"
 
 namespace asperity {
 
@@ -59,6 +60,8 @@ class convex_piece_finder {
   [[nodiscard]] const finder_statistics& statistics() const noexcept { return statistics_; }
   /// Settings for one fixed body, automatic ones filled in. @pre body < number of fixed bodies
   [[nodiscard]] const finder_settings& settings(std::size_t body) const noexcept { return sides_[body].settings; }
+  /// Without the models, which others share.
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(probe_, sides_); }
 
  private:
   /// A cached simplex and the pair it belongs to. Pairs share slots: losing one costs a cold start.
@@ -93,9 +96,13 @@ class convex_piece_finder {
           cache(slots(probe.shapes.size() * body.shapes.size())),
           clustering(settings.close_pairs, settings.clusters),
           builder(probe.model->mesh.triangles.size(), m->mesh.triangles.size()) {
-      pairs.reserve(settings.close_pairs);
-      previous.reserve(settings.clusters);
-      current.reserve(settings.clusters);
+      detail::reserve_resident(pairs, settings.close_pairs);
+      detail::reserve_resident(previous, settings.clusters);
+      detail::reserve_resident(current, settings.clusters);
+    }
+
+    [[nodiscard]] std::size_t heap_bytes() const noexcept {
+      return asperity::heap_bytes(body, cache, pairs, clustering, builder, previous, current);
     }
 
     static std::size_t slots(std::size_t pairs) noexcept {

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "asperity/core/reserve_resident.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/depth/height_field.hpp"
 #include "asperity/depth/surface_index.hpp"
@@ -34,7 +35,8 @@ struct taper_edge {
 /// Taper of one body over the window.
 class edge_taper {
  public:
-  explicit edge_taper(std::size_t max_triangles) { edges_.reserve(3 * max_triangles); }
+  explicit edge_taper(std::size_t max_triangles) { detail::reserve_resident(edges_, 3 * max_triangles); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(edges_); }
 
   /// Collects the edges of a projected patch that come within `width_m` of the window. @rt safe
   void prepare(const patch_projection& patch, const surface_index& index, const window_map& map, layer which,

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "asperity/core/reserve_resident.hpp"
 #include "asperity/depth/surface_index.hpp"
 #include "asperity/depth/window_map.hpp"
 
@@ -39,7 +40,9 @@ struct projected_triangle {
 class patch_projection {
  public:
   /// @param max_triangles  largest number of coarse triangles of any body that will be projected
-  explicit patch_projection(std::size_t max_triangles) : slot_(max_triangles, 0) { list_.reserve(max_triangles); }
+  explicit patch_projection(std::size_t max_triangles) : slot_(max_triangles, 0) {
+    detail::reserve_resident(list_, max_triangles);
+  }
 
   /// @pre every index in patch is below mesh.triangles.size(), each once   @rt safe
   void project(const coarse_mesh& mesh, const surface_index& index, std::span<const std::uint32_t> patch,
@@ -73,6 +76,8 @@ class patch_projection {
     const std::uint32_t slot = slot_[triangle];
     return slot < list_.size() && list_[slot].triangle == triangle ? &list_[slot] : nullptr;
   }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(list_, slot_); }
 
  private:
   /// Turns corner values into an affine function of (u, v). Facing triangles have area across n, so this is safe.
