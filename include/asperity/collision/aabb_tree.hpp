@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
 #include "asperity/model/textured_model.hpp"
 
 namespace asperity {
@@ -60,6 +61,8 @@ class aabb_tree {
       }
     }
   }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(nodes_); }
 
  private:
   // Depth-first layout: the left child follows its parent, `right` is 0 for a leaf.

@@ -9,6 +9,7 @@
 
 #include "asperity/collision/mesh_features.hpp"
 #include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
 #include "asperity/model/coarse_mesh.hpp"
 #include "asperity/model/convex_piece.hpp"
 #include "asperity/model/textured_model.hpp"
@@ -46,6 +47,9 @@ struct convex_shape {
   bool flat = false;
 
   [[nodiscard]] std::size_t size() const noexcept { return x.size(); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(x, y, z, faces, edges, vertex_normals, outgoing, fan);
+  }
   /// @pre i < size()
   [[nodiscard]] vec3 vertex(std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
 

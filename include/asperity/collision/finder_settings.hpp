@@ -86,6 +86,11 @@ struct collision_body {
     triangle_tree = aabb_tree(boxes);
     triangle_normals = std::move(features.triangle_normals);
   }
+
+  /// Without the model, which others share.
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(shapes, triangle_normals, piece_tree, triangle_tree);
+  }
 };
 
 }  // namespace asperity

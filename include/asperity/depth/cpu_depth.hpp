@@ -82,6 +82,11 @@ class cpu_depth {
     return detail::difference_step(settings_, pairs_[body], 2.0 * half_size_m / settings_.grid);
   }
 
+  /// Without the models, which others share.
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(scene_.fixed, a_, b_, weight_, bodies_, pairs_);
+  }
+
   /// Says what in a scene cannot be measured.
   [[nodiscard]] static result<void> check_scene(const asperity::scene& scene) {
     if (!scene.probe) return error{error_code::invalid_argument, "scene has no probe; load a textured model for it"};
@@ -102,6 +107,7 @@ class cpu_depth {
     detail::height_field field;
     detail::edge_taper taper;
     side(std::size_t samples, std::size_t triangles) : patch(triangles), field(samples), taper(triangles) {}
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(patch, field, taper); }
   };
 
   /// What stays the same over all evaluations of one contact.

@@ -25,6 +25,7 @@ struct height_field {
   std::vector<vec2> texel;           ///< where the texture was read, texels
 
   explicit height_field(std::size_t samples) : height(samples), kind(samples), owner(samples), texel(samples) {}
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(height, kind, owner, texel); }
 };
 
 /// Signed side of a line through two projected vertices.

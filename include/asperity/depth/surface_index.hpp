@@ -52,6 +52,8 @@ struct surface_index {
     find_neighbours(model.mesh);
   }
 
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(normal, neighbour, texels); }
+
  private:
   [[nodiscard]] static texel_triangle place(const coarse_triangle& t, const haptic_texture& texture) noexcept {
     texel_triangle out;

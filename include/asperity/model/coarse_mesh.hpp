@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
 
 namespace asperity {
 
@@ -21,6 +23,8 @@ struct coarse_triangle {
 struct coarse_mesh {
   std::vector<vec3> positions;
   std::vector<coarse_triangle> triangles;
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(positions, triangles); }
 };
 
 /// Corner positions of triangle t. @pre t < mesh.triangles.size()

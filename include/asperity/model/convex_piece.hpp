@@ -2,10 +2,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
 
 namespace asperity {
 
@@ -18,6 +20,8 @@ struct convex_piece {
       hull;                              ///< hull faces: indices into vertices, counter-clockwise from outside
   std::vector<std::uint32_t> triangles;  ///< coarse triangles that this piece covers
   bool flat = false;                     ///< all vertices in one plane within the decomposition's tolerance
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(vertices, hull, triangles); }
 };
 
 }  // namespace asperity

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
 
 namespace asperity {
 
@@ -38,6 +39,8 @@ struct haptic_texture {
 
   /// Texel in column i and row j. @pre i < width, j < height
   [[nodiscard]] vec3 at(std::size_t i, std::size_t j) const noexcept { return {texels[j * width + i]}; }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(texels); }
 
  private:
   static double clamp_to(double x, double hi) noexcept { return x < 0.0 ? 0.0 : (x > hi ? hi : x); }

@@ -1,6 +1,8 @@
 // Which bodies touch, and where they are in this tick.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -14,6 +16,16 @@ struct scene {
   model_ptr probe;
   std::vector<model_ptr> fixed;
 };
+
+/// Memory that a scene's models take, bytes; a model that appears several times counts once.
+[[nodiscard]] inline std::size_t memory_bytes(const scene& bodies) noexcept {
+  std::size_t bytes = sizeof bodies + heap_bytes(bodies.fixed) + (bodies.probe ? memory_bytes(*bodies.probe) : 0);
+  for (auto m = bodies.fixed.begin(); m != bodies.fixed.end(); ++m) {
+    const bool counted = *m == bodies.probe || std::find(bodies.fixed.begin(), m, *m) != m;
+    if (*m && !counted) bytes += memory_bytes(**m);
+  }
+  return bytes;
+}
 
 /// Poses of a scene's bodies in one tick. @pre T_wb.size() == scene.fixed.size() and outlives the call
 struct scene_pose {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "asperity/core/memory.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/coarse_mesh.hpp"
 #include "asperity/model/convex_piece.hpp"
@@ -41,7 +42,14 @@ struct textured_model {
   mass_properties mass;  ///< of the coarse mesh
   bounds box;            ///< of the coarse mesh
   bake_report report;
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(name, mesh, texture, pieces); }
 };
+
+/// Memory that a model takes, bytes: itself and all that it holds. See heap_bytes() for what is counted.
+[[nodiscard]] inline std::size_t memory_bytes(const textured_model& model) noexcept {
+  return sizeof model + model.heap_bytes();
+}
 
 /// A model is shared by finder, depth backend and force model, and never changes.
 using model_ptr = std::shared_ptr<const textured_model>;

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <concepts>
+#include <cstddef>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "asperity/collision/concept.hpp"
+#include "asperity/core/memory.hpp"
 #include "asperity/depth/concept.hpp"
 #include "asperity/force/concept.hpp"
 
@@ -78,6 +81,20 @@ class basic_renderer {
   [[nodiscard]] const asperity::scene& scene() const noexcept { return scene_; }
   /// The patches behind the last tick's contacts.
   [[nodiscard]] const contact_set& contacts() const noexcept { return contacts_; }
+  /// Memory that the renderer takes, bytes: itself, its policies and all that they hold, whether a tick has used it or
+  /// not. Its models belong to whoever else shares them: memory_bytes(scene()) counts them.
+  /// A policy that has no heap_bytes() counts with its size alone.
+  [[nodiscard]] std::size_t memory_bytes() const noexcept {
+    const auto held = [](const auto& policy) noexcept -> std::size_t {
+      if constexpr (reports_heap<std::remove_cvref_t<decltype(policy)>>) {
+        return policy.heap_bytes();
+      } else {
+        return 0;
+      }
+    };
+    return sizeof *this + heap_bytes(scene_.fixed, contacts_, depths_) + held(finder_) + held(depth_) + held(force_);
+  }
+
   [[nodiscard]] Finder& finder() noexcept { return finder_; }
   [[nodiscard]] Depth& depth() noexcept { return depth_; }
   [[nodiscard]] Force& force() noexcept { return force_; }
