@@ -42,9 +42,14 @@ struct control_config {
 /// probe's pose, tell the observer.
 ///
 /// - The probe starts at the device's first good pose, at rest: no jump.
+/// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
+/// - A clock that steps back stands still for one tick; the loop's time, which the device and the record are given,
+/// goes
+///   on from there and never goes back.
 /// - A rejected sample: the wanted wrench is zero in this tick, and the probe goes on towards the last good pose. After
 ///   sample_check_config::reject_limit rejections in a row the gate shuts (bad_samples).
 /// - A probe step that fails (a contact that is not finite): the wanted wrench is zero in this tick.
+/// - Energy past the guard's cut-off shuts the gate (energy).
 /// - A device that refuses a command shuts the gate (device_failed). A shut gate disarms the device once the wrench is
 ///   zero. Nothing here ever arms.
 /// @tparam Device see haptic_device; not owned, outlives the loop
@@ -66,12 +71,14 @@ class device_loop {
         guard_(guard_for(config.guard, dev.capabilities())),
         gate_(tighter(limits_of(dev.capabilities()), config.limits)) {}
 
-  /// One period. now_ns never decreases.
+  /// One period.
+  /// @param clock_ns the session's clock
   /// @return ok | stale_input (sample rejected) | not_finite (probe) | not_ready (no good sample yet) |
   ///         backend_failed (the gate is shut: see gate().fault())
   /// @rt as safe as the device: no allocation, lock, throw, print or clock here
-  [[nodiscard]] status tick(std::int64_t now_ns) noexcept {
-    const double dt_s = advance_clock(now_ns);
+  [[nodiscard]] status tick(std::int64_t clock_ns) noexcept {
+    const double dt_s = advance_clock(clock_ns);
+    const std::int64_t now_ns = now_ns_;
     device_sample seen = last_seen_;
     const sample_verdict verdict = check_.judge(now_ns, device_->read(now_ns, seen), seen);
     if (verdict == sample_verdict::accepted) last_seen_ = seen;
@@ -90,6 +97,11 @@ class device_loop {
         wanted_d = wrench_on_hand();
         guarded = guard_.adjust(wanted_d);
       }
+    }
+    if (guard_.exhausted()) gate_.trip(gate_fault::energy);
+    if (!may_put_out(device_->state())) {
+      gate_.rest();
+      guarded.on_hand = {};
     }
     const device_command sent =
         gate_.pass(now_ns, seen, {guarded.on_hand, wrench_frame::device_base, now_ns, ++sequence_});
@@ -122,7 +134,9 @@ class device_loop {
   [[nodiscard]] bool clear_fault() noexcept {
     if (!gate_.clear()) return false;
     check_.restart();
+    guard_.reset();
     placed_ = false;
+    touched_ = {};
     return true;
   }
 
@@ -139,11 +153,14 @@ class device_loop {
     return g;
   }
 
-  [[nodiscard]] double advance_clock(std::int64_t now_ns) noexcept {
-    const std::int64_t step = started_ ? std::clamp<std::int64_t>(now_ns - last_ns_, 0, config_.longest_step_ns) : 0;
+  // The loop's time follows the clock forward only. @return what of the step the probe takes, s
+  [[nodiscard]] double advance_clock(std::int64_t clock_ns) noexcept {
+    if (!started_) now_ns_ = last_clock_ns_ = clock_ns;
+    const std::int64_t step = std::max<std::int64_t>(0, clock_ns - last_clock_ns_);
     started_ = true;
-    last_ns_ = now_ns;
-    return static_cast<double>(step) * 1e-9;
+    last_clock_ns_ = clock_ns;
+    now_ns_ += step;
+    return static_cast<double>(std::min(step, config_.longest_step_ns)) * 1e-9;
   }
 
   void place(const device_sample& s) noexcept {
@@ -233,7 +250,8 @@ class device_loop {
   device_sample last_seen_{};
   bool started_ = false;
   bool placed_ = false;
-  std::int64_t last_ns_ = 0;
+  std::int64_t last_clock_ns_ = 0;
+  std::int64_t now_ns_ = 0;    // the loop's time: the clock's steps forward, summed up
   double unobserved_s_ = 0.0;  // time since the guard saw a pose
   std::uint64_t sequence_ = 0;
   pose target_T_wc_{};

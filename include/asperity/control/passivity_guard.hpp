@@ -19,6 +19,7 @@ struct guard_config {
   double credit_j = 0.1;        ///< most of the hand's energy that counts as lent to the loop
   double soft_limit_j = 0.005;  ///< surplus at which the wrench begins to be scaled down ...
   double hard_limit_j = 0.02;   ///< ... and at which only damping is left
+  double cut_off_j = 0.1;       ///< surplus at which damping has failed as well: a device_loop then shuts the gate
 };
 
 /// What the guard did in one tick.
@@ -40,9 +41,13 @@ struct guard_action {
 /// inertia, at the rate alpha = min(surplus / (h v.M v), 0.5 / h), so that one sample takes out the surplus and the
 /// damping itself stays stable. Past soft_limit_j the wanted wrench is scaled down as well, to zero at hard_limit_j.
 ///
-/// Bound: surplus() <= hard_limit_j + max(|F| |dx| + |T| |dphi|) over the samples that the gate's slew rate needs to
-/// take the wrench from its limit to zero. Hence over any interval the hand receives at most that plus credit_j. It is
-/// a net: a loop that needs it all the time is badly tuned. It does not replace the contact's stiffness J.
+/// Bound: surplus() <= cut_off_j + sum of |F| |dx| + |T| |dphi| over the sample in which it passes cut_off_j and those
+/// that the gate's slew rate needs to take the wrench from there to zero; then nothing leaves and the sum stands still.
+/// Hence over any interval the hand receives at most that plus credit_j. The same holds for hard_limit_j, with one more
+/// term: damping acts on the velocity of the last sample, and where the velocity turns meanwhile, as it does by an
+/// encoder's step to and fro, damping gives energy, up to m |v| |v_next| / 2 in a sample where the slew rate lets it
+/// follow. Nothing limits how often that happens, which is why there is a cut-off.
+/// It is a net: a loop that needs it all the time is badly tuned. It does not replace the contact's stiffness J.
 /// @source spec section 5; floor and scaling are ours
 class passivity_guard {
  public:
@@ -84,6 +89,9 @@ class passivity_guard {
                          -alpha * config_.inertia_kg_m2 * velocity_.angular};
     return {scale * wanted + damping, alpha, scale};
   }
+
+  /// Whether more than the cut-off was delivered, so that nothing but silence is left. @rt safe
+  [[nodiscard]] bool exhausted() const noexcept { return config_.enabled && surplus_j_ > config_.cut_off_j; }
 
   /// Energy delivered to the hand since reset(), J; negative where the hand put more in. The plain book, without floor.
   [[nodiscard]] double delivered_j() const noexcept { return delivered_j_; }

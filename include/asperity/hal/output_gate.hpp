@@ -21,6 +21,7 @@ enum class gate_fault : std::uint8_t {
   certificate_failed,  ///< the value about to leave was not within its limit
   bad_samples,         ///< too many samples in a row that could not be used
   device_failed,       ///< the device refused a command, vanished, or reported a fault
+  energy,              ///< more energy reached the hand than the passivity guard could hold back
   stopped,             ///< somebody asked for a stop
 };
 
@@ -40,6 +41,8 @@ enum class gate_fault : std::uint8_t {
       return "too many bad samples";
     case gate_fault::device_failed:
       return "device failed";
+    case gate_fault::energy:
+      return "too much energy";
     case gate_fault::stopped:
       return "stopped";
   }
@@ -134,6 +137,9 @@ class output_gate {
     fault_ = cause;
     flight_.freeze();
   }
+
+  /// The device puts out zero by itself, whatever it is told: nothing is put out, and the slew starts from zero.
+  void rest() noexcept { last_ = {}; }
 
   /// Opens the gate again after a person has seen the fault. @return false while the output is not zero yet
   [[nodiscard]] bool clear() noexcept {

@@ -15,7 +15,7 @@ enum class sample_verdict : std::uint8_t {
   accepted,
   not_finite,    ///< NaN or infinity in the pose
   not_unit,      ///< the quaternion is not of unit length
-  stale,         ///< older than its limit
+  stale,         ///< older than its limit, or as far ahead of the clock
   jump,          ///< farther from the last good pose than any hand moves
   no_answer,     ///< the device could not answer
   not_measured,  ///< the device says that it measured no position
@@ -42,7 +42,7 @@ enum class sample_verdict : std::uint8_t {
 }
 
 struct sample_check_config {
-  std::int64_t stale_after_ns = 20'000'000;  ///< age (now - host_time_ns) at which a sample is rejected
+  std::int64_t stale_after_ns = 20'000'000;  ///< age (now - host_time_ns, either sign) above which a sample is rejected
   double max_speed_m_per_s = 10.0;           ///< faster than a hand; a larger step between samples is an encoder fault
   double max_turn_rate_rad_per_s = 100.0;
   std::uint32_t reject_limit = 5;  ///< rejected samples in a row that make a fault
@@ -88,7 +88,7 @@ class sample_check {
       return sample_verdict::not_finite;
     }
     if (!is_valid(s.T_dh)) return sample_verdict::not_unit;
-    if (now_ns - s.host_time_ns > config_.stale_after_ns) return sample_verdict::stale;
+    if (!is_recent(now_ns, s.host_time_ns)) return sample_verdict::stale;
     if (has_last_) {
       // A burst of delayed samples arrives with times close together: a step is never judged over less than a
       // millisecond.
@@ -99,6 +99,14 @@ class sample_check {
       if (!(turn_rad <= config_.max_turn_rate_rad_per_s * dt)) return sample_verdict::jump;
     }
     return sample_verdict::accepted;
+  }
+
+  // A stamp from far ahead is as wrong as an old one: it would never grow old, and excuse a jump of any length. The
+  // difference is taken without sign, because that of two hostile numbers does not fit into 64 bits with one.
+  [[nodiscard]] bool is_recent(std::int64_t now_ns, std::int64_t host_time_ns) const noexcept {
+    const auto [earlier, later] = std::minmax(now_ns, host_time_ns);
+    const std::uint64_t apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
+    return apart <= static_cast<std::uint64_t>(std::max<std::int64_t>(0, config_.stale_after_ns));
   }
 
   sample_check_config config_;
