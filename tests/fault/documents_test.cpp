@@ -56,6 +56,10 @@ TEST_F(documents, bake_and_inspect_tell_the_same) {
   // The file keeps positions in single precision.
   EXPECT_NEAR(seen["size"]["diagonal"], baked["size"]["diagonal"], 1e-8);
   EXPECT_NEAR(seen["mass_properties"]["volume"], baked["mass_properties"]["volume"], 1e-11);
+  // Texels are most of a model.
+  const double texels = 12.0 * seen["texture"]["width"].get<double>() * seen["texture"]["height"].get<double>();
+  EXPECT_GT(seen["memory"], texels);
+  EXPECT_LT(seen["memory"], 1.5 * texels);
   EXPECT_EQ(seen["warnings"], json::array());
 }
 
@@ -157,6 +161,7 @@ TEST_F(documents, run) {
                   "contact_loop",
                   "device_loop",
                   "tick_time_is",
+                  "memory",
                   "rejected_samples",
                   "lost_records",
                   "fault",

@@ -172,8 +172,14 @@ std::string loop_text(const loop_times& times, const time_summary& measured) {
          std::to_string(times.skipped) + " skipped; " + to_text(measured);
 }
 
+/// What a session holds in memory, bytes.
+struct memory_use {
+  std::size_t models = 0;
+  std::size_t renderer = 0;
+};
+
 answer report(const run_command& options, const given_poses& poses, const session_outcome& ended,
-              const session_summary& summary) {
+              const session_summary& summary, const memory_use& memory) {
   const time_summary contact = summarise(ended.contact.seconds);
   const time_summary device = summarise(ended.device.seconds);
   json T_wb = json::array();
@@ -195,6 +201,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
   out.document["contact_loop"] = loop_json(ended.contact, contact);
   out.document["device_loop"] = loop_json(ended.device, device);
   out.document["tick_time_is"] = options.clock == "virtual" ? "cpu" : "wall";
+  out.document["memory"] = {{"models", memory.models}, {"renderer", memory.renderer}};
   out.document["rejected_samples"] = ended.rejected_samples;
   out.document["lost_records"] = ended.lost_records;
   out.document["fault"] = to_string(ended.fault);
@@ -207,6 +214,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
              options.motion + ", " + options.clock + " clock\n" + summary.to_text();
   out.text += row("contact loop", loop_text(ended.contact, contact));
   out.text += row("device loop", loop_text(ended.device, device));
+  out.text += row("memory", memory_text(memory.models) + " models, " + memory_text(memory.renderer) + " renderer");
   out.text += row("faults", to_string(ended.fault));
   if (!options.record.empty()) out.text += row("recording", options.record);
   if (!options.plot.empty()) out.text += row("plot", options.plot);
@@ -248,6 +256,7 @@ result<answer> run_session(const run_command& options, const common_options& com
     poses->T_wa = *start;
   }
 
+  const memory_use memory{memory_bytes(feel->scene()), feel->memory_bytes()};
   session_summary summary;
   control_config control;
   control.map = map_of(*poses->T_wa, shape.centre_of_mass);
@@ -268,7 +277,7 @@ result<answer> run_session(const run_command& options, const common_options& com
                   progress);
   if (!ended) return ended.error();
   if (const result<void> closed = files->close(options, summary); !closed) return closed.error();
-  return report(options, *poses, *ended, summary);
+  return report(options, *poses, *ended, summary, memory);
 }
 
 }  // namespace

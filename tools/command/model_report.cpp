@@ -59,6 +59,7 @@ json describe(const textured_model& model) {
         {"max_error_percent", percent_of_diagonal(model, r.max_error_m)},
         {"relief", r.relief_m},
         {"max_displacement", r.max_displacement_m}}},
+      {"memory", memory_bytes(model)},
   };
 }
 
@@ -84,6 +85,7 @@ std::string describe_text(const textured_model& model) {
   out += row("volume", brief(model.mass.volume_m3 * 1e6) + " cm^3");
   const vec3& c = model.mass.centre_of_mass;
   out += row("centre of mass", length_text(c.x) + ", " + length_text(c.y) + ", " + length_text(c.z));
+  out += row("memory", memory_text(memory_bytes(model)));
   return out;
 }
 

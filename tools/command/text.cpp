@@ -50,6 +50,10 @@ std::string time_text(double seconds) {
   return scaled(seconds, std::array<scale, 4>{{{1.0, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}}});
 }
 
+std::string memory_text(std::size_t bytes) {
+  return scaled(static_cast<double>(bytes), std::array<scale, 4>{{{1e9, "GB"}, {1e6, "MB"}, {1e3, "kB"}, {1.0, "B"}}});
+}
+
 std::string row(std::string_view label, std::string_view value) {
   std::string line = "  ";
   line += label;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -26,6 +27,9 @@ inline void append_number(std::string& out, double value) {
 
 /// A duration in seconds in the unit that suits its size, as in "12.3 us".
 [[nodiscard]] std::string time_text(double seconds);
+
+/// An amount of memory, as in "12.7 MB", in powers of ten.
+[[nodiscard]] std::string memory_text(std::size_t bytes);
 
 /// "  label ........ value" with the values in one column.
 [[nodiscard]] std::string row(std::string_view label, std::string_view value);

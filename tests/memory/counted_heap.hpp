@@ -1,0 +1,11 @@
+// A global heap that knows how many bytes are on loan.
+#pragma once
+
+#include <cstddef>
+
+namespace asperity::test_support {
+
+/// Bytes that were asked for with `new` and not given back yet, in the whole program.
+[[nodiscard]] std::size_t bytes_on_loan() noexcept;
+
+}  // namespace asperity::test_support

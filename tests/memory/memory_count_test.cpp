@@ -1,0 +1,120 @@
+// The bytes that a model and a renderer report are those that they have asked for, to the byte.
+#include <gtest/gtest.h>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "asperity/render/default_renderer.hpp"
+#include "counted_heap.hpp"
+#include "support/piece_models.hpp"
+#include "support/small_models.hpp"
+
+namespace asperity {
+namespace {
+
+using test_support::bytes_on_loan;
+using test_support::make_flat_box;
+
+/// A box whose parts all have memory: a name that does not fit into the string, and several pieces.
+textured_model make_model() {
+  textured_model model = make_flat_box({0.01, 0.01, 0.01}, 96);
+  model.name = "a box with a name of more than fifteen letters";
+  model.pieces = test::make_piece_model(model.mesh, test::cut_into::flat_faces)->pieces;
+  return model;
+}
+
+TEST(MemoryCount, AModelReportsWhatItHasAskedFor) {
+  const std::size_t before = bytes_on_loan();
+  const textured_model model = make_model();
+  const std::size_t asked = bytes_on_loan() - before;
+  EXPECT_EQ(model.heap_bytes(), asked);
+  EXPECT_EQ(memory_bytes(model), sizeof model + asked);
+}
+
+TEST(MemoryCount, CountsCapacityAndNotSize) {
+  textured_model model = make_model();
+  const std::size_t before = memory_bytes(model);
+  model.texture.texels.clear();
+  EXPECT_EQ(memory_bytes(model), before);
+  model.mesh.positions.reserve(2 * model.mesh.positions.capacity());
+  EXPECT_GT(memory_bytes(model), before);
+}
+
+TEST(MemoryCount, AShortNameTakesNothing) {
+  textured_model model = make_model();
+  const std::size_t with_long_name = memory_bytes(model);
+  const std::size_t name = model.name.capacity() + 1;
+  std::string("box").swap(model.name);
+  EXPECT_EQ(memory_bytes(model), with_long_name - name);
+}
+
+TEST(MemoryCount, AModelThatAppearsTwiceCountsOnce) {
+  const auto a = std::make_shared<const textured_model>(make_model());
+  const auto b = std::make_shared<const textured_model>(make_model());
+  const std::size_t one = memory_bytes(scene{a, {}});
+  const auto with = [&](std::vector<model_ptr> fixed) {
+    const scene bodies{a, std::move(fixed)};
+    return memory_bytes(bodies) - heap_bytes(bodies.fixed) - one;
+  };
+  EXPECT_EQ(with({a}), 0U);
+  EXPECT_EQ(with({a, a}), 0U);
+  EXPECT_EQ(with({b}), memory_bytes(*b));
+  EXPECT_EQ(with({b, a, b}), memory_bytes(*b));
+}
+
+class RendererMemory : public ::testing::Test {
+ protected:
+  RendererMemory() {
+    const std::size_t before = bytes_on_loan();
+    auto made = make_renderer({model_, {model_, other_}});
+    EXPECT_TRUE(made);
+    if (made) feel_.emplace(std::move(made).value());
+    asked_ = bytes_on_loan() - before;
+  }
+
+  model_ptr model_ = std::make_shared<const textured_model>(make_model());
+  model_ptr other_ = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
+  std::optional<renderer> feel_;
+  std::size_t asked_ = 0;
+};
+
+TEST_F(RendererMemory, IsWhatItHasAskedFor) {
+  EXPECT_EQ(feel_->memory_bytes(), sizeof(renderer) + asked_);
+  EXPECT_GT(asked_, std::size_t{1} << 20);
+}
+
+TEST_F(RendererMemory, StaysTheSameInTicks) {
+  const std::size_t before = feel_->memory_bytes();
+  const std::vector<pose> T_wb(2);
+  tick out;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(feel_->step({{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.029 - 1e-4 * i}}, T_wb}, out), status::ok);
+  }
+  EXPECT_EQ(feel_->memory_bytes(), before);
+}
+
+// A report that forgets the smallest of the parts is found out: the comparison is to the byte.
+TEST_F(RendererMemory, AForgottenPartWouldShow) {
+  const collision_body body(model_);
+  for (const std::size_t part : {body.piece_tree.heap_bytes(), body.triangle_tree.heap_bytes(),
+                                 body.shapes.front().heap_bytes(), feel_->contacts().heap_bytes()}) {
+    EXPECT_GT(part, 0U);
+    EXPECT_NE(feel_->memory_bytes() - part, sizeof(renderer) + asked_);
+  }
+}
+
+/// A finder that holds memory and does not say so.
+struct silent_finder : convex_piece_finder {
+  using convex_piece_finder::convex_piece_finder;
+  void heap_bytes() const = delete;
+};
+
+TEST_F(RendererMemory, APolicyThatReportsNothingCountsWithItsSize) {
+  const scene bodies = feel_->scene();
+  const basic_renderer<silent_finder, cpu_depth, gradient_penalty> silent(
+      bodies, silent_finder(bodies), make_cpu_depth(bodies).value(), gradient_penalty());
+  EXPECT_EQ(silent.memory_bytes() + feel_->finder().heap_bytes(), feel_->memory_bytes());
+}
+
+}  // namespace
+}  // namespace asperity
