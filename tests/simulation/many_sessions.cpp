@@ -1,7 +1,11 @@
 #include "simulation/many_sessions.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <cstdlib>
 #include <sstream>
+
+#include "simulation/session.hpp"
 
 namespace asperity::simulation {
 
@@ -10,10 +14,10 @@ seed_range seeds_to_run(seed_range otherwise) {
   return wanted == nullptr ? otherwise : seed_range{std::strtoull(wanted, nullptr, 10), 1};
 }
 
-summary run_sessions(const seed_range& seeds, bool allow_textured) {
+summary run_sessions(const seed_range& seeds) {
   summary sum;
   for (std::uint64_t i = 0; i < seeds.count; ++i) {
-    session one(make_scenario(seeds.first + i, allow_textured));
+    session one(make_scenario(seeds.first + i));
     const outcome o = one.run();
     ++sum.sessions;
     sum.textured += o.textured ? 1U : 0U;

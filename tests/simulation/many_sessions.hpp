@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "simulation/session.hpp"
+#include "simulation/outcome.hpp"
 
 namespace asperity::simulation {
 
@@ -34,7 +34,7 @@ struct summary {
 };
 
 /// Runs every seed to its end, or to the first invariant that breaks in it.
-[[nodiscard]] summary run_sessions(const seed_range& seeds, bool allow_textured);
+[[nodiscard]] summary run_sessions(const seed_range& seeds);
 
 /// One line for a session in which something broke: seed, tick, invariant.
 [[nodiscard]] std::string to_string(const outcome& o);

@@ -72,8 +72,8 @@ struct scenario {
 
 namespace detail {
 
-inline void draw_contact(dice& d, scenario& s, bool allow_textured) {
-  s.textured = d.chance(0.15) && allow_textured;
+inline void draw_contact(dice& d, scenario& s) {
+  s.textured = d.chance(0.15);
   s.textured_scene = d.below(textured_scene_count);
   s.stiffness_n_per_m = d.log_between(200.0, s.textured ? 4000.0 : 20000.0);
   s.arm_m = d.between(0.0, 0.03);
@@ -178,13 +178,13 @@ inline void draw_faults(dice& d, scenario& s) {
 
 }  // namespace detail
 
-/// @param allow_textured false: the analytic wall in every session
-[[nodiscard]] inline scenario make_scenario(std::uint64_t seed, bool allow_textured) {
+/// Everything about the session of this seed.
+[[nodiscard]] inline scenario make_scenario(std::uint64_t seed) {
   dice d(seed);
   scenario s;
   s.seed = seed;
   s.device.seed = d.bits();
-  detail::draw_contact(d, s, allow_textured);
+  detail::draw_contact(d, s);
   detail::draw_hand(d, s);
   detail::draw_device(d, s);
   detail::draw_loops(d, s);

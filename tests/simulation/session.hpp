@@ -10,26 +10,13 @@
 #include "asperity/control/device_loop.hpp"
 #include "simulation/checker.hpp"
 #include "simulation/hostile_renderer.hpp"
+#include "simulation/outcome.hpp"
 #include "simulation/scenario.hpp"
 #include "simulation/watched_device.hpp"
 
 namespace asperity::simulation {
 
-/// How a session ended.
-struct outcome {
-  std::uint64_t seed = 0;
-  std::uint64_t ticks = 0;
-  const char* broken = nullptr;  ///< invariant that broke in the last tick; nullptr where none did
-  std::uint64_t digest = 0;      ///< of every number that left
-  std::uint64_t touched = 0;     ///< ticks with a contact force
-  std::uint64_t guarded = 0;     ///< ticks in which the passivity guard acted
-  std::uint64_t rejected = 0;    ///< samples that were rejected
-  std::uint64_t faults = 0;      ///< times that the gate shut
-  std::uint64_t clears = 0;      ///< times that a person cleared it
-  double surplus_j = 0.0;  ///< most that the hand had received beyond what it had lent, while every sample was good
-  bool textured = false;
-};
-
+/// A session that has not begun; run() takes it to its end, or to the first tick in which something breaks.
 class session {
  public:
   explicit session(const scenario& s)
