@@ -194,6 +194,81 @@ TEST(device_loop, never_arms_again_by_itself) {
   EXPECT_EQ(r.last().device, device_state::active);
 }
 
+// Armed while the hand already presses: the wrench grows from zero at the slew rate. Found by simulation.
+TEST(device_loop, begins_at_zero_when_it_is_armed_in_contact) {
+  control_config control;
+  control.limits.force_slew_n_per_s = 200.0;
+  rig r(pressing_hand(), control);
+  r.run_ms(1000);
+  EXPECT_GT(force_of(r.last()), 1.0);
+  ASSERT_EQ(r.dev.disarm(), status::ok);
+  r.run_ms(100);
+  EXPECT_EQ(force_of(r.last()), 0.0);
+  EXPECT_GT(glm::length(r.last().T_wa_target.position - r.last().T_wa.position), 0.002);  // 1 N in the coupling
+  const double booked_j = r.last().delivered_j;
+  r.run_ms(10);
+  EXPECT_EQ(r.last().delivered_j, booked_j);  // what is not put out is not booked
+  ASSERT_TRUE(r.dev.arm());
+  double before = 0.0;
+  double largest = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    r.run_ms(1);
+    EXPECT_LE(force_of(r.last()), before + 0.2 * (1.0 + 1e-9));
+    before = force_of(r.last());
+    largest = std::max(largest, before);
+  }
+  EXPECT_GT(largest, 1.0);
+}
+
+// The loop's time goes on from where it was, so contacts age and the slew rate stays what it is. Found by simulation.
+TEST(device_loop, goes_on_where_the_clock_steps_back) {
+  simulated_device dev(pressing_hand());
+  ASSERT_TRUE(dev.open() && dev.arm());
+  std::vector<session_record> log;
+  exchange shared;
+  contact_loop<analytic_wall> contact({}, {{pose{}}, vec3(0.0)}, shared);
+  device_loop<simulated_device, keep_all> loop(dev, {}, vec3(0.0), shared, keep_all{&log});
+  constexpr std::int64_t hour = 3'600'000'000'000;
+  for (int i = 0; i < 1300; ++i) {
+    if (i < 1000) {  // then the contact thread stalls
+      ASSERT_EQ(contact.tick(i * ms), status::ok);
+    }
+    ASSERT_EQ(loop.tick(i < 1000 ? i * ms : i * ms - hour), status::ok);
+  }
+  EXPECT_EQ(log[1000].time_ns, log[999].time_ns);
+  EXPECT_EQ(log[1001].time_ns, log[1000].time_ns + ms);
+  EXPECT_GT(glm::length(log[1040].on_probe_w.force), 1.0);
+  EXPECT_EQ(log[1110].on_probe_w.force, vec3(0.0));
+}
+
+// Encoder steps to and fro turn damping into a source. Where the guard cannot hold the sum, the gate shuts.
+TEST(device_loop, shuts_where_the_guard_cannot_hold_the_energy) {
+  control_config control;
+  control.guard.soft_limit_j = -1.0;
+  control.guard.hard_limit_j = 1.0;  // a guard that is too weak on purpose
+  control.guard.cut_off_j = 0.01;
+  control.guard.mass_kg = 1e-9;
+  control.guard.inertia_kg_m2 = 1e-12;
+  analytic_wall wall;
+  wall.linearised = false;
+  wall.stiffness_n_per_m = 5000.0;
+  simulated_device dev(pressing_hand());
+  ASSERT_TRUE(dev.open() && dev.arm());
+  std::vector<session_record> log;
+  virtual_session<analytic_wall, simulated_device, keep_all> session(
+      wall, {{pose{}}, vec3(0.0)}, dev, control, {.contact_period_ns = 10 * ms, .contact_one_period_late = true},
+      keep_all{&log});
+  static_cast<void>(session.run_until(5000 * ms));
+  const session_record& end = log.back();
+  EXPECT_EQ(end.fault, gate_fault::energy);
+  EXPECT_EQ(force_of(end), 0.0);
+  EXPECT_EQ(end.device, device_state::ready);
+  EXPECT_GT(end.surplus_j, control.guard.cut_off_j);
+  EXPECT_LT(end.surplus_j, 0.1);
+  EXPECT_TRUE(session.device().clear_fault());
+  EXPECT_EQ(session.device().guard().surplus_j(), 0.0);
+}
+
 TEST(device_loop, shuts_where_the_device_refuses_a_command) {
   simulated_config hand = pressing_hand();
   hand.faults = {{device_fault::refuse_write, 800 * ms, 801 * ms}};

@@ -48,6 +48,21 @@ TEST(sample_check, lets_a_sample_grow_as_old_as_its_limit) {
   EXPECT_EQ(check.judge(20 * ms + 1, status::ok, good(0)), sample_verdict::stale);
 }
 
+// A stamp from ahead would never grow old, and would excuse a jump of any length. Found by simulation.
+TEST(sample_check, believes_no_stamp_from_ahead) {
+  constexpr std::int64_t least = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t most = std::numeric_limits<std::int64_t>::max();
+  sample_check check;
+  EXPECT_EQ(check.judge(0, status::ok, good(20 * ms)), sample_verdict::accepted);
+  EXPECT_EQ(check.judge(0, status::ok, good(20 * ms + 1)), sample_verdict::stale);
+  for (const std::int64_t now_ns : {least, std::int64_t{-1}, std::int64_t{0}, most}) {
+    for (const std::int64_t stamp_ns : {least, most}) {
+      const sample_verdict v = sample_check().judge(now_ns, status::ok, good(stamp_ns));
+      EXPECT_EQ(v, now_ns == stamp_ns ? sample_verdict::accepted : sample_verdict::stale);
+    }
+  }
+}
+
 TEST(sample_check, finds_a_jump_and_a_spin) {
   sample_check check;
   ASSERT_EQ(check.judge(0, status::ok, good(0)), sample_verdict::accepted);
