@@ -41,12 +41,11 @@ struct guard_action {
 /// inertia, at the rate alpha = min(surplus / (h v.M v), 0.5 / h), so that one sample takes out the surplus and the
 /// damping itself stays stable. Past soft_limit_j the wanted wrench is scaled down as well, to zero at hard_limit_j.
 ///
-/// Bound: surplus() <= cut_off_j + sum of |F| |dx| + |T| |dphi| over the sample in which it passes cut_off_j and those
-/// that the gate's slew rate needs to take the wrench from there to zero; then nothing leaves and the sum stands still.
-/// Hence over any interval the hand receives at most that plus credit_j. The same holds for hard_limit_j, with one more
-/// term: damping acts on the velocity of the last sample, and where the velocity turns meanwhile, as it does by an
-/// encoder's step to and fro, damping gives energy, up to m |v| |v_next| / 2 in a sample where the slew rate lets it
-/// follow. Nothing limits how often that happens, which is why there is a cut-off.
+/// Bound, with P and S the gate's peak and slew rate, h the sample's length and v the hand's largest speed, force and
+/// torque each: surplus() <= hard_limit_j + P v (P / S + h) / 2. The second term is the sample in which the limit is
+/// passed and those in which the gate takes the wrench away. Over any interval the hand receives at most that plus
+/// credit_j, and plus what errors of the measured poses hide: at most the way of the wrench times the error.
+/// It holds for motions slower than a quarter of the sample rate, in which damping takes energy out of every swing.
 /// It is a net: a loop that needs it all the time is badly tuned. It does not replace the contact's stiffness J.
 /// @source spec section 5; floor and scaling are ours
 class passivity_guard {
