@@ -10,8 +10,9 @@ namespace asperity {
 /// Single producer, single consumer, wait-free; the newest published value wins and older ones are skipped.
 /// Three slots: one being written, one being read, one in the middle that the two sides swap with theirs.
 /// The swap is acquire-release on both sides: what the producer wrote before publish() is seen after refresh().
+/// @tparam Atomic  std::atomic; tests put something in its place that orders the accesses as they want
 /// @rt safe on both sides
-template <class T>
+template <class T, template <class> class Atomic = std::atomic>
 class triple_buffer {
  public:
   /// Slot to fill before publish(). Producer only. Holds an old value: write every field.
@@ -36,7 +37,7 @@ class triple_buffer {
 
   std::array<T, 3> slots_{};
   // Each side's own index on its own cache line, so that polling does not slow the other side down.
-  alignas(64) std::atomic<std::uint8_t> middle_{1};
+  alignas(64) Atomic<std::uint8_t> middle_{1};
   alignas(64) std::uint8_t write_ = 0;
   alignas(64) std::uint8_t read_ = 2;
 };
