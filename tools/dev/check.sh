@@ -115,12 +115,13 @@ check_tidy() {
   } 2>&1 | sed '/^[0-9]* warnings\{0,1\} generated\.$/d'
 }
 
-# The same session, bit for bit, whoever compiled it.
+# The same session, and 50 simulated ones, bit for bit, whoever compiled them.
 check_determinism() {
   local build
   for build in release debug clang; do
-    configure_and_build "$build" bin/asperity
+    configure_and_build "$build" bin/asperity simulation_digest
     tests/golden/session.sh "build/$build/bin/asperity" "build/check/$build"
+    "build/$build/tests/simulation/simulation_digest" > "build/check/$build/golden/simulation.txt"
     (cd "build/check/$build/golden" && sha256sum -- *) > "build/check/$build.sha256"
     say "$build:"
     cat "build/check/$build.sha256"
