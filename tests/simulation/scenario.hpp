@@ -62,12 +62,6 @@ struct scenario {
   double stiffness_n_per_m = 2000.0;
   double arm_m = 0.0;      ///< of the analytic wall
   bool linearised = true;  ///< of the analytic wall
-
-  /// Whether what the device measures is what the handle does: no delay, no fault, a punctual clock.
-  [[nodiscard]] bool truthful() const noexcept {
-    return device.measurement.delay_ns == 0 && device.measurement.jitter_ns == 0 && device.faults.empty() &&
-           clock.late == 0.0 && clock.twin == 0.0 && clock.back == 0.0;
-  }
 };
 
 namespace detail {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <utility>
 
 #include "asperity/hal/simulated/simulated_device.hpp"
@@ -41,7 +40,6 @@ class watched_device {
     output_allowed_ = may_put_out(device_.state());
     command_ = out;
     written_at_ns_ = now_ns;
-    ++writes_;
     return write_status_ = device_.write(now_ns, out);
   }
 
@@ -54,7 +52,6 @@ class watched_device {
   void plug_in() noexcept { device_.plug_in(); }
 
   [[nodiscard]] std::uint64_t arms() const noexcept { return arms_; }
-  [[nodiscard]] std::uint64_t writes() const noexcept { return writes_; }
   [[nodiscard]] status read_status() const noexcept { return read_status_; }
   [[nodiscard]] status write_status() const noexcept { return write_status_; }
   [[nodiscard]] const device_sample& sample() const noexcept { return sample_; }
@@ -63,14 +60,12 @@ class watched_device {
   [[nodiscard]] bool output_allowed() const noexcept { return output_allowed_; }
   [[nodiscard]] std::int64_t read_at_ns() const noexcept { return read_at_ns_; }
   [[nodiscard]] std::int64_t written_at_ns() const noexcept { return written_at_ns_; }
-  [[nodiscard]] const simulated_device& truth() const noexcept { return device_; }
 
  private:
   simulated_device device_;
   bool falsify_stamp_ = false;
   std::int64_t false_stamp_ns_ = 0;
   std::uint64_t arms_ = 0;
-  std::uint64_t writes_ = 0;
   status read_status_ = status::not_ready;
   status write_status_ = status::not_ready;
   device_sample sample_{};
