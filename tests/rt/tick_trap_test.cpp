@@ -103,7 +103,6 @@ const std::array violations{
 class planted_violation : public testing::TestWithParam<violation> {
  protected:
   void SetUp() override {
-    if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
     if (!GetParam().needs_kernel) return;
     if (const std::string why = tick_trap::missing_system_calls(); !why.empty()) GTEST_SKIP() << why;
   }
@@ -124,7 +123,14 @@ TEST_P(planted_violation, is_nobodys_business_outside_a_tick) {
   std::free(memory);
 }
 
-INSTANTIATE_TEST_SUITE_P(tick_trap, planted_violation, testing::ValuesIn(violations),
+// None where there is no trap: tick_trap.lets_a_good_tick_through says why.
+std::vector<violation> catchable() {
+  if (!tick_trap::missing().empty()) return {};
+  return {violations.begin(), violations.end()};
+}
+
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(planted_violation);
+INSTANTIATE_TEST_SUITE_P(tick_trap, planted_violation, testing::ValuesIn(catchable()),
                          [](const auto& each) { return std::string(each.param.name); });
 
 TEST(tick_trap, lets_a_good_tick_through) {

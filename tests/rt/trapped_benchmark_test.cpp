@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <sys/prctl.h>
 
 #include "approach.hpp"
 #include "asperity/asperity.hpp"
@@ -70,6 +71,9 @@ TEST(benchmark_ticks, file_on_cad_part_does_nothing_that_a_tick_must_not_do) {
   // The slowest contact loop that the ageing of contacts is made for, so that the test is over within half a minute.
   constexpr std::int64_t contact_period_ns = 10'000'000;
   virtual_session session(std::move(*feel), placement, dev, control, {.contact_period_ns = contact_period_ns}, seen{});
+
+  // A kernel that gathers pages into huge ones takes them away for a moment; that is not the tick's doing.
+  ::prctl(PR_SET_THP_DISABLE, 1, 0, 0, 0);
 
   // A step of the virtual session is the contact ticks that are due and one device tick, and nothing else.
   const auto step = [&] { static_cast<void>(session.step()); };
