@@ -246,24 +246,43 @@ void check_extent(std::string_view text, const json_limits& limits) {
   }
 }
 
-/// The names of every object that is open at this point of a parse.
-class unique_names {
+/// Reads JSON once without keeping it: finds where it is wrong, and an object that has a name twice. Throws rejection.
+/// A pass of its own, because the parser that also builds the document asks its callback in quadratic time.
+class json_inspector final : public nlohmann::json_sax<json> {
  public:
-  /// Throws rejection where an object has a name twice.
-  void see(json::parse_event_t event, const json& value) {
-    if (event == json::parse_event_t::object_start) {
-      open_.emplace_back();
-    } else if (event == json::parse_event_t::object_end) {
-      open_.pop_back();
-    } else if (event == json::parse_event_t::key) {
-      const auto& name = value.get_ref<const std::string&>();
-      if (!open_.back().insert(name).second)
-        reject("holds JSON with the name " + in_quotes(name) + " twice in one object");
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+
+  bool start_object(std::size_t) override {
+    names_.emplace_back();
+    return true;
+  }
+  bool end_object() override {
+    names_.pop_back();
+    return true;
+  }
+  bool key(string_t& name) override {
+    if (!names_.back().insert(name).second) {
+      reject("holds JSON with the name " + in_quotes(name) + " twice in one object");
     }
+    return true;
+  }
+  bool parse_error(std::size_t position, const std::string&, const json::exception& e) override {
+    if (dynamic_cast<const json::out_of_range*>(&e) != nullptr) {
+      reject("holds JSON that does not parse: a number in it is too large");
+    }
+    reject("holds JSON that does not parse: byte " + std::to_string(position) + " of it is wrong");
   }
 
  private:
-  std::vector<std::set<std::string>> open_;
+  std::vector<std::set<std::string>> names_;  // of the objects that are open
 };
 
 }  // namespace
@@ -307,19 +326,11 @@ json parse_bounded(std::string_view text, const json_limits& limits) {
                                                     std::to_string(limits.bytes)};
   }
   check_extent(text, limits);
-  unique_names names;
-  try {
-    json document = json::parse(text.begin(), text.end(), [&](int, json::parse_event_t event, const json& value) {
-      names.see(event, value);
-      return true;
-    });
-    if (!document.is_object()) reject("holds JSON that does not parse as an object");
-    return document;
-  } catch (const json::parse_error& e) {
-    reject("holds JSON that does not parse: byte " + std::to_string(e.byte) + " of it is wrong");
-  } catch (const json::out_of_range&) {
-    reject("holds JSON that does not parse: a number in it is too large");
-  }
+  json_inspector inspector;
+  json::sax_parse(text.begin(), text.end(), &inspector);
+  json document = json::parse(text.begin(), text.end(), nullptr, false);
+  if (!document.is_object()) reject("holds JSON that does not parse as an object");
+  return document;
 }
 
 json checked_geometry(const json& document, const std::vector<std::size_t>& buffer_bytes) {

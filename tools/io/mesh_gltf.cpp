@@ -16,8 +16,8 @@ namespace {
 
 /// Limits for triangles and for vertices. A scene can place one mesh many times over, so the file's size bounds
 /// neither.
-constexpr std::size_t max_triangles = 20'000'000;
-constexpr std::size_t max_vertices = 20'000'000;
+constexpr std::size_t max_triangles = 8'000'000;  // as many as a bake takes
+constexpr std::size_t max_vertices = 8'000'000;
 
 glm::dmat4 local_transform(const tinygltf::Node& node) {
   glm::dmat4 m(1.0);
@@ -84,7 +84,7 @@ void check_size(const tinygltf::Model& model, const std::vector<placed_mesh>& sc
       vertices += count(positions);
       corners += count(primitive.indices < 0 ? positions : primitive.indices);
       if (corners / 3 > max_triangles || vertices > max_vertices) {  // checked at each step: no sum can wrap round
-        throw rejection{error_code::limit_exceeded, "places more than 20 million triangles or vertices in its scene"};
+        throw rejection{error_code::limit_exceeded, "places more than 8 million triangles or vertices in its scene"};
       }
     }
   }

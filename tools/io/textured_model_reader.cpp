@@ -74,10 +74,10 @@ coarse_mesh read_mesh(const gltf_document& document, std::size_t m, const json_o
   }
   if (corners % 3 != 0) reject("the mesh has " + std::to_string(corners) + " corners, not a multiple of 3");
   if (corners / 3 > max_coarse_triangles || vertices > 3 * max_coarse_triangles) {
-    throw rejection{error_code::limit_exceeded,
-                    "the mesh has " + std::to_string(corners / 3) + " triangles and " + std::to_string(vertices) +
-                        " corners of them, more than the limit " + std::to_string(max_coarse_triangles) +
-                        " of a coarse mesh; bake it with fewer"};
+    throw rejection{error_code::limit_exceeded, "the mesh has " + std::to_string(corners / 3) + " triangles and " +
+                                                    std::to_string(vertices) + " vertices, more than the limit of " +
+                                                    std::to_string(max_coarse_triangles) +
+                                                    " triangles with three vertices each; bake it with fewer"};
   }
   const auto positions = document.positions(position);
   const auto uvs = document.uvs(uv);
@@ -111,7 +111,7 @@ haptic_texture read_texture(const gltf_document& document, const json_object& fr
   const std::uint64_t height = from.whole("height");
   if (width == 0 || height == 0 || width > largest_side || height > largest_side) {
     reject(from.path() + " is " + std::to_string(width) + " x " + std::to_string(height) +
-           " texels; both must be 1 to " + std::to_string(largest_side));
+           " texels, and both must be 1 to " + std::to_string(largest_side));
   }
   if (from.whole("componentType") != extension::float32_component || from.whole("components") != 3 ||
       from.text("rowOrder") != extension::row_order) {

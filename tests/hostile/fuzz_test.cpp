@@ -1,0 +1,151 @@
+// Files changed at random, a fixed number of them with a fixed seed: each ends in a sentence or in something usable.
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <gtest/gtest.h>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "attacks.hpp"
+#include "file_formats.hpp"
+#include "gltf_mutator.hpp"
+#include "mesh_mutator.hpp"
+#include "survival.hpp"
+
+namespace asperity::hostile {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__)
+constexpr std::size_t share = 8;  // of the runs, under a sanitizer
+#elif defined(__has_feature)
+constexpr std::size_t share = __has_feature(address_sanitizer) ? 8 : 1;
+#else
+constexpr std::size_t share = 1;
+#endif
+
+/// Counts what became of the runs.
+class tally {
+ public:
+  template <class T>
+  void add(const result<T>& answer) {
+    ++runs_;
+    if (answer) {
+      ++loaded_;
+    } else {
+      ++refusals_[kind_of(answer.error().message)];
+    }
+  }
+
+  void print(const char* what) const {
+    std::printf("%s: %zu runs, %zu loaded, %zu kinds of refusal\n", what, runs_, loaded_, refusals_.size());
+    std::vector<std::pair<std::size_t, std::string>> often;
+    for (const auto& [kind, count] : refusals_) often.emplace_back(count, kind);
+    std::sort(often.rbegin(), often.rend());
+    for (std::size_t i = 0; i < std::min<std::size_t>(often.size(), 12); ++i) {
+      std::printf("  %6zu  %.110s\n", often[i].first, often[i].second.c_str());
+    }
+  }
+  [[nodiscard]] std::size_t kinds() const { return refusals_.size(); }
+  [[nodiscard]] double loaded() const { return static_cast<double>(loaded_) / static_cast<double>(runs_); }
+
+ private:
+  std::size_t runs_ = 0;
+  std::size_t loaded_ = 0;
+  std::map<std::string, std::size_t> refusals_;
+};
+
+/// Runs `read` on mutations. Mutations stray: half of them go on from an earlier one that still loaded.
+template <class Read, class Mutate>
+tally fuzz(std::size_t runs, std::uint64_t seed, const std::string& good, const Mutate& mutate, const Read& read) {
+  random_source random(seed);
+  tally out;
+  std::vector<std::string> pool{good};
+  for (std::size_t run = 0; run < runs / share; ++run) {
+    const std::string bytes = mutate(random.once_in(2) ? good : random.one_of(pool), random);
+    const auto answer = read(bytes);
+    out.add(answer);
+    const auto wrong = complaint(answer);
+    EXPECT_FALSE(wrong) << "run " << run << ": " << wrong.value_or("");
+    if (wrong) break;
+    if (!answer) continue;
+    if (pool.size() < 64) {
+      pool.push_back(bytes);
+    } else {
+      pool[random.below(pool.size())] = bytes;
+    }
+  }
+  return out;
+}
+
+TEST(Fuzz, TexturedModels) {
+  const auto read = [](const std::string& bytes) { return io::read_textured_model(bytes, "fuzz.glb"); };
+  const tally t = fuzz(10'000, 20041, good_model(), mutated_glb, read);
+  t.print("textured models");
+  EXPECT_GE(t.kinds(), 60U) << "mutations stop at the first checks";
+  EXPECT_GT(t.loaded(), 0.1);
+  EXPECT_LT(t.loaded(), 0.9);
+}
+
+TEST(Fuzz, PlainGltf) {
+  const auto read = [](const std::string& bytes) { return io::read_gltf(bytes, "fuzz.glb"); };
+  const tally t = fuzz(15'000, 7, glb(tetrahedron(), tetrahedron_bytes()), mutated_glb, read);
+  t.print("plain glTF");
+  EXPECT_GE(t.kinds(), 50U);
+  EXPECT_GT(t.loaded(), 0.1);
+}
+
+struct mesh_format {
+  const char* name;
+  std::string good;
+  std::size_t text_end;
+  result<triangle_mesh> (*read)(std::string_view, const std::filesystem::path&);
+  std::size_t least_kinds;
+};
+
+TEST(Fuzz, PlainMeshes) {
+  const std::string binary_ply = good_binary_ply();
+  const std::size_t ply_text = binary_ply.find("end_header\n") + 11;
+  const std::vector<mesh_format> formats{
+      {"ascii PLY", good_ascii_ply(), std::string::npos, io::read_ply, 15},
+      {"binary PLY", binary_ply, ply_text, io::read_ply, 15},
+      {"OBJ", good_obj(), std::string::npos, io::read_obj, 8},
+      {"ascii STL", good_ascii_stl(), std::string::npos, io::read_stl, 8},
+      {"binary STL", good_binary_stl(), 0, io::read_stl, 3},
+  };
+  for (const mesh_format& f : formats) {
+    const auto mutate = [&](const std::string& bytes, random_source& random) {
+      // Where the text ends moves with the header.
+      const std::size_t header = bytes.find("end_header\n");
+      const std::size_t end = f.text_end == 0                                                  ? 0
+                              : f.text_end != std::string::npos && header != std::string::npos ? header + 11
+                                                                                               : bytes.size();
+      return mutated_mesh(bytes, end, random);
+    };
+    const tally t =
+        fuzz(10'000, 3, f.good, mutate, [&](const std::string& bytes) { return f.read(bytes, std::string("fuzz")); });
+    t.print(f.name);
+    EXPECT_GE(t.kinds(), f.least_kinds) << f.name;
+    EXPECT_GT(t.loaded(), 0.05) << f.name;
+  }
+}
+
+/// A reader that leaves out the model check: it lets a texel without a position through.
+TEST(Fuzz, AModelThatNobodyCheckedIsFoundOut) {
+  textured_model model = io::read_textured_model(good_model(), "good.glb").value();
+  EXPECT_FALSE(complaint(result<textured_model>(model)));
+  model.mesh.positions[0].x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(complaint(result<textured_model>(model)));
+}
+
+TEST(Fuzz, AMessageWithoutAMendIsFoundOut) {
+  for (const char* message : {"a.glb: is bad", "a.glb: is\nbad; mend it",
+                              "a.glb: is b\xe4"
+                              "d; mend it"}) {
+    EXPECT_TRUE(complaint(result<triangle_mesh>(error{error_code::bad_format, message}))) << message;
+  }
+  EXPECT_FALSE(complaint(result<triangle_mesh>(error{error_code::bad_format, "a.glb: is bad; mend it"})));
+}
+
+}  // namespace
+}  // namespace asperity::hostile

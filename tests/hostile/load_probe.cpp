@@ -1,0 +1,58 @@
+// load_probe mesh|model|bare FILE: loads one file in a process of its own and prints how far its memory went (peak
+// resident bytes beyond the start), then "loaded" or the error's message. `bare` takes tinygltf without the guard.
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <string_view>
+#include <tiny_gltf.h>
+
+#include "asperity/io/mesh_file.hpp"
+#include "asperity/io/textured_model_file.hpp"
+
+namespace {
+
+/// A line of /proc/self/status in kB; 0 where it is missing.
+unsigned long status_kb(const char* key) {
+  unsigned long kb = 0;
+  if (std::FILE* const status = std::fopen("/proc/self/status", "r"); status != nullptr) {
+    char line[256];
+    while (std::fgets(line, sizeof line, status) != nullptr) {
+      if (std::strncmp(line, key, std::strlen(key)) == 0) std::sscanf(line + std::strlen(key), ": %lu", &kb);
+    }
+    std::fclose(status);
+  }
+  return kb;
+}
+
+std::string load_mesh(const char* file) {
+  const auto mesh = asperity::io::load_mesh(file);
+  return mesh ? "loaded" : mesh.error().message;
+}
+
+std::string load_model(const char* file) {
+  const auto model = asperity::io::load_textured_model(file);
+  return model ? "loaded" : model.error().message;
+}
+
+std::string load_bare(const char* file) {
+  tinygltf::TinyGLTF parser;
+  tinygltf::Model model;
+  std::string problem, warning;
+  const bool text = std::string_view(file).ends_with(".gltf");
+  const bool good = text ? parser.LoadASCIIFromFile(&model, &problem, &warning, file)
+                         : parser.LoadBinaryFromFile(&model, &problem, &warning, file);
+  return good ? "loaded" : "refused";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const std::string_view how = argv[1];
+  const unsigned long before = status_kb("VmHWM");
+  const std::string said = how == "bare"   ? load_bare(argv[2])
+                           : how == "mesh" ? load_mesh(argv[2])
+                                           : load_model(argv[2]);
+  std::printf("%lu\n%s\n", 1024 * (status_kb("VmHWM") - before), said.c_str());
+  return 0;
+}

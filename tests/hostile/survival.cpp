@@ -1,0 +1,81 @@
+#include "survival.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <memory>
+
+#include "asperity/model/validate.hpp"
+#include "asperity/render/default_renderer.hpp"
+
+namespace asperity::hostile {
+namespace {
+
+std::optional<std::string> complaint(const error& e) {
+  if (e.message.size() > 600) return "a message of " + std::to_string(e.message.size()) + " bytes";
+  if (!std::all_of(e.message.begin(), e.message.end(), [](unsigned char c) { return c >= ' ' && c <= '~'; })) {
+    return "a message that is not one printable line";
+  }
+  if (e.message.find("; ") == std::string::npos) return "a message without a mend: " + e.message;
+  return std::nullopt;
+}
+
+/// Small: the renderer is made thousands of times.
+renderer_settings small_settings() {
+  renderer_settings s;
+  s.finder.close_pairs = 64;
+  s.finder.clusters = 4;
+  s.depth.grid = 8;
+  s.limits = {.contacts = 4, .triangles = 256};
+  return s;
+}
+
+}  // namespace
+
+std::optional<std::string> complaint(const result<triangle_mesh>& mesh) {
+  if (!mesh) return complaint(mesh.error());
+  for (const vec3& p : mesh->positions) {
+    if (!is_finite(p)) return "a position that is not finite";
+  }
+  for (const auto& t : mesh->triangles) {
+    if (std::any_of(t.begin(), t.end(), [&](std::uint32_t v) { return v >= mesh->positions.size(); })) {
+      return "an index out of range";
+    }
+  }
+  if (mesh->triangles.empty()) return "a mesh without triangles";
+  if (!mesh->uvs.empty() && mesh->uvs.size() != mesh->triangles.size()) return "too few texture coordinates";
+  return std::nullopt;
+}
+
+std::optional<std::string> complaint(const result<textured_model>& loaded) {
+  if (!loaded) return complaint(loaded.error());
+  if (const auto valid = validate(*loaded); !valid) return "an invalid model: " + valid.error().message;
+  const auto model = std::make_shared<const textured_model>(*loaded);
+  auto feel = make_renderer({model, {model}}, small_settings());
+  if (!feel) return "no renderer: " + feel.error().message;
+  // Turned a little and sunk into itself by a tenth, so that there is something to feel.
+  const vec3 size = model->box.high - model->box.low;
+  const std::array<pose, 1> T_wb{};
+  const pose T_wa{glm::normalize(quat(1.0, 0.02, 0.03, 0.0)), {0.0, 0.0, 0.9 * size.z}};
+  tick out;
+  const status s = feel->step({T_wa, T_wb}, out);
+  if (s != status::ok && s != status::capacity_reached) return std::string("a tick that is ") + to_string(s);
+  if (!is_finite(out.force.on_probe_w)) return "a force that is not finite";
+  return std::nullopt;
+}
+
+std::string kind_of(std::string_view message) {
+  std::string out;
+  bool quoted = false;
+  const std::size_t file = message.find(": ");
+  for (const char c : message.substr(file == std::string_view::npos ? 0 : file + 2)) {
+    if (c == '\'') quoted = !quoted;
+    if (quoted) continue;
+    const bool digit = std::isdigit(static_cast<unsigned char>(c)) != 0;
+    if (!digit) out += c;
+    if (digit && (out.empty() || out.back() != '#')) out += '#';
+  }
+  return out;
+}
+
+}  // namespace asperity::hostile
