@@ -136,7 +136,7 @@ std::vector<convex_piece> read_pieces(const gltf_document& document, const json_
   const std::size_t covered = mesh.triangles.size();
   for (const auto& [key, most] : {std::pair{"table", extension::table_columns * sizeof(std::uint32_t) * covered},
                                   std::pair{"vertices", 3 * sizeof(std::uint32_t) * covered},
-                                  std::pair{"hull", 6 * 3 * sizeof(std::uint32_t) * covered},
+                                  std::pair{"hull", std::size_t{6} * 3 * sizeof(std::uint32_t) * covered},
                                   std::pair{"triangles", sizeof(std::uint32_t) * covered}}) {
     if (const std::size_t bytes = view_size(document, from, key); bytes > most) {
       reject(from.path(key) + " has " + std::to_string(bytes) + " bytes, more than the " + std::to_string(most) +

@@ -40,7 +40,7 @@ template <class T>
 [[nodiscard]] inline std::size_t heap_bytes(const std::string& text) noexcept {
   // A short string lies inside the object.
   const auto* const self = reinterpret_cast<const char*>(&text);
-  const bool inside = text.data() >= self && text.data() < self + sizeof text;
+  const bool inside = text.data() >= self && text.data() < self + sizeof(std::string);
   return inside ? 0 : text.capacity() + 1;
 }
 
