@@ -45,6 +45,13 @@ class aabb_tree {
   /// @rt safe: no allocation; visit must not throw
   template <class Visit>
   void query(const bounds& box, Visit&& visit) const noexcept {
+    query_where([&](const bounds& b) noexcept { return overlap(b, box); }, visit);
+  }
+
+  /// The same for every box that near(box) holds for. @pre what holds for a box holds for every box around it
+  /// @rt safe: no allocation; near and visit must not throw
+  template <class Near, class Visit>
+  void query_where(Near&& near, Visit&& visit) const noexcept {
     if (nodes_.empty()) return;
     // Median splits halve the count, so 2^31 boxes need 32 levels and one waiting sibling at each.
     std::array<std::uint32_t, 64> waiting;
@@ -52,7 +59,7 @@ class aabb_tree {
     waiting[count++] = 0;
     while (count > 0) {
       const node& n = nodes_[waiting[--count]];
-      if (!overlap(n.box, box)) continue;
+      if (!near(n.box)) continue;
       if (n.right == 0) {
         visit(n.item);
       } else {

@@ -1,0 +1,160 @@
+// From a textured model to its cells. Done once per model, when a renderer is made.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "asperity/cells/cell_clearance.hpp"
+#include "asperity/cells/cell_relief.hpp"
+#include "asperity/cells/coarse_regions.hpp"
+#include "asperity/cells/sharp_edges.hpp"
+#include "asperity/cells/surface_cells.hpp"
+#include "asperity/cells/surface_sampler.hpp"
+#include "asperity/depth/texture_scale.hpp"
+
+namespace asperity {
+
+namespace detail {
+
+/// Half the thickness of the body under a region, m, or `most` where it is thicker: inward rays from the middles of its
+/// triangles. Beyond it the way out on the other side is shorter.
+[[nodiscard]] inline double half_thickness(const coarse_mesh& mesh, const surface_index& index,
+                                           const aabb_tree& triangles, const std::vector<std::uint32_t>& region,
+                                           const vec3& n_b, double most) {
+  double half = most;
+  for (const std::uint32_t t : region) {
+    const auto c = corners(mesh, t);
+    const vec3 from = (c[0] + c[1] + c[2]) / 3.0;
+    const vec3 to = from - 2.0 * half * n_b;
+    triangles.query({glm::min(from, to), glm::max(from, to)}, [&](std::uint32_t g) noexcept {
+      if (glm::dot(index.normal[g], n_b) > -0.2) return;  // a wall beside the ray is no other side
+      const auto o = corners(mesh, g);
+      const vec3 e1 = o[1] - o[0], e2 = o[2] - o[0], x = glm::cross(-n_b, e2);
+      const double det = glm::dot(e1, x);
+      if (!(std::fabs(det) > 0.0)) return;
+      const vec3 s = from - o[0], y = glm::cross(s, e1);
+      const double u = glm::dot(s, x) / det, v = glm::dot(-n_b, y) / det, away = glm::dot(e2, y) / det;
+      const bool hit = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && away > 0.0;
+      if (hit) half = std::min(half, 0.5 * away);
+    });
+  }
+  return half;
+}
+
+/// Plane, axes and extent of a region's map.
+[[nodiscard]] inline surface_cell place_cell(const coarse_mesh& mesh, const surface_index& index,
+                                             const coarse_regions& regions, std::uint32_t region,
+                                             const cell_settings& settings) {
+  surface_cell cell;
+  cell.n_b = regions.normal[region];
+  cell.pitch_m = settings.pitch_m;
+  cell.triangles = static_cast<std::uint32_t>(regions.members[region].size());
+  vec3 middle(0.0), longest(0.0);
+  for (const std::uint32_t t : regions.members[region]) {
+    const auto c = corners(mesh, t);
+    const double area = 0.5 * glm::length(area_normal(c));
+    cell.area_m2 += area;
+    middle += area * (c[0] + c[1] + c[2]) / 3.0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!regions.is_border(index, t, k)) continue;
+      const vec3 e = c[(k + 1) % 3] - c[k];
+      if (glm::dot(e, e) > glm::dot(longest, longest)) longest = e;
+    }
+  }
+  cell.origin_b = middle / cell.area_m2;
+  // Rows along the longest border: a rectangle then wastes no nodes.
+  const vec3 u = longest - glm::dot(longest, cell.n_b) * cell.n_b;
+  cell.u_b = glm::dot(u, u) > 0.0 ? glm::normalize(u) : any_orthogonal(cell.n_b);
+  cell.v_b = glm::cross(cell.n_b, cell.u_b);
+  vec2 low(std::numeric_limits<double>::max()), high(-std::numeric_limits<double>::max());
+  for (const std::uint32_t t : regions.members[region]) {
+    for (const vec3& p : corners(mesh, t)) {
+      const vec2 q(cell.to_cell(p));
+      low = glm::min(low, q);
+      high = glm::max(high, q);
+    }
+  }
+  const double margin = settings.apron_m + 4.0 * cell.pitch_m;  // so that nothing is left at the border of the map
+  cell.low = low - margin;
+  const vec2 nodes = glm::ceil((high - low + 2.0 * margin) / cell.pitch_m) + 1.0;
+  cell.columns = static_cast<std::uint32_t>(nodes.x);
+  cell.rows = static_cast<std::uint32_t>(nodes.y);
+  return cell;
+}
+
+inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t region, const textured_model& model,
+                     const surface_index& index, const coarse_regions& regions) {
+  const cell_outline outline = find_outline(cell, region, model.mesh, index, regions, out.settings);
+  const cell_grid grid{&cell};
+  std::vector<char> own(grid.size(), 0), shown(grid.size(), 0);
+  for (std::size_t n = 0; n < outline.shown.size(); ++n) {
+    const auto c = corners(model.mesh, outline.shown[n]);
+    grid.fill(grid.to_grid(c[0]), grid.to_grid(c[1]), grid.to_grid(c[2]), [&](std::size_t i, double) {
+      shown[i] = 1;
+      if (n < outline.own) own[i] = 1;
+    });
+  }
+  const std::vector<float> clearance = clearance_field(grid, outline, out.settings).make(own, shown);
+  const std::vector<float> height = draw_relief(grid, outline, own, model, index, out.settings.steepest);
+  cell.first = out.nodes.size();
+  cell.lowest_m = std::numeric_limits<double>::max();
+  cell.highest_m = -std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    out.nodes.push_back({height[i], clearance[i]});
+    if (!(clearance[i] > 0.0F)) continue;
+    cell.lowest_m = std::min<double>(cell.lowest_m, height[i]);
+    cell.highest_m = std::max<double>(cell.highest_m, height[i]);
+  }
+}
+
+}  // namespace detail
+
+/// Cuts a model in cells, draws their relief maps and lays out its samples. Allocates; for seconds, not for a tick.
+/// @return invalid_argument (a setting out of range) | bad_mesh (no triangle with an area) | bad_texture (empty)
+[[nodiscard]] inline result<surface_cells> make_surface_cells(const textured_model& model,
+                                                              const cell_settings& settings = {}) {
+  if (const result<void> ok = check(settings); !ok) return ok.error();
+  if (model.texture.width < 2 || model.texture.height < 2) {
+    return error{error_code::bad_texture, "the model " + model.name + " has no haptic texture to cut in cells"};
+  }
+  const detail::surface_index index(model);
+  surface_cells out;
+  out.settings = resolve(settings, model, detail::measure_texture(model, index).texel_m);
+  const detail::coarse_regions regions(model.mesh, index, out.settings);
+  if (regions.members.empty()) {
+    return error{error_code::bad_mesh, "the model " + model.name + " has no coarse triangle with an area"};
+  }
+
+  std::vector<bounds> boxes;
+  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+    const auto c = corners(model.mesh, t);
+    boxes.push_back({glm::min(c[0], glm::min(c[1], c[2])), glm::max(c[0], glm::max(c[1], c[2]))});
+  }
+  const aabb_tree triangles(boxes);
+  for (std::uint32_t r = 0; r < regions.members.size(); ++r) {
+    surface_cell cell = detail::place_cell(model.mesh, index, regions, r, out.settings);
+    detail::draw_map(out, cell, r, model, index, regions);
+    cell.depth_limit_m =
+        detail::half_thickness(model.mesh, index, triangles, regions.members[r], cell.n_b, out.settings.depth_limit_m);
+    out.cells.push_back(cell);
+  }
+  detail::surface_sampler sampler(out, model, index, regions);
+  sampler.sample_regions();
+  sampler.sample_edges();
+  out.edges = detail::find_sharp_edges(model.mesh, index, regions, 0.5 * out.settings.taper_m);
+
+  boxes.clear();
+  for (const sample_tile& t : out.tiles) boxes.push_back({t.centre_b - t.radius_m, t.centre_b + t.radius_m});
+  out.tile_tree = aabb_tree(boxes);
+  boxes.clear();
+  for (const sharp_edge& e : out.edges) {
+    const vec3 to = e.from_b + e.length_m * e.along_b;
+    boxes.push_back({glm::min(e.from_b, to) - e.extension_m[0], glm::max(e.from_b, to) + e.extension_m[1]});
+  }
+  out.edge_tree = aabb_tree(boxes);
+  return out;
+}
+
+}  // namespace asperity

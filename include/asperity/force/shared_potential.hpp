@@ -1,0 +1,193 @@
+// The force model of the shared formulation: one energy per body pair, and its exact gradient.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "asperity/core/memory.hpp"
+#include "asperity/core/reserve_resident.hpp"
+#include "asperity/core/status.hpp"
+#include "asperity/depth/cell_reading.hpp"
+#include "asperity/depth/shared_settings.hpp"
+#include "asperity/force/concept.hpp"
+
+namespace asperity {
+
+/// Adds the readings of all cells of a body pair up to one energy; the wrench is minus its gradient:
+///
+///     U = k/2 sum_g s_g max(del_g, 0)^2
+///     del_g = sum_h q_gh y_gh / sum_h q_gh          depth of direction g, a soft maximum over all cells h
+///     q_gh = K_gh exp((K_gh max(lam_h, 0) + min(lam_h, 0)) / tau),   y_gh = K_gh max(V_h, 0) + min(V_h, 0)
+///     s_g = M_g / sum_h K_gh M_h                    its share of the spring
+///
+/// V_h is the Boltzmann mean depth of a reading, lam_h = tau ln(mass_h / a0), M_h its overlap, and K_gh falls smoothly
+/// from 1 to 0 as the angle between two directions grows from 25 to 60 degrees. So cells that face the same way share
+/// one spring however many they are, cells that clearly do not have one each, and nothing in between jumps.
+/// A conservative force by construction: it has a potential.
+///
+/// J = -k sum_g s_g (grad del_g grad del_g^T + del_g C_g), C_g the spread of the samples' slopes over tau; it leaves
+/// out how shares and weights change, which has no definite sign.
+/// @rt safe   @source ours; the paper adds the springs of hard clusters up (its section 5.1)
+class shared_potential {
+ public:
+  /// @param settings with tau_m filled in   @param readings most that one call brings, over all bodies
+  shared_potential(const shared_settings& settings, std::size_t readings)
+      : settings_(settings),
+        cos_same_(std::cos(settings.same_direction_rad)),
+        cos_other_(std::cos(settings.other_direction_rad)) {
+    detail::reserve_resident(terms_, readings);
+  }
+
+  /// Adds up the readings, which are grouped by body where they are. @pre readings.size() <= the constructor's number
+  /// @return ok | not_ready (too many) | not_finite; the last two leave zeros
+  [[nodiscard]] status accumulate(std::span<const cell_reading> readings, contact_force& out) noexcept {
+    out = {};
+    terms_.clear();
+    energy_j_ = 0.0;
+    if (readings.size() > terms_.capacity()) return status::not_ready;
+    for (const cell_reading& r : readings) {
+      if (!std::isfinite(r.mass) || !std::isfinite(r.overlap)) return status::not_finite;
+      if (r.mass > 0.0) terms_.push_back(make_term(r));
+    }
+    contact_force sum;
+    vec6 gradient;
+    for (std::size_t g = 0; g < terms_.size(); ++g) {
+      if (terms_[g].reading->overlap > 0.0) add_direction(g, gradient, sum.stiffness);
+    }
+    for (const term& t : terms_) {
+      gradient += t.by_mass * t.reading->mass_slope;
+      gradient += t.by_moment * t.reading->moment_slope;
+      gradient += t.by_overlap * t.reading->overlap_slope;
+    }
+    sum.on_probe_w = to_wrench(-1.0 * gradient);
+    if (!is_finite(sum.on_probe_w) || !is_finite(sum.stiffness)) return status::not_finite;
+    out = sum;
+    return status::ok;
+  }
+
+  /// Of the last call, J.
+  [[nodiscard]] double energy_j() const noexcept { return energy_j_; }
+
+  /// What the last call made of a reading that has weight, for reports.
+  struct direction {
+    const cell_reading* reading;
+    double depth_m;  ///< del_g; not above 0 where there is no force
+    double share;    ///< s_g
+    vec6 gradient;   ///< of del_g
+    mat6 curvature;  ///< C_g
+  };
+  /// @param i below terms()
+  [[nodiscard]] direction at(std::size_t i) const noexcept {
+    const term& t = terms_[i];
+    return {t.reading, t.depth_m, t.share, t.gradient, t.curvature};
+  }
+  [[nodiscard]] std::size_t terms() const noexcept { return terms_.size(); }
+  /// How much two directions are one: K.
+  [[nodiscard]] double sameness(const vec3& n_g, const vec3& n_h) const noexcept {
+    return smoothstep((glm::dot(n_g, n_h) - cos_other_) / (cos_same_ - cos_other_));
+  }
+  [[nodiscard]] const shared_settings& settings() const noexcept { return settings_; }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(terms_); }
+
+ private:
+  struct term {
+    const cell_reading* reading;
+    double log_mass_m;  ///< lam
+    double value_m;     ///< V
+    vec6 log_mass_slope, value_slope;
+    double by_mass = 0.0, by_moment = 0.0, by_overlap = 0.0;  ///< derivatives of the energy
+    double depth_m = 0.0, share = 0.0;
+    vec6 gradient{};
+    mat6 curvature{};
+    // Of the direction that is being added up:
+    double same = 0.0, boltzmann = 0.0, shown_m = 0.0;
+  };
+
+  [[nodiscard]] term make_term(const cell_reading& r) const noexcept {
+    // The unit that masses are counted in. Any constant would do: it moves the point where a reading that is barely
+    // outside stops being held back by K.
+    constexpr double unit_area_m2 = 1.6e-7;
+    const double tau = settings_.tau_m;
+    term t{};
+    t.reading = &r;
+    t.log_mass_m = r.reference_m + tau * std::log(r.mass / unit_area_m2);
+    t.value_m = r.moment / r.mass;
+    t.log_mass_slope = (tau / r.mass) * r.mass_slope;
+    t.value_slope = (1.0 / r.mass) * (r.moment_slope - t.value_m * r.mass_slope);
+    return t;
+  }
+
+  // Adds the spring of direction g to energy and stiffness, and notes how the energy changes with every reading.
+  void add_direction(std::size_t g, vec6& gradient, mat6& stiffness) noexcept {
+    const double tau = settings_.tau_m, k = settings_.stiffness_n_per_m;
+    term& own = terms_[g];
+    const cell_reading& r = *own.reading;
+    double overlap = 0.0, largest = -1e9;
+    for (term& t : terms_) {
+      t.same = t.reading->body != r.body ? 0.0 : (&t == &own ? 1.0 : sameness(r.n_ab_w, t.reading->n_ab_w));
+      if (!(t.same > 0.0)) continue;
+      t.boltzmann = t.log_mass_m > 0.0 ? t.same * t.log_mass_m : t.log_mass_m;
+      t.shown_m = t.value_m > 0.0 ? t.same * t.value_m : t.value_m;
+      largest = std::max(largest, t.boltzmann);
+      overlap += t.same * t.reading->overlap;
+    }
+    double sum = 0.0, mean = 0.0;
+    for (term& t : terms_) {
+      if (!(t.same > 0.0)) continue;
+      t.boltzmann = std::exp((t.boltzmann - largest) / tau);
+      sum += t.same * t.boltzmann;
+      mean += t.same * t.boltzmann * t.shown_m;
+    }
+    own.depth_m = mean / sum;
+    own.share = r.overlap / overlap;
+    if (!(own.depth_m > 0.0)) return;
+    energy_j_ += 0.5 * k * own.share * own.depth_m * own.depth_m;
+    const double by_share = 0.5 * k * own.depth_m * own.depth_m, by_depth = k * own.share * own.depth_m;
+    own.by_overlap += by_share / overlap;
+
+    vec6 slope, slope_mean;
+    mat6 product;
+    for (term& t : terms_) {
+      if (!(t.same > 0.0)) continue;
+      const cell_reading& h = *t.reading;
+      const double p = t.same * t.boltzmann / sum, above = t.shown_m - own.depth_m;
+      if (p < 1e-14 && h.overlap <= 0.0) continue;  // nothing that the sum could hold
+      const double by_value = p * (t.value_m > 0.0 ? t.same : 1.0);
+      const double by_log_mass = p * above * (t.log_mass_m > 0.0 ? t.same : 1.0) / tau;
+      t.by_overlap -= by_share * r.overlap * t.same / (overlap * overlap);
+      t.by_mass += by_depth * (by_log_mass * tau - by_value * t.value_m) / h.mass;
+      t.by_moment += by_depth * by_value / h.mass;
+      slope += by_value * t.value_slope + by_log_mass * t.log_mass_slope;
+      slope_mean += (p / h.mass) * h.slope_sum;
+      product += (p / h.mass) * h.slope_product;
+      const double by_same = -by_share * r.overlap * h.overlap / (overlap * overlap) +
+                             by_depth * (t.boltzmann / sum * above + p * above * std::max(t.log_mass_m, 0.0) / tau +
+                                         p * std::max(t.value_m, 0.0));
+      gradient.angular += by_same * same_turn(r, h, &t == &own);
+    }
+    own.gradient = slope;
+    add_outer(product, -1.0, slope_mean);
+    for (double& x : product.m) x /= tau;
+    own.curvature = product;
+    add_outer(stiffness, -k * own.share, slope);
+    stiffness += (-k * own.share * own.depth_m) * product;
+  }
+
+  // d K_gh / d(rotation of the probe).
+  [[nodiscard]] vec3 same_turn(const cell_reading& g, const cell_reading& h, bool same) const noexcept {
+    if (same) return vec3(0.0);
+    const double width = cos_same_ - cos_other_;
+    const double s = smoothstep_slope((glm::dot(g.n_ab_w, h.n_ab_w) - cos_other_) / width) / width;
+    return s == 0.0 ? vec3(0.0) : s * (glm::transpose(g.turn) * h.n_ab_w + glm::transpose(h.turn) * g.n_ab_w);
+  }
+
+  shared_settings settings_;
+  double cos_same_, cos_other_;
+  std::vector<term> terms_;
+  double energy_j_ = 0.0;
+};
+
+}  // namespace asperity
