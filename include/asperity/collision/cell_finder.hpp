@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "asperity/cells/cell_scene.hpp"
+#include "asperity/collision/concept.hpp"
 #include "asperity/collision/near_cells.hpp"
 #include "asperity/core/status.hpp"
 
@@ -19,6 +20,9 @@ namespace asperity {
 /// @rt safe   @source the formulation is ours; the paper finds contacts by convex pieces, see convex_piece_finder
 class cell_finder {
  public:
+  using policy_tag = collision_tag;
+  using found_type = near_cells;
+
   /// @param reach_m samples farther outside than this are left out
   cell_finder(std::shared_ptr<const cell_scene> bodies, double reach_m) noexcept
       : bodies_(std::move(bodies)), reach_m_(reach_m) {}
@@ -100,5 +104,7 @@ class cell_finder {
   std::shared_ptr<const cell_scene> bodies_;
   double reach_m_;
 };
+
+static_assert(collision_finder<cell_finder>);
 
 }  // namespace asperity

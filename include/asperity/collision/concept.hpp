@@ -25,9 +25,26 @@ namespace asperity {
 /// Base of a finder's `policy_tag`: naming it says "I keep the contract above", which a signature alone cannot.
 struct collision_tag {};
 
+namespace detail {
+template <class P>
+struct found_by {
+  using type = contact_set;
+};
+template <class P>
+requires requires { typename P::found_type; }
+struct found_by<P> {
+  using type = typename P::found_type;
+};
+}  // namespace detail
+
+/// What a policy's finder hands on: contacts with patches and windows, unless the policy names another found_type.
+/// near_cells is the other one: see cell_finder. The three policies of a renderer must agree on it.
+template <class P>
+using found_by = typename detail::found_by<P>::type;
+
 template <class P>
 concept collision_finder = std::derived_from<typename P::policy_tag, collision_tag> &&
-    requires(P& finder, const scene_pose& at, contact_set& out) {
+    requires(P& finder, const scene_pose& at, found_by<P>& out) {
   { finder.find(at, out) }
   noexcept->std::same_as<status>;
 };

@@ -40,11 +40,16 @@ struct contact {
 struct contact_limits {
   std::size_t contacts = 16;
   std::size_t triangles = 16384;  ///< entries of all patches together
+
+  /// Most readings that a depth backend makes of a set of this size.
+  [[nodiscard]] std::size_t readings() const noexcept { return contacts; }
 };
 
 /// The contacts of one tick with their patches. All memory is taken when it is made.
 class contact_set {
  public:
+  using limits_type = contact_limits;
+
   explicit contact_set(contact_limits limits = {}) : limits_(limits) {
     detail::reserve_resident(contacts_, limits.contacts);
     detail::reserve_resident(triangles_, limits.triangles);

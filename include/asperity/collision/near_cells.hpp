@@ -29,13 +29,18 @@ struct near_edges {
 struct near_limits {
   std::size_t cells = 1024;
   std::size_t tiles = 65536;  ///< of all cells together
-  std::size_t edges = 512;
+  std::size_t edges = 1024;
+
+  /// Most readings that a depth backend makes of a set of this size.
+  [[nodiscard]] std::size_t readings() const noexcept { return cells + edges; }
 };
 
 /// The near cells of one tick, sorted by body. All memory is taken when it is made.
 /// A superset of what touches is harmless: what is too far away has no weight.
 class near_cells {
  public:
+  using limits_type = near_limits;
+
   explicit near_cells(near_limits limits = {}) : limits_(limits) {
     detail::reserve_resident(cells_, limits.cells);
     detail::reserve_resident(tiles_, limits.tiles);

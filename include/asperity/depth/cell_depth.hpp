@@ -14,6 +14,7 @@
 #include "asperity/collision/near_cells.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/depth/cell_reading.hpp"
+#include "asperity/depth/concept.hpp"
 #include "asperity/depth/edge_reading.hpp"
 #include "asperity/depth/shared_settings.hpp"
 
@@ -28,6 +29,10 @@ namespace asperity {
 /// @source depth of Eq. 8 of the paper along the cell's normal; the fades are ours (docs/explanation/many-contacts.md)
 class cell_depth {
  public:
+  using policy_tag = depth_tag;
+  using found_type = near_cells;
+  using reading_type = cell_reading;
+
   /// @param settings with tau_m filled in
   cell_depth(std::shared_ptr<const cell_scene> bodies, const scene& models, const shared_settings& settings) noexcept
       : bodies_(std::move(bodies)), centre_of_mass_a_(models.probe->mass.centre_of_mass), settings_(settings) {}
@@ -317,5 +322,7 @@ class cell_depth {
   vec3 centre_of_mass_a_;
   shared_settings settings_;
 };
+
+static_assert(depth_backend<cell_depth>);
 
 }  // namespace asperity

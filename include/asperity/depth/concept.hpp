@@ -13,7 +13,7 @@
 #include <concepts>
 #include <span>
 
-#include "asperity/collision/contact.hpp"
+#include "asperity/collision/concept.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/depth/penetration.hpp"
 #include "asperity/model/scene.hpp"
@@ -23,10 +23,27 @@ namespace asperity {
 /// Base of a backend's `policy_tag`: naming it says "I keep the contract above".
 struct depth_tag {};
 
+namespace detail {
+template <class P>
+struct reading_of {
+  using type = penetration;
+};
+template <class P>
+requires requires { typename P::reading_type; }
+struct reading_of<P> {
+  using type = typename P::reading_type;
+};
+}  // namespace detail
+
+/// What a policy's depth backend measures of one thing found: a penetration, unless the policy names another
+/// reading_type. Depth backend and force model must agree on it.
+template <class P>
+using reading_of = typename detail::reading_of<P>::type;
+
 template <class P>
 concept depth_backend = std::derived_from<typename P::policy_tag, depth_tag> &&
-    requires(P& backend, const scene_pose& at, const contact_set& contacts, std::span<penetration> out) {
-  { backend.measure(at, contacts, out) }
+    requires(P& backend, const scene_pose& at, const found_by<P>& found, std::span<reading_of<P>> out) {
+  { backend.measure(at, found, out) }
   noexcept->std::same_as<status>;
 };
 

@@ -12,10 +12,9 @@
 #include <concepts>
 #include <span>
 
-#include "asperity/collision/contact.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
-#include "asperity/depth/penetration.hpp"
+#include "asperity/depth/concept.hpp"
 
 namespace asperity {
 
@@ -30,9 +29,16 @@ struct force_tag {};
 
 template <class P>
 concept force_model = std::derived_from<typename P::policy_tag, force_tag> &&
-    requires(const P& model, const contact_set& contacts, std::span<const penetration> depths, contact_force& out) {
-  { model.accumulate(contacts, depths, out) }
+    requires(const P& model, const found_by<P>& found, std::span<const reading_of<P>> depths, contact_force& out) {
+  { model.accumulate(found, depths, out) }
   noexcept->std::same_as<status>;
+};
+
+/// A force model whose finder knows no contacts tells afterwards what a person would call them: for reports only.
+template <class P>
+concept describes_contacts = requires(const P& model, contact_set& contacts, std::span<penetration> depths) {
+  { model.describe(contacts, depths) }
+  noexcept->std::same_as<void>;
 };
 
 }  // namespace asperity

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "asperity/collision/contact.hpp"
+#include "asperity/collision/near_cells.hpp"
 #include "asperity/core/memory.hpp"
 #include "asperity/core/reserve_resident.hpp"
 #include "asperity/core/status.hpp"
@@ -33,6 +35,10 @@ namespace asperity {
 /// @rt safe   @source ours; the paper adds the springs of hard clusters up (its section 5.1)
 class shared_potential {
  public:
+  using policy_tag = force_tag;
+  using found_type = near_cells;
+  using reading_type = cell_reading;
+
   /// @param settings with tau_m filled in   @param readings most that one call brings, over all bodies
   shared_potential(const shared_settings& settings, std::size_t readings)
       : settings_(settings),
@@ -41,13 +47,16 @@ class shared_potential {
     detail::reserve_resident(terms_, readings);
   }
 
-  /// Adds up the readings, which are grouped by body where they are. @pre readings.size() <= the constructor's number
-  /// @return ok | not_ready (too many) | not_finite; the last two leave zeros
-  [[nodiscard]] status accumulate(std::span<const cell_reading> readings, contact_force& out) noexcept {
+  /// Adds up the readings of what was found. @pre readings.size() >= found.size()
+  /// @return ok | not_ready (too few readings, or more than the constructor was told) | not_finite; the last two leave
+  /// zeros
+  [[nodiscard]] status accumulate(const near_cells& found, std::span<const cell_reading> readings,
+                                  contact_force& out) const noexcept {
     out = {};
     terms_.clear();
     energy_j_ = 0.0;
-    if (readings.size() > terms_.capacity()) return status::not_ready;
+    if (readings.size() < found.size() || found.size() > terms_.capacity()) return status::not_ready;
+    readings = readings.first(found.size());
     for (const cell_reading& r : readings) {
       if (!std::isfinite(r.mass) || !std::isfinite(r.overlap)) return status::not_finite;
       if (r.mass > 0.0) terms_.push_back(make_term(r));
@@ -71,20 +80,23 @@ class shared_potential {
   /// Of the last call, J.
   [[nodiscard]] double energy_j() const noexcept { return energy_j_; }
 
-  /// What the last call made of a reading that has weight, for reports.
-  struct direction {
-    const cell_reading* reading;
-    double depth_m;  ///< del_g; not above 0 where there is no force
-    double share;    ///< s_g
-    vec6 gradient;   ///< of del_g
-    mat6 curvature;  ///< C_g
-  };
-  /// @param i below terms()
-  [[nodiscard]] direction at(std::size_t i) const noexcept {
-    const term& t = terms_[i];
-    return {t.reading, t.depth_m, t.share, t.gradient, t.curvature};
+  /// What a person would call the contacts of the last call: readings of one body and nearly one direction are one.
+  /// For reports and plots; the force knows nothing of it. Contacts outside, within reach, are told too, as gaps.
+  /// @rt safe
+  void describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
+    contacts.clear();
+    for (term& t : terms_) t.told = false;
+    for (;;) {
+      term* first = nullptr;
+      for (term& t : terms_) {
+        if (!t.told && (first == nullptr || leads(t, *first))) first = &t;
+      }
+      if (first == nullptr || contacts.size() == depths.size()) return;
+      penetration& depth = depths[contacts.size()];
+      if (!contacts.add(tell(*first, depth, static_cast<std::uint32_t>(contacts.size())), {}, {})) return;
+    }
   }
-  [[nodiscard]] std::size_t terms() const noexcept { return terms_.size(); }
+
   /// How much two directions are one: K.
   [[nodiscard]] double sameness(const vec3& n_g, const vec3& n_h) const noexcept {
     return smoothstep((glm::dot(n_g, n_h) - cos_other_) / (cos_same_ - cos_other_));
@@ -104,7 +116,78 @@ class shared_potential {
     mat6 curvature{};
     // Of the direction that is being added up:
     double same = 0.0, boltzmann = 0.0, shown_m = 0.0;
+    bool told = false;
   };
+
+  // Which of two readings a report begins with.
+  [[nodiscard]] static bool leads(const term& a, const term& b) noexcept {
+    const double x = a.reading->overlap, y = b.reading->overlap;
+    return x != y ? x > y : a.value_m > b.value_m;
+  }
+
+  // Gathers what faces the way that `first` does.
+  [[nodiscard]] contact tell(term& first, penetration& depth, std::uint32_t id) const noexcept {
+    const vec3 n_first = first.reading->n_ab_w;
+    const auto together = [&](const term& t) {
+      return !t.told && t.reading->body == first.reading->body && sameness(n_first, t.reading->n_ab_w) >= 0.5;
+    };
+    const bool overlaps = first.reading->overlap > 0.0;
+    const auto weight_of = [&](const term& t) {
+      return overlaps ? t.share : std::exp((t.log_mass_m - first.log_mass_m) / settings_.tau_m);
+    };
+    depth = {};
+    depth.depth_m = first.reading->depth_m;
+    depth.witness_w = first.reading->witness_w;
+    vec3 direction(0.0), centre(0.0);
+    double sum = 0.0, square = 0.0;
+    for (const term& t : terms_) {
+      if (!together(t)) continue;
+      const cell_reading& r = *t.reading;
+      const double w = weight_of(t);
+      sum += w;
+      direction += w * r.n_ab_w;
+      centre += w * r.centre_w;
+      square += w * (r.spread_m * r.spread_m + glm::dot(r.centre_w, r.centre_w));
+      depth.soft_depth_m += w * (overlaps ? t.depth_m : t.value_m);
+      depth.gradient += w * (overlaps ? t.gradient : t.value_slope);
+      depth.curvature += w * t.curvature;
+      depth.area_m2 += r.area_m2;
+      depth.samples += r.samples;
+      if (r.too_deep) depth.flags |= depth_flag::saturated;
+      if (r.depth_m > depth.depth_m) {
+        depth.depth_m = r.depth_m;
+        depth.witness_w = r.witness_w;
+      }
+    }
+    contact out;
+    if (sum > 0.0) {
+      centre /= sum;
+      depth.soft_depth_m /= sum;
+      depth.gradient = (1.0 / sum) * depth.gradient;
+      depth.curvature = (1.0 / sum) * depth.curvature;
+    } else {  // a reading whose weight is below the last digit
+      centre = first.reading->centre_w;
+      direction = n_first;
+    }
+    const double length = glm::length(direction);
+    contact_window& window = out.window;
+    window.n_ab_w = length > 0.0 ? direction / length : n_first;
+    window.u_w = any_orthogonal(window.n_ab_w);
+    window.v_w = glm::cross(window.n_ab_w, window.u_w);
+    window.centre_w = centre;
+    // A disc of constant weight reaches sqrt(2) times its root mean square radius.
+    window.half_size_m = sum > 0.0 ? std::sqrt(2.0 * std::max(0.0, square / sum - glm::dot(centre, centre))) : 0.0;
+    out.p_a_w = centre + 0.5 * depth.depth_m * window.n_ab_w;
+    out.p_b_w = centre - 0.5 * depth.depth_m * window.n_ab_w;
+    out.separation_m = -depth.depth_m;
+    out.body = first.reading->body;
+    out.id = id;
+    for (term& t : terms_) {
+      if (&t != &first && together(t)) t.told = true;
+    }
+    first.told = true;
+    return out;
+  }
 
   [[nodiscard]] term make_term(const cell_reading& r) const noexcept {
     // The unit that masses are counted in. Any constant would do: it moves the point where a reading that is barely
@@ -121,7 +204,7 @@ class shared_potential {
   }
 
   // Adds the spring of direction g to energy and stiffness, and notes how the energy changes with every reading.
-  void add_direction(std::size_t g, vec6& gradient, mat6& stiffness) noexcept {
+  void add_direction(std::size_t g, vec6& gradient, mat6& stiffness) const noexcept {
     const double tau = settings_.tau_m, k = settings_.stiffness_n_per_m;
     term& own = terms_[g];
     const cell_reading& r = *own.reading;
@@ -186,8 +269,12 @@ class shared_potential {
 
   shared_settings settings_;
   double cos_same_, cos_other_;
-  std::vector<term> terms_;
-  double energy_j_ = 0.0;
+  // Working space, and what the last call can still be asked about. No call reads what another one left.
+  mutable std::vector<term> terms_;
+  mutable double energy_j_ = 0.0;
 };
+
+static_assert(force_model<shared_potential>);
+static_assert(describes_contacts<shared_potential>);
 
 }  // namespace asperity

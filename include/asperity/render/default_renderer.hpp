@@ -1,38 +1,88 @@
-// The renderer that most programs want: the paper's finder, the CPU reference depth, the paper's force model.
+// The renderers that most programs want: the shared formulation, and the paper's.
 #pragma once
 
+#include <algorithm>
+#include <memory>
 #include <utility>
 
+#include "asperity/collision/cell_finder.hpp"
 #include "asperity/collision/convex_piece_finder.hpp"
+#include "asperity/depth/cell_depth.hpp"
 #include "asperity/depth/cpu_depth.hpp"
 #include "asperity/force/gradient_penalty.hpp"
+#include "asperity/force/shared_potential.hpp"
 #include "asperity/render/renderer.hpp"
 
 namespace asperity {
 
-/// The default policies. Another choice is basic_renderer with other arguments.
-using renderer = basic_renderer<convex_piece_finder, cpu_depth, gradient_penalty>;
+/// The default: all contacts of two bodies as one potential. The force does not jump, whatever the motion.
+using renderer = basic_renderer<cell_finder, cell_depth, shared_potential>;
 
 /// Settings of the default policies. Each default is explained where its struct is.
 struct renderer_settings {
+  cell_settings cells{};
+  shared_settings shared{};
+  near_limits limits{};
+};
+
+/// The paper's: contacts clustered from convex pieces, each with a window and a spring of its own.
+using paper_renderer = basic_renderer<convex_piece_finder, cpu_depth, gradient_penalty>;
+
+/// Settings of the paper's policies.
+struct paper_settings {
   finder_settings finder{};
   depth_settings depth{};
   gradient_penalty_settings force{};
   contact_limits limits{};
 };
 
-/// A renderer for a scene; all memory that its ticks need is taken here.
+namespace detail {
+
+[[nodiscard]] inline result<void> has_fixed_body(const scene& bodies) {
+  if (!bodies.fixed.empty()) return {};
+  return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
+}
+
+/// Softness of the shared maximum for a scene, the automatic one filled in. One for all bodies, whatever the pose.
+[[nodiscard]] inline double shared_tau_m(const shared_settings& s, const scene& bodies) {
+  if (s.tau_m > 0.0) return s.tau_m;
+  const auto relief = [](const textured_model& m) { return measure_texture(m, surface_index(m)).relief_m; };
+  double smaller = bodies.probe->box.diagonal(), rougher = relief(*bodies.probe);
+  for (const model_ptr& m : bodies.fixed) {
+    smaller = std::min(smaller, m->box.diagonal());
+    rougher = std::max(rougher, relief(*m));
+  }
+  return std::max(0.02 * rougher, 2e-4 * smaller);
+}
+
+}  // namespace detail
+
+/// The default renderer for a scene. Cuts its models in cells, about a second each; all memory that its ticks need is
+/// taken here.
 /// @return invalid_argument (no probe, no fixed body, a setting out of range) | bad_mesh | bad_texture
 [[nodiscard]] inline result<renderer> make_renderer(scene bodies, const renderer_settings& settings = {}) {
-  if (bodies.fixed.empty()) {
-    return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
-  }
+  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
+  if (const result<void> ok = check(settings.shared); !ok) return ok.error();
+  result<cell_scene> cut = make_cell_scene(bodies, settings.cells);  // refuses a missing model too
+  if (!cut) return cut.error();
+  const auto cells = std::make_shared<const cell_scene>(std::move(cut).value());
+  shared_settings shared = settings.shared;
+  shared.tau_m = detail::shared_tau_m(shared, bodies);
+  cell_depth depth(cells, bodies, shared);
+  return renderer(std::move(bodies), cell_finder(cells, cell_depth::reach_m(shared)), std::move(depth),
+                  shared_potential(shared, settings.limits.readings()), settings.limits);
+}
+
+/// The paper's renderer for a scene; all memory that its ticks need is taken here.
+/// @return invalid_argument (no probe, no fixed body, a setting out of range) | bad_mesh | bad_texture
+[[nodiscard]] inline result<paper_renderer> make_paper_renderer(scene bodies, const paper_settings& settings = {}) {
+  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
   // Refuses a missing model too, which the finder takes for granted.
   result<cpu_depth> depth = make_cpu_depth(bodies, settings.depth);
   if (!depth) return depth.error();
   convex_piece_finder finder(bodies, settings.finder);
-  return renderer(std::move(bodies), std::move(finder), std::move(depth).value(), gradient_penalty(settings.force),
-                  settings.limits);
+  return paper_renderer(std::move(bodies), std::move(finder), std::move(depth).value(),
+                        gradient_penalty(settings.force), settings.limits);
 }
 
 }  // namespace asperity

@@ -31,19 +31,27 @@ struct tick {
 ///     if (made && made->step({T_wa, T_wb}, tick) == asperity::status::ok) send(tick.force.on_probe_w);
 ///
 /// Data goes forward only; no stage knows the next. All memory is taken by the constructor.
+/// The policies agree on what is handed on: contacts and penetrations, or near cells and their readings. In the second
+/// case the contacts of a tick are told by the force model afterwards; they are a description of the force.
 /// @tparam Finder  who touches whom          (asperity/collision/concept.hpp)
 /// @tparam Depth   how deep, and which way   (asperity/depth/concept.hpp)
 /// @tparam Force   what that feels like      (asperity/force/concept.hpp)
 template <collision_finder Finder, depth_backend Depth, force_model Force>
+requires std::same_as<found_by<Finder>, found_by<Depth>> && std::same_as<found_by<Finder>, found_by<Force>> &&
+    std::same_as<reading_of<Depth>, reading_of<Force>>
 class basic_renderer {
  public:
-  basic_renderer(asperity::scene scene, Finder finder, Depth depth, Force force, contact_limits limits = {})
+  using found_type = found_by<Finder>;
+  using reading_type = reading_of<Depth>;
+  using limits_type = typename found_type::limits_type;
+
+  basic_renderer(asperity::scene scene, Finder finder, Depth depth, Force force, limits_type limits = {})
       : scene_(std::move(scene)),
         finder_(std::move(finder)),
         depth_(std::move(depth)),
         force_(std::move(force)),
-        contacts_(limits),
-        depths_(limits.contacts) {}
+        found_(limits),
+        readings_(limits.readings()) {}
 
   /// Wrench on the probe at these poses.
   /// @pre at.T_wb.size() == scene().fixed.size()
@@ -52,18 +60,18 @@ class basic_renderer {
   /// @rt safe: no allocation, lock, throw, print or clock
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     out = {};
-    contacts_.clear();
+    found_.clear();
     if (at.T_wb.size() != scene_.fixed.size()) return status::not_ready;
     if (!is_valid(at.T_wa)) return status::invalid_pose;
     for (const pose& T : at.T_wb) {
       if (!is_valid(T)) return status::invalid_pose;
     }
-    const status found = finder_.find(at, contacts_);
+    const status found = finder_.find(at, found_);
     if (found != status::ok && found != status::capacity_reached) return found;
 
-    const std::span<penetration> depths = std::span(depths_).first(contacts_.size());
-    if (const status s = depth_.measure(at, contacts_, depths); s != status::ok) return s;
-    if (const status s = force_.accumulate(contacts_, depths, out.force); s != status::ok) {
+    const std::span<reading_type> readings = std::span(readings_).first(found_.size());
+    if (const status s = depth_.measure(at, found_, readings); s != status::ok) return s;
+    if (const status s = force_.accumulate(found_, readings, out.force); s != status::ok) {
       out.force = {};
       return s;
     }
@@ -72,15 +80,27 @@ class basic_renderer {
       return status::not_finite;
     }
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
-    out.contacts = contacts_.contacts();
-    out.depths = depths;
-    out.dropped_contacts = contacts_.dropped();
+    out.dropped_contacts = found_.dropped();
+    if constexpr (finds_contacts) {
+      out.contacts = found_.contacts();
+      out.depths = readings;
+    } else {
+      force_.describe(told_.contacts, told_.depths);
+      out.contacts = told_.contacts.contacts();
+      out.depths = std::span(told_.depths).first(told_.contacts.size());
+    }
     return found;
   }
 
   [[nodiscard]] const asperity::scene& scene() const noexcept { return scene_; }
-  /// The patches behind the last tick's contacts.
-  [[nodiscard]] const contact_set& contacts() const noexcept { return contacts_; }
+  /// The contacts of the last tick; their patches, where the finder knows patches.
+  [[nodiscard]] const contact_set& contacts() const noexcept {
+    if constexpr (finds_contacts) {
+      return found_;
+    } else {
+      return told_.contacts;
+    }
+  }
   /// Memory that the renderer takes, bytes: itself, its policies and all that they hold, whether a tick has used it or
   /// not. Its models belong to whoever else shares them: memory_bytes(scene()) counts them.
   /// A policy that has no heap_bytes() counts with its size alone.
@@ -92,7 +112,8 @@ class basic_renderer {
         return 0;
       }
     };
-    return sizeof *this + heap_bytes(scene_.fixed, contacts_, depths_) + held(finder_) + held(depth_) + held(force_);
+    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, told_) + held(finder_) + held(depth_) +
+           held(force_);
   }
 
   [[nodiscard]] Finder& finder() noexcept { return finder_; }
@@ -100,12 +121,24 @@ class basic_renderer {
   [[nodiscard]] Force& force() noexcept { return force_; }
 
  private:
+  static constexpr bool finds_contacts = std::same_as<found_type, contact_set>;
+  static_assert(finds_contacts || describes_contacts<Force>, "a force model that is given no contacts must tell them");
+
+  /// The contacts of a tick whose finder knows none.
+  struct told_contacts {
+    contact_set contacts{contact_limits{.contacts = 64, .triangles = 0}};
+    std::vector<penetration> depths{64};
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(contacts, depths); }
+  };
+  struct nothing {};
+
   asperity::scene scene_;
   [[no_unique_address]] Finder finder_;
   [[no_unique_address]] Depth depth_;
   [[no_unique_address]] Force force_;
-  contact_set contacts_;
-  std::vector<penetration> depths_;
+  found_type found_;
+  std::vector<reading_type> readings_;
+  [[no_unique_address]] std::conditional_t<finds_contacts, nothing, told_contacts> told_;
 };
 
 }  // namespace asperity
