@@ -21,8 +21,8 @@ std::optional<std::string> complaint(const error& e) {
 }
 
 /// Small: the renderer is made thousands of times.
-renderer_settings small_settings() {
-  renderer_settings s;
+paper_settings small_settings() {
+  paper_settings s;
   s.finder.close_pairs = 64;
   s.finder.clusters = 4;
   s.depth.grid = 8;
@@ -51,7 +51,7 @@ std::optional<std::string> complaint(const result<textured_model>& loaded) {
   if (!loaded) return complaint(loaded.error());
   if (const auto valid = validate(*loaded); !valid) return "an invalid model: " + valid.error().message;
   const auto model = std::make_shared<const textured_model>(*loaded);
-  auto feel = make_renderer({model, {model}}, small_settings());
+  auto feel = make_paper_renderer({model, {model}}, small_settings());
   if (!feel) return "no renderer: " + feel.error().message;
   // Turned a little and sunk into itself by a tenth, so that there is something to feel.
   const vec3 size = model->box.high - model->box.low;

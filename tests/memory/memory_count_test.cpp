@@ -66,7 +66,7 @@ class RendererMemory : public ::testing::Test {
  protected:
   RendererMemory() {
     const std::size_t before = bytes_on_loan();
-    auto made = make_renderer({model_, {model_, other_}});
+    auto made = make_paper_renderer({model_, {model_, other_}});
     EXPECT_TRUE(made);
     if (made) feel_.emplace(std::move(made).value());
     asked_ = bytes_on_loan() - before;
@@ -74,12 +74,12 @@ class RendererMemory : public ::testing::Test {
 
   model_ptr model_ = std::make_shared<const textured_model>(make_model());
   model_ptr other_ = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
-  std::optional<renderer> feel_;
+  std::optional<paper_renderer> feel_;
   std::size_t asked_ = 0;
 };
 
 TEST_F(RendererMemory, IsWhatItHasAskedFor) {
-  EXPECT_EQ(feel_->memory_bytes(), sizeof(renderer) + asked_);
+  EXPECT_EQ(feel_->memory_bytes(), sizeof(paper_renderer) + asked_);
   EXPECT_GT(asked_, std::size_t{1} << 20);
 }
 
@@ -99,7 +99,7 @@ TEST_F(RendererMemory, AForgottenPartWouldShow) {
   for (const std::size_t part : {body.piece_tree.heap_bytes(), body.triangle_tree.heap_bytes(),
                                  body.shapes.front().heap_bytes(), feel_->contacts().heap_bytes()}) {
     EXPECT_GT(part, 0U);
-    EXPECT_NE(feel_->memory_bytes() - part, sizeof(renderer) + asked_);
+    EXPECT_NE(feel_->memory_bytes() - part, sizeof(paper_renderer) + asked_);
   }
 }
 

@@ -73,7 +73,7 @@ double deepest(const tick& t) {
 
 // A seeded pose at which the probe, coming from outside along a random direction with a random orientation, overlaps by
 // some tenths of a millimetre.
-bool touching_pose(renderer& r, std::mt19937_64& rng, pose& T_wa) {
+bool touching_pose(paper_renderer& r, std::mt19937_64& rng, pose& T_wa) {
   const textured_model& a = *r.scene().probe;
   const textured_model& b = *r.scene().fixed.front();
   const std::array<pose, 1> fixed{};
@@ -131,9 +131,9 @@ row compare(const std::string& probe_name, const std::string& fixed_name, std::u
   const loaded_body b = load(fixed_name);
   row out;
   if (a.model == nullptr || b.model == nullptr) return out;
-  renderer_settings settings;
+  paper_settings settings;
   settings.depth.grid = grid;
-  auto made = make_renderer({a.model, {b.model}}, settings);
+  auto made = make_paper_renderer({a.model, {b.model}}, settings);
   if (!made) {
     ADD_FAILURE() << made.error().message;
     return out;

@@ -86,11 +86,11 @@ TEST_P(trapped_renderer, textured_boxes) {
       test_support::make_textured_box({0.01, 0.01, 0.01}, 64, test_support::ridges(0.0002, 0.004)));
   const auto plate = std::make_shared<const textured_model>(
       test_support::make_textured_box({0.05, 0.05, 0.01}, 64, test_support::ridges(0.0002, 0.004)));
-  renderer_settings settings;
+  paper_settings settings;
   settings.depth.gradient = GetParam().gradient;
   settings.depth.parallax = GetParam().parallax;
   settings.depth.grid = 32;
-  result<renderer> feel = make_renderer({probe, {plate}}, settings);
+  result<paper_renderer> feel = make_paper_renderer({probe, {plate}}, settings);
   ASSERT_TRUE(feel);
   simulated_config c = hand(motion_kind::scrub);
   c.motion.T_dh.position.z = 0.022;
@@ -122,7 +122,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(trapped_session, a_renderer_that_refuses_or_drops) {
   const auto box = std::make_shared<const textured_model>(
       test_support::make_textured_box({0.01, 0.01, 0.01}, 64, test_support::ridges(0.0002, 0.004)));
-  result<renderer> feel = make_renderer({box, {box}}, {.limits = {.contacts = 1, .triangles = 1}});
+  result<paper_renderer> feel = make_paper_renderer({box, {box}}, {.limits = {.contacts = 1, .triangles = 1}});
   ASSERT_TRUE(feel);
   const pose T_wb;
   tick found;

@@ -19,17 +19,17 @@ bounds box_in_world(const textured_model& model, const pose& T) {
   return box;
 }
 
-bool touches(renderer& feel, const pose& T_wa, std::span<const pose> T_wb) {
+bool touches(const step_function& feel, const pose& T_wa, std::span<const pose> T_wb) {
   tick found;
-  const status s = feel.step({T_wa, T_wb}, found);
+  const status s = feel({T_wa, T_wb}, found);
   if (s != status::ok && s != status::capacity_reached) return false;
   return std::any_of(found.depths.begin(), found.depths.end(), [](const penetration& p) { return p.depth_m > 0.0; });
 }
 
 }  // namespace
 
-result<pose> find_touch(renderer& feel, const quat& orientation, std::span<const pose> T_wb) {
-  const scene& bodies = feel.scene();
+result<pose> find_touch(const scene& bodies, const step_function& feel, const quat& orientation,
+                        std::span<const pose> T_wb) {
   const bounds probe = box_in_world(*bodies.probe, {orientation, vec3(0.0)});
   const bounds body = box_in_world(*bodies.fixed.front(), T_wb.front());
   double top = body.high.z;

@@ -95,21 +95,24 @@ result<scene> bench_scene(const bench_command& options, progress_line& progress)
 struct measured {
   std::vector<double> query_s;
   std::vector<double> soft_contact_s, central_contact_s;
-  std::vector<double> soft_tick_s, central_tick_s;
+  std::vector<double> shared_tick_s, soft_tick_s, central_tick_s;
   std::vector<double> contacts;
 };
 
 result<measured> measure(const scene& bodies, const bench_command& options, progress_line& progress) {
-  renderer_settings soft_settings, central_settings;
+  paper_settings soft_settings, central_settings;
   soft_settings.depth.gradient = gradient_scheme::soft_max;
   central_settings.depth.gradient = gradient_scheme::central_difference;
-  result<renderer> soft = make_renderer(bodies, soft_settings);
+  result<renderer> shared = make_renderer(bodies);
+  if (!shared) return shared.error();
+  result<paper_renderer> soft = make_paper_renderer(bodies, soft_settings);
   if (!soft) return soft.error();
-  result<renderer> central = make_renderer(bodies, central_settings);
+  result<paper_renderer> central = make_paper_renderer(bodies, central_settings);
   if (!central) return central.error();
 
   const std::vector<pose> T_wb(bodies.fixed.size());
-  const result<pose> touch = find_touch(*soft, quat(1.0, 0.0, 0.0, 0.0), T_wb);
+  const step_function step = [&](const scene_pose& at, tick& found) { return soft->step(at, found); };
+  const result<pose> touch = find_touch(bodies, step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
   if (!touch) return touch.error();
   const double size_m = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
 
@@ -136,6 +139,7 @@ result<measured> measure(const scene& bodies, const bench_command& options, prog
       time(out.central_contact_s, share, [&] { return central->depth().measure(at, contacts, found); });
     }
     tick found;
+    time(out.shared_tick_s, 1.0, [&] { return shared->step(at, found); });
     time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
     time(out.central_tick_s, 1.0, [&] { return central->step(at, found); });
   }
@@ -151,6 +155,7 @@ answer report(const scene& bodies, const bench_command& options, const measured&
   const time_summary query = summarise(m.query_s);
   const time_summary soft = summarise(m.soft_contact_s);
   const time_summary central = summarise(m.central_contact_s);
+  const time_summary shared_tick = summarise(m.shared_tick_s);
   const time_summary soft_tick = summarise(m.soft_tick_s);
   const time_summary central_tick = summarise(m.central_tick_s);
   double contacts = 0.0;
@@ -171,16 +176,22 @@ answer report(const scene& bodies, const bench_command& options, const measured&
                    {{"collision_query", to_json(query)},
                     {"contact_soft", to_json(soft)},
                     {"contact_central", to_json(central)},
+                    {"tick_shared", to_json(shared_tick)},
                     {"tick_soft", to_json(soft_tick)},
                     {"tick_central", to_json(central_tick)}}},
                   {"ratios",
                    {{"contact_central_to_soft", central.p50_s / soft.p50_s},
+                    {"tick_shared_to_soft", shared_tick.p50_s / soft_tick.p50_s},
+                    {"tick_shared_to_soft_p99", shared_tick.p99_s / soft_tick.p99_s},
                     {"tick_central_to_soft", central_tick.p50_s / soft_tick.p50_s},
                     {"collision_share_of_soft_tick", query.p50_s / soft_tick.p50_s},
                     {"collision_share_of_central_tick", query.p50_s / central_tick.p50_s},
                     {"tick_soft_p99_to_p50", soft_tick.p99_s / soft_tick.p50_s},
                     {"tick_central_p99_to_p50", central_tick.p99_s / central_tick.p50_s}}},
-                  {"rates_hz", {{"tick_soft", 1.0 / soft_tick.p50_s}, {"tick_central", 1.0 / central_tick.p50_s}}},
+                  {"rates_hz",
+                   {{"tick_shared", 1.0 / shared_tick.p50_s},
+                    {"tick_soft", 1.0 / soft_tick.p50_s},
+                    {"tick_central", 1.0 / central_tick.p50_s}}},
                   {"units", "SI"}};
   const auto name = [](const textured_model& b) {
     return b.name + " (" + std::to_string(b.pieces.size()) + " pieces)";
@@ -191,6 +202,8 @@ answer report(const scene& bodies, const bench_command& options, const measured&
   out.text += row("contact, soft maximum", to_text(soft));
   out.text +=
       row("contact, central diff.", to_text(central) + "  (" + ratio_text(central.p50_s / soft.p50_s) + " soft)");
+  out.text += row("tick, one potential", to_text(shared_tick) + "  (" + brief(1.0 / shared_tick.p50_s) + " Hz, " +
+                                             ratio_text(shared_tick.p50_s / soft_tick.p50_s) + " soft)");
   out.text += row("tick, soft maximum", to_text(soft_tick) + "  (" + brief(1.0 / soft_tick.p50_s) + " Hz, " +
                                             brief(100.0 * query.p50_s / soft_tick.p50_s) + " % collision)");
   out.text += row("tick, central diff.", to_text(central_tick) + "  (" + brief(1.0 / central_tick.p50_s) + " Hz, " +

@@ -80,7 +80,8 @@ answer report(const query_command& options, const tick& found, status answered) 
                   {"centre_of_mass", command::to_json(found.centre_of_mass_w)},
                   {"stiffness", found.force.stiffness.m},
                   {"backend", options.render.backend},
-                  {"gradient_scheme", options.render.gradient},
+                  {"formulation", options.render.contacts},
+                  {"gradient_scheme", gradient_name(options.render)},
                   {"status", to_string(answered)},
                   {"dropped_contacts", found.dropped_contacts},
                   {"units", "SI"}};
@@ -99,11 +100,10 @@ result<answer> query(const query_command& options) {
   if (!T_wa) return T_wa.error();
   const result<pose> T_wb = read_pose("--fixed-pose", options.fixed_pose);
   if (!T_wb) return T_wb.error();
-  const result<renderer_settings> settings = chosen_settings(options.render);
-  if (!settings) return settings.error();
+  if (const result<void> ok = check(options.render); !ok) return ok.error();
   result<scene> bodies = load_scene(options.probe, {options.fixed}, options.render.allow_scale_mismatch);
   if (!bodies) return bodies.error();
-  result<renderer> made = make_renderer(std::move(bodies).value(), *settings);
+  result<chosen_renderer> made = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!made) return made.error();
 
   tick found;

@@ -71,8 +71,9 @@ result<given_poses> read_poses(const run_command& options) {
 }
 
 // Just above the first touch, or at the touch for a motion that has no approach.
-result<pose> start_above(const run_command& options, renderer& feel, const std::vector<pose>& T_wb) {
-  result<pose> touch = find_touch(feel, quat(1.0, 0.0, 0.0, 0.0), T_wb);
+result<pose> start_above(const run_command& options, chosen_renderer& feel, const std::vector<pose>& T_wb) {
+  const step_function step = [&](const scene_pose& at, tick& out) { return feel.step(at, out); };
+  result<pose> touch = find_touch(feel.scene(), step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
   if (touch && options.motion != "free") touch->position.z += clearance_m;
   return touch;
 }
@@ -115,8 +116,8 @@ std::string plot_title(const run_command& options, const session_summary& summar
 
 std::string plot_caption(const run_command& options) {
   return "Simulated device at 1 kHz, contact loop at " + brief(options.contact_rate_hz) + " Hz, " + options.clock +
-         " clock, " + options.render.gradient + " gradient, seed " + std::to_string(options.seed) +
-         "; world axes, torque about the probe's centre of mass.";
+         " clock, " + (options.render.contacts == "shared" ? "contacts as one potential" : "contacts as in the paper") +
+         ", seed " + std::to_string(options.seed) + "; world axes, torque about the probe's centre of mass.";
 }
 
 /// The files that a session leaves. Both are opened before it begins.
@@ -195,8 +196,9 @@ answer report(const run_command& options, const given_poses& poses, const sessio
                   {"seed", options.seed},
                   {"seconds", ended.ended_at_s},
                   {"backend", options.render.backend},
-                  {"gradient_scheme", options.render.gradient},
-                  {"grid", options.render.grid}};
+                  {"formulation", options.render.contacts},
+                  {"gradient_scheme", gradient_name(options.render)},
+                  {"grid", grid_json(options.render)}};
   out.document.update(summary.to_json());
   out.document["contact_loop"] = loop_json(ended.contact, contact);
   out.document["device_loop"] = loop_json(ended.device, device);
@@ -236,8 +238,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
 }
 
 result<answer> run_session(const run_command& options, const common_options& common) {
-  const result<renderer_settings> settings = chosen_settings(options.render);
-  if (!settings) return settings.error();
+  if (const result<void> ok = check(options.render); !ok) return ok.error();
   result<given_poses> poses = read_poses(options);
   if (!poses) return poses.error();
   result<session_files> files = session_files::open(options);
@@ -248,7 +249,7 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (!bodies) return bodies.error();
   const mass_properties shape = bodies->probe->mass;
   simulated_config device{.seed = options.seed, .motion = motion_of(options, *bodies)};
-  result<renderer> feel = make_renderer(std::move(bodies).value(), *settings);
+  result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!feel) return feel.error();
   if (!poses->T_wa) {
     const result<pose> start = start_above(options, *feel, poses->T_wb);

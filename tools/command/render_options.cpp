@@ -3,30 +3,56 @@
 namespace asperity::command {
 
 void add_render_options(CLI::App& sub, render_options& options) {
+  sub.add_option("--contacts", options.contacts,
+                 "How many contacts become one force: as one potential, or the paper's clusters and sum")
+      ->check(CLI::IsMember({"shared", "paper"}))
+      ->capture_default_str();
   sub.add_option("--backend", options.backend, "Depth backend")
       ->check(CLI::IsMember({"cpu", "cpu-simd", "gl-occlusion", "gl-compute"}))
       ->capture_default_str();
   sub.add_option("--gradient", options.gradient,
-                 "Gradient of the depth: the paper's central differences or a soft maximum")
+                 "Gradient of the depth with --contacts paper: a soft maximum, or the paper's central differences")
       ->check(CLI::IsMember({"central", "soft"}))
-      ->capture_default_str();
-  sub.add_option("--grid", options.grid, "Samples per side of a contact's window")
+      ->default_str("soft");
+  sub.add_option("--grid", options.grid, "Samples per side of a contact's window with --contacts paper")
       ->check(CLI::Range(std::uint32_t{2}, depth_settings::max_grid))
-      ->capture_default_str();
+      ->default_str(std::to_string(depth_settings{}.grid));
   sub.add_flag("--allow-scale-mismatch", options.allow_scale_mismatch,
                "Accept bodies whose sizes differ more than 500 times");
 }
 
-result<renderer_settings> chosen_settings(const render_options& options) {
+std::string gradient_name(const render_options& options) {
+  return options.contacts == "shared" ? "exact" : options.gradient.value_or("soft");
+}
+
+json grid_json(const render_options& options) {
+  return options.contacts == "shared" ? json() : json(options.grid.value_or(depth_settings{}.grid));
+}
+
+result<void> check(const render_options& options) {
   if (options.backend != "cpu") {
     return error{error_code::unsupported,
                  "the depth backend " + options.backend + " is not part of this build: use --backend cpu"};
   }
-  renderer_settings settings;
+  if (options.contacts == "shared" && (options.gradient || options.grid)) {
+    return error{error_code::invalid_argument, std::string(options.gradient ? "--gradient" : "--grid") +
+                                                   " belongs to the paper's contacts: add --contacts paper"};
+  }
+  return {};
+}
+
+result<chosen_renderer> make_chosen_renderer(scene bodies, const render_options& options) {
+  if (const result<void> ok = check(options); !ok) return ok.error();
+  const auto chosen = [](auto made) -> result<chosen_renderer> {
+    if (!made) return made.error();
+    return chosen_renderer(std::move(made).value());
+  };
+  if (options.contacts == "shared") return chosen(make_renderer(std::move(bodies)));
+  paper_settings settings;
   settings.depth.gradient =
-      options.gradient == "central" ? gradient_scheme::central_difference : gradient_scheme::soft_max;
-  settings.depth.grid = options.grid;
-  return settings;
+      options.gradient.value_or("soft") == "central" ? gradient_scheme::central_difference : gradient_scheme::soft_max;
+  if (options.grid) settings.depth.grid = *options.grid;
+  return chosen(make_paper_renderer(std::move(bodies), settings));
 }
 
 }  // namespace asperity::command

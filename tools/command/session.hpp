@@ -7,6 +7,7 @@
 
 #include "asperity/asperity.hpp"
 #include "progress.hpp"
+#include "render_options.hpp"
 
 namespace asperity::command {
 
@@ -16,7 +17,7 @@ enum class session_clock : std::uint8_t {
 };
 
 struct session_setup {
-  renderer feel;
+  chosen_renderer feel;
   scene_placement placement{};
   simulated_config device{};
   control_config control{};

@@ -62,6 +62,8 @@ class cell_depth {
 
   [[nodiscard]] const shared_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] const cell_scene& bodies() const noexcept { return *bodies_; }
+  /// The cells of all bodies, which finder and depth backend share, count here.
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return sizeof(cell_scene) + bodies_->heap_bytes(); }
 
  private:
   struct pair {
