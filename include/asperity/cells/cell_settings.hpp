@@ -21,6 +21,7 @@ struct cell_settings {
   double depth_limit_m = 0.0;           ///< deeper samples have faded to nothing
   double taper_m = 0.0;                 ///< over this distance from an edge samples fade in
   double pitch_m = 0.0;                 ///< distance between the nodes of a relief map
+  double sample_pitch_m = 0.0;          ///< distance between samples on a face
   double feature_pitch_m = 0.0;         ///< distance between samples along a sharp edge
   double steepest = 3.0;  ///< slope that the relief of a map is limited to: a surface seen from one direction has
                           ///< walls, and a wall has no gradient
@@ -28,7 +29,8 @@ struct cell_settings {
 
 /// The same with the automatic lengths filled in.
 /// - apron: 1.5 % of the diagonal. - depth limit: 3 %, and never more than half the thickness under a cell.
-/// - taper: 0.5 %, and at least one and a half texels. - pitch: one texel. - feature pitch: 0.3 %.
+/// - taper: 0.5 %, and at least one and a half texels. - pitch: one texel, and at least 0.05 %.
+/// - sample pitch: 0.3 %, and at least one texel. - feature pitch: 0.3 %.
 /// @param texel_m typical distance between texels on the coarse surface
 [[nodiscard]] inline cell_settings resolve(cell_settings s, const textured_model& model, double texel_m) noexcept {
   const double diagonal = model.box.diagonal();
@@ -36,6 +38,7 @@ struct cell_settings {
   if (s.depth_limit_m <= 0.0) s.depth_limit_m = 0.03 * diagonal;
   if (s.pitch_m <= 0.0) s.pitch_m = std::max(texel_m, 5e-4 * diagonal);
   if (s.taper_m <= 0.0) s.taper_m = std::max(0.005 * diagonal, 1.5 * s.pitch_m);
+  if (s.sample_pitch_m <= 0.0) s.sample_pitch_m = std::max(0.003 * diagonal, texel_m);
   if (s.feature_pitch_m <= 0.0) s.feature_pitch_m = 0.003 * diagonal;
   return s;
 }
@@ -52,6 +55,7 @@ struct cell_settings {
   if (!length(s.depth_limit_m)) return bad("depth_limit_m must be a finite length, or 0 for automatic");
   if (!length(s.taper_m)) return bad("taper_m must be a finite length, or 0 for automatic");
   if (!length(s.pitch_m)) return bad("pitch_m must be a finite length, or 0 for automatic");
+  if (!length(s.sample_pitch_m)) return bad("sample_pitch_m must be a finite length, or 0 for automatic");
   if (!length(s.feature_pitch_m)) return bad("feature_pitch_m must be a finite length, or 0 for automatic");
   if (!(s.steepest >= 1.0 && s.steepest <= 10.0)) return bad("steepest must lie between 1 and 10");
   return {};

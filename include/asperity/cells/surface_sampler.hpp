@@ -21,7 +21,7 @@ class surface_sampler {
                   const coarse_regions& regions)
       : out_(out), model_(model), index_(index), regions_(regions) {}
 
-  /// One sample per texel; it stands for the coarse surface that the texel covers.
+  /// Samples on the faces, a pitch apart; each stands for the coarse surface around it.
   void sample_regions() {
     for (std::size_t r = 0; r < regions_.members.size(); ++r) {
       std::vector<surface_sample> found;
@@ -65,6 +65,8 @@ class surface_sampler {
     if (is_finite(p_b)) to.push_back({glm::vec3(p_b), static_cast<float>(area_m2)});
   }
 
+  // One sample per block of texels: the highest, because peaks are what touches; between equals the middle one. Valleys
+  // need no samples of their own: what reaches down into one is a peak of the other body, and its sample meets the map.
   void sample_triangle(std::uint32_t t, std::vector<surface_sample>& to) const {
     const texel_triangle& z = index_.texels[t];
     if (!z.usable) return;
@@ -73,13 +75,36 @@ class surface_sampler {
     const vec3 per_x = z.weight[0].y * c[0] + z.weight[1].y * c[1] + z.weight[2].y * c[2];
     const vec3 per_y = z.weight[0].z * c[0] + z.weight[1].z * c[1] + z.weight[2].z * c[2];
     const double area = glm::length(glm::cross(per_x, per_y));
+    const double pitch = out_.settings.sample_pitch_m;
+    const auto block = static_cast<std::size_t>(std::max(1.0, std::round(pitch / std::sqrt(area))));
+    const double middle = 0.5 * static_cast<double>(block - 1);
     const texel_range columns(z.corner[0].x, z.corner[1].x, z.corner[2].x, 0.0, model_.texture.width);
     const texel_range rows(z.corner[0].y, z.corner[1].y, z.corner[2].y, 0.0, model_.texture.height);
     const std::size_t before = to.size();
-    for (std::size_t j = rows.first; j <= rows.last; ++j) {
-      for (std::size_t i = columns.first; i <= columns.last; ++i) {
-        const vec3 bary = z.barycentric({static_cast<double>(i), static_cast<double>(j)});
-        if (bary.x >= 0.0 && bary.y >= 0.0 && bary.z >= 0.0) add(to, model_.texture.at(i, j), area);
+    for (std::size_t row = rows.first / block; row <= rows.last / block; ++row) {
+      for (std::size_t column = columns.first / block; column <= columns.last / block; ++column) {
+        vec3 best(0.0);
+        double best_score = -1e30;
+        std::size_t texels = 0;
+        for (std::size_t j = row * block; j < std::min<std::size_t>((row + 1) * block, model_.texture.height); ++j) {
+          for (std::size_t i = column * block; i < std::min<std::size_t>((column + 1) * block, model_.texture.width);
+               ++i) {
+            const vec3 bary = z.barycentric({static_cast<double>(i), static_cast<double>(j)});
+            if (!(bary.x >= 0.0 && bary.y >= 0.0 && bary.z >= 0.0)) continue;
+            const vec3 p = model_.texture.at(i, j);
+            if (!is_finite(p)) continue;
+            ++texels;
+            const double x = static_cast<double>(i - column * block) - middle;
+            const double y = static_cast<double>(j - row * block) - middle;
+            const double height = glm::dot(index_.normal[t], p - (bary.x * c[0] + bary.y * c[1] + bary.z * c[2]));
+            const double score = height - 1e-4 * std::sqrt(area) * (x * x + y * y);
+            if (score > best_score) {
+              best_score = score;
+              best = p;
+            }
+          }
+        }
+        if (texels > 0) add(to, best, static_cast<double>(texels) * area);
       }
     }
     // A sliver that holds no texel centre still is a piece of surface.
@@ -126,7 +151,7 @@ class surface_sampler {
 
   // Halves along the longest side until a tile is small enough to be skipped as one.
   void finish(const sample_origin& origin, std::span<surface_sample> samples) {
-    constexpr std::size_t most = 32;
+    constexpr std::size_t most = 16;
     if (samples.empty()) return;
     const auto id = static_cast<std::uint32_t>(out_.origins.size());
     out_.origins.push_back(origin);
