@@ -226,8 +226,8 @@ class cell_depth {
       e_by_face = d * ramp * q / face.factor;
     }
     ++s.samples;
-    if (d > s.deepest) {
-      s.deepest = d;
+    if (e > s.deepest) {
+      s.deepest = e;
       s.witness = x;
     }
     const double weight_by_face = weight / face.factor;

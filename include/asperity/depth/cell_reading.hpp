@@ -27,7 +27,7 @@ struct cell_reading {
   vec6 mass_slope{}, moment_slope{}, overlap_slope{};
   vec6 slope_sum{};       ///< sum of w exp() times the slope of e
   mat6 slope_product{};   ///< the same with the slope's outer product: spread of slopes, for the stiffness
-  double depth_m = 0.0;   ///< largest depth of a sample with weight, before any fade; may be negative
+  double depth_m = 0.0;   ///< largest effective depth; may be negative
   vec3 witness_w{0.0};    ///< that sample, world
   vec3 centre_w{0.0};     ///< mean of the samples, weighted as in mass
   double spread_m = 0.0;  ///< root mean square distance from it

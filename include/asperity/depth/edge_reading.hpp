@@ -101,7 +101,7 @@ namespace asperity::detail {
   }
   out.slope_sum = weight.value * e.slope;
   add_outer(out.slope_product, weight.value, e.slope);
-  out.depth_m = d.value;
+  out.depth_m = e.value;
   out.witness_w = T_wa * a.from_b + at_a.value * e_a;
   out.centre_w = out.witness_w - 0.5 * d.value * m;
   return out;
