@@ -73,12 +73,17 @@ TEST_F(documents, scale_changes_units_and_inspect_warns) {
   EXPECT_NE(seen["warnings"][0].get<std::string>().find("--scale"), std::string::npos);
 }
 
-TEST_F(documents, query_is_the_contract) {
+class query_document : public documents, public testing::WithParamInterface<const char*> {};
+
+TEST_P(query_document, is_the_contract) {
   // Ridges in grooves, and the upper block two tenths of a millimetre too low.
   const json d = expect_document(
-      {"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 0.0198 0 0 0 1"}, "asperity.query/1");
-  expect_keys(d, {"schema", "contacts", "force", "torque", "centre_of_mass", "stiffness", "backend", "gradient_scheme",
-                  "status", "dropped_contacts", "units"});
+      {"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 0.0198 0 0 0 1", "--contacts", GetParam()},
+      "asperity.query/1");
+  expect_keys(d, {"schema", "contacts", "force", "torque", "centre_of_mass", "stiffness", "formulation", "backend",
+                  "gradient_scheme", "status", "dropped_contacts", "units"});
+  EXPECT_EQ(d["formulation"], GetParam());
+  EXPECT_EQ(d["gradient_scheme"], std::string(GetParam()) == "shared" ? "exact" : "soft");
   EXPECT_EQ(d["backend"], "cpu");
   EXPECT_EQ(d["units"], "SI");
   expect_numbers(d["force"], 3);
@@ -93,14 +98,29 @@ TEST_F(documents, query_is_the_contract) {
     expect_numbers(c["gradient"], 6);
     EXPECT_TRUE(c["flags"].is_array());
     EXPECT_TRUE(c["samples"].is_number_unsigned());
-    double along = 0.0;  // the gradient's component along n is 1 exactly
+    double along = 0.0;  // the gradient's component along n is 1 exactly, where nothing fades
     for (std::size_t i = 0; i < 3; ++i) along += c["gradient"][i].get<double>() * c["n_ab"][i].get<double>();
-    EXPECT_NEAR(along, 1.0, 1e-9);
+    EXPECT_NEAR(along, 1.0, std::string(GetParam()) == "shared" ? 0.01 : 1e-9);
   }
   EXPECT_NEAR(d["contacts"][0]["n_ab"][2], -1.0, 1e-6);  // from the probe above to the body below
   EXPECT_GT(d["contacts"][0]["depth"], 2e-4 - 1e-6);
   EXPECT_LT(d["contacts"][0]["depth"], 1e-3);  // the small texture is coarse beside the ridges
   EXPECT_GT(d["force"][2], 0.0);               // and the probe is pushed up
+}
+
+INSTANTIATE_TEST_SUITE_P(both, query_document, testing::Values("shared", "paper"),
+                         [](const auto& formulation) { return std::string(formulation.param); });
+
+TEST_F(documents, what_belongs_to_the_paper_is_refused_without_it) {
+  for (const arguments& option : {arguments{"--gradient", "central"}, arguments{"--grid", "32"}}) {
+    arguments query{"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1"};
+    query.insert(query.end(), option.begin(), option.end());
+    const std::string message = expect_failure(query, 1, "invalid_argument");
+    EXPECT_NE(message.find(option.front()), std::string::npos);
+    EXPECT_NE(message.find("--contacts paper"), std::string::npos);
+    query.insert(query.end(), {"--contacts", "paper"});
+    EXPECT_EQ(expect_document(query, "asperity.query/1")["formulation"], "paper");
+  }
 }
 
 TEST_F(documents, query_far_away_has_no_contact_and_no_force) {
@@ -112,7 +132,9 @@ TEST_F(documents, query_far_away_has_no_contact_and_no_force) {
 }
 
 TEST_F(documents, both_gradient_schemes_agree_on_the_depth) {
-  const arguments query{"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0.001 0.0005 0.0198 0 0 0 1"};
+  const arguments query{
+      "query",      "--probe", block(), "--fixed", block(), "--probe-pose", "0.001 0.0005 0.0198 0 0 0 1",
+      "--contacts", "paper"};
   arguments central = query;
   central.insert(central.end(), {"--gradient", "central"});
   const json soft = expect_document(query, "asperity.query/1");
@@ -136,17 +158,16 @@ TEST_F(documents, backends_that_are_not_built_say_so) {
 }
 
 TEST_F(documents, run) {
-  const json d = expect_document({"run", "--probe", block(), "--fixed", block(), "--seconds", "0.8", "--grid", "24",
-                                  "--record", path("session.csv"), "--plot", path("session.svg")},
+  const json d = expect_document({"run", "--probe", block(), "--fixed", block(), "--seconds", "0.8", "--record",
+                                  path("session.csv"), "--plot", path("session.svg")},
                                  "asperity.run/1");
-  expect_keys(d, {"schema",       "probe",        "fixed",           "start",
-                  "device",       "clock",        "motion",          "seed",
-                  "seconds",      "backend",      "gradient_scheme", "grid",
-                  "contacts",     "max_depth",    "probe_force",     "probe_torque",
-                  "hand_force",   "hand_torque",  "energy",          "contact_loop",
-                  "device_loop",  "tick_time_is", "memory",          "rejected_samples",
-                  "lost_records", "fault",        "interrupted",     "recording",
-                  "plot",         "units"});
+  expect_keys(d, {"schema",       "formulation",     "probe",        "fixed",       "start",
+                  "device",       "clock",           "motion",       "seed",        "seconds",
+                  "backend",      "gradient_scheme", "grid",         "contacts",    "max_depth",
+                  "probe_force",  "probe_torque",    "hand_force",   "hand_torque", "energy",
+                  "contact_loop", "device_loop",     "tick_time_is", "memory",      "rejected_samples",
+                  "lost_records", "fault",           "interrupted",  "recording",   "plot",
+                  "units"});
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
   EXPECT_EQ(d["interrupted"], false);
@@ -168,7 +189,8 @@ TEST_F(documents, devices) {
 TEST_F(documents, bench) {
   const json d =
       expect_document({"bench", "--probe", block(), "--fixed", block(), "--poses", "50"}, "asperity.bench/1");
-  expect_keys(d["seconds"], {"collision_query", "contact_soft", "contact_central", "tick_soft", "tick_central"});
+  expect_keys(d["seconds"],
+              {"collision_query", "contact_soft", "contact_central", "tick_shared", "tick_soft", "tick_central"});
   for (const auto& [what, times] : d["seconds"].items()) {
     EXPECT_GT(times["p50"], 0.0) << what;
     EXPECT_GE(times["p99"], times["p50"]) << what;

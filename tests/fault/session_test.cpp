@@ -11,7 +11,7 @@ class session : public command_test {
  protected:
   [[nodiscard]] arguments session_to(const std::string& recording, const arguments& more = {}) const {
     const std::string block = (small_models() / "block.glb").string();
-    arguments args{"run", "--probe", block, "--fixed", block, "--record", path(recording), "--grid", "24"};
+    arguments args{"run", "--probe", block, "--fixed", block, "--record", path(recording)};
     args.insert(args.end(), more.begin(), more.end());
     return args;
   }
@@ -40,6 +40,12 @@ TEST_F(session, twice_gives_the_same_bytes) {
     EXPECT_GT(read("first.csv").size(), 50000U);
     EXPECT_TRUE(read("first.csv") == read("second.csv")) << motion;
   }
+  const arguments paper{"--seconds", "0.7", "--contacts", "paper", "--grid", "24"};
+  const std::string shared = read("first.csv");
+  ASSERT_EQ(run(session_to("first.csv", paper)).exit_status, 0);
+  ASSERT_EQ(run(session_to("second.csv", paper)).exit_status, 0);
+  EXPECT_TRUE(read("first.csv") == read("second.csv"));
+  EXPECT_FALSE(read("first.csv") == shared);
 }
 
 TEST_F(session, another_seed_is_another_hand) {

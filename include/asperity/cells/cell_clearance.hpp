@@ -28,7 +28,7 @@ class clearance_field {
     label_nodes(own, shown);
     std::vector<char> beyond(grid_.size());
     for (std::size_t i = 0; i < beyond.size(); ++i) beyond[i] = label_[i] == label::apron_end ? 1 : 0;
-    const double cap = 4.0 * settings_.depth_limit_m;
+    const double cap = 2.0 * settings_.depth_limit_m;
     std::vector<float> out = grid_.distance_to(beyond, cap);
     grid_.blur(out, 2);
     for (std::size_t i = 0; i < out.size(); ++i) {

@@ -18,24 +18,25 @@ struct cell_settings {
   double apron_angle_rad =
       45.0 * std::numbers::pi / 180.0;  ///< a cell reaches over its neighbours as far as they turn less than this
   double apron_m = 0.0;                 ///< and as far as this from its own triangles
-  double depth_limit_m = 0.0;           ///< deeper samples have faded to nothing
-  double taper_m = 0.0;                 ///< over this distance from an edge samples fade in
-  double pitch_m = 0.0;                 ///< distance between the nodes of a relief map
-  double sample_pitch_m = 0.0;          ///< distance between samples on a face
-  double feature_pitch_m = 0.0;         ///< distance between samples along a sharp edge
+  double depth_limit_m =
+      0.0;               ///< deeper samples have faded to nothing; the fade begins halfway; the fade begins halfway
+  double taper_m = 0.0;  ///< over this distance from an edge samples fade in
+  double pitch_m = 0.0;  ///< distance between the nodes of a relief map
+  double sample_pitch_m = 0.0;   ///< distance between samples on a face
+  double feature_pitch_m = 0.0;  ///< distance between samples along a sharp edge
   double steepest = 3.0;  ///< slope that the relief of a map is limited to: a surface seen from one direction has
                           ///< walls, and a wall has no gradient
 };
 
 /// The same with the automatic lengths filled in.
-/// - apron: 1.5 % of the diagonal. - depth limit: 3 %, and never more than half the thickness under a cell.
+/// - apron: 1.5 % of the diagonal. - depth limit: 10 %, and never more than the thickness under a cell.
 /// - taper: 0.5 %, and at least one and a half texels. - pitch: one texel, and at least 0.05 %.
 /// - sample pitch: 0.3 %, and at least one texel. - feature pitch: 0.3 %.
 /// @param texel_m typical distance between texels on the coarse surface
 [[nodiscard]] inline cell_settings resolve(cell_settings s, const textured_model& model, double texel_m) noexcept {
   const double diagonal = model.box.diagonal();
   if (s.apron_m <= 0.0) s.apron_m = 0.015 * diagonal;
-  if (s.depth_limit_m <= 0.0) s.depth_limit_m = 0.03 * diagonal;
+  if (s.depth_limit_m <= 0.0) s.depth_limit_m = 0.1 * diagonal;
   if (s.pitch_m <= 0.0) s.pitch_m = std::max(texel_m, 5e-4 * diagonal);
   if (s.taper_m <= 0.0) s.taper_m = std::max(0.005 * diagonal, 1.5 * s.pitch_m);
   if (s.sample_pitch_m <= 0.0) s.sample_pitch_m = std::max(0.003 * diagonal, texel_m);

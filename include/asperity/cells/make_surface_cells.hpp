@@ -18,16 +18,14 @@ namespace asperity {
 
 namespace detail {
 
-/// Half the thickness of the body under a region, m, or `most` where it is thicker: inward rays from the middles of its
-/// triangles. Beyond it the way out on the other side is shorter.
-[[nodiscard]] inline double half_thickness(const coarse_mesh& mesh, const surface_index& index,
-                                           const aabb_tree& triangles, const std::vector<std::uint32_t>& region,
-                                           const vec3& n_b, double most) {
-  double half = most;
-  for (const std::uint32_t t : region) {
-    const auto c = corners(mesh, t);
-    const vec3 from = (c[0] + c[1] + c[2]) / 3.0;
-    const vec3 to = from - 2.0 * half * n_b;
+/// Thickness of the body under a region, m, or `most` where it is thicker: inward rays from points spread over its
+/// triangles. What lies deeper is not in this body, or not behind this surface.
+[[nodiscard]] inline double thickness_under(const coarse_mesh& mesh, const surface_index& index,
+                                            const aabb_tree& triangles, const std::vector<std::uint32_t>& region,
+                                            const vec3& n_b, double most, double spacing_m) {
+  double thickness = most;
+  const auto shoot = [&](const vec3& from) {
+    const vec3 to = from - thickness * n_b;
     triangles.query({glm::min(from, to), glm::max(from, to)}, [&](std::uint32_t g) noexcept {
       if (glm::dot(index.normal[g], n_b) > -0.2) return;  // a wall beside the ray is no other side
       const auto o = corners(mesh, g);
@@ -37,10 +35,22 @@ namespace detail {
       const vec3 s = from - o[0], y = glm::cross(s, e1);
       const double u = glm::dot(s, x) / det, v = glm::dot(-n_b, y) / det, away = glm::dot(e2, y) / det;
       const bool hit = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && away > 0.0;
-      if (hit) half = std::min(half, 0.5 * away);
+      if (hit) thickness = std::min(thickness, away);
     });
+  };
+  for (const std::uint32_t t : region) {
+    const auto c = corners(mesh, t);
+    const double size = std::sqrt(0.5 * glm::length(area_normal(c)));
+    // Barycentric points of a triangular lattice about a spacing apart; at least the triangle's middle.
+    const int side = std::clamp(static_cast<int>(2.0 * size / spacing_m), 1, 64);
+    for (int i = 0; i < side; ++i) {
+      for (int j = 0; i + j < side; ++j) {
+        const double u = (i + 1.0 / 3.0) / side, v = (j + 1.0 / 3.0) / side;
+        shoot((1.0 - u - v) * c[0] + u * c[1] + v * c[2]);
+      }
+    }
   }
-  return half;
+  return thickness;
 }
 
 /// Plane, axes and extent of a region's map.
@@ -136,8 +146,8 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
   for (std::uint32_t r = 0; r < regions.members.size(); ++r) {
     surface_cell cell = detail::place_cell(model.mesh, index, regions, r, out.settings);
     detail::draw_map(out, cell, r, model, index, regions);
-    cell.depth_limit_m =
-        detail::half_thickness(model.mesh, index, triangles, regions.members[r], cell.n_b, out.settings.depth_limit_m);
+    cell.depth_limit_m = detail::thickness_under(model.mesh, index, triangles, regions.members[r], cell.n_b,
+                                                 out.settings.depth_limit_m, out.settings.apron_m);
     out.cells.push_back(cell);
   }
   detail::surface_sampler sampler(out, model, index, regions);
