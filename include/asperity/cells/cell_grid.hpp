@@ -18,8 +18,8 @@ struct cell_grid {
 
   [[nodiscard]] std::size_t size() const noexcept { return std::size_t{cell->columns} * cell->rows; }
   [[nodiscard]] vec2 position(std::size_t i) const noexcept {
-    return cell->low +
-           cell->pitch_m * vec2(static_cast<double>(i % cell->columns), static_cast<double>(i / cell->columns));
+    const std::size_t column = i % cell->columns, row = i / cell->columns;
+    return cell->low + cell->pitch_m * vec2(static_cast<double>(column), static_cast<double>(row));
   }
   /// Body point in units of the grid: x and y in nodes, z in metres.
   [[nodiscard]] vec3 to_grid(const vec3& p_b) const noexcept {
@@ -33,14 +33,17 @@ struct cell_grid {
     const double det = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
     if (!(std::fabs(det) > 1e-12)) return;
     constexpr double slack = 1e-9;  // nodes on a shared edge belong to both triangles rather than to none
-    const auto first = [](double x) { return static_cast<std::int64_t>(std::ceil(std::max(x - slack, 0.0))); };
+    // Clamped before the conversion: a texel outside of all charts may lie anywhere.
+    const auto first = [](double x, std::uint32_t n) {
+      return static_cast<std::int64_t>(std::ceil(std::clamp<double>(x - slack, 0.0, n)));
+    };
     const auto last = [](double x, std::uint32_t n) {
-      return static_cast<std::int64_t>(std::floor(std::min(x + slack, n - 1.0)));
+      return static_cast<std::int64_t>(std::floor(std::clamp(x + slack, -1.0, n - 1.0)));
     };
     const std::int64_t i1 = last(std::max({a.x, b.x, c.x}), cell->columns);
     const std::int64_t j1 = last(std::max({a.y, b.y, c.y}), cell->rows);
-    for (std::int64_t j = first(std::min({a.y, b.y, c.y})); j <= j1; ++j) {
-      for (std::int64_t i = first(std::min({a.x, b.x, c.x})); i <= i1; ++i) {
+    for (std::int64_t j = first(std::min({a.y, b.y, c.y}), cell->rows); j <= j1; ++j) {
+      for (std::int64_t i = first(std::min({a.x, b.x, c.x}), cell->columns); i <= i1; ++i) {
         const double x = static_cast<double>(i) - a.x, y = static_cast<double>(j) - a.y;
         const double s = (x * (c.y - a.y) - (c.x - a.x) * y) / det;
         const double t = ((b.x - a.x) * y - x * (b.y - a.y)) / det;
@@ -120,7 +123,7 @@ struct cell_grid {
     for (std::size_t j = 0; j < ny; ++j) pass(j * nx, 1, nx);
     std::vector<float> out(size());
     for (std::size_t i = 0; i < out.size(); ++i) {
-      out[i] = static_cast<float>(std::min(far, cell->pitch_m * std::sqrt(d[i])));
+      out[i] = static_cast<float>(d[i] < infinite ? std::min(far, cell->pitch_m * std::sqrt(d[i])) : far);
     }
     return out;
   }
