@@ -62,11 +62,8 @@ class clearance_field {
   void label_nodes(const std::vector<char>& own, const std::vector<char>& shown) {
     const std::vector<float> to_own = grid_.distance_to(own, 1e9);
     for (std::size_t i = 0; i < label_.size(); ++i) {
-      if (own[i] != 0) {
-        label_[i] = label::inside;
-      } else if (to_own[i] > settings_.apron_m) {
-        label_[i] = label::apron_end;
-      } else if (shown[i] != 0) {
+      if (to_own[i] > settings_.apron_m) continue;
+      if (shown[i] != 0) {
         label_[i] = label::inside;
       } else {
         const nearest d = nearest_rim(grid_.position(i));
