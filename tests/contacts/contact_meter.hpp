@@ -1,0 +1,135 @@
+// What the tests of contacts measure with.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "asperity/render/default_renderer.hpp"
+#include "contact_scenes.hpp"
+
+namespace asperity::contacts_test {
+
+inline constexpr double stiffness_n_per_m = 2000.0;
+inline constexpr double tau_m = 0.02 * mm;
+
+/// The lengths that the acceptance numbers were stated for, in place of those that follow from the models' size.
+[[nodiscard]] inline renderer_settings scene_settings(double tau = tau_m) {
+  renderer_settings s;
+  s.shared.stiffness_n_per_m = stiffness_n_per_m;
+  s.shared.tau_m = tau;
+  s.cells.apron_m = 2.0 * mm;
+  s.cells.depth_limit_m = 4.0 * mm;
+  s.cells.taper_m = 0.6 * mm;
+  s.cells.pitch_m = 0.3 * mm;
+  s.cells.sample_pitch_m = 0.4 * mm;
+  s.cells.feature_pitch_m = 0.4 * mm;
+  return s;
+}
+
+/// The value of a result, or an exception that fails the test.
+template <class T>
+[[nodiscard]] T value_of(result<T> made) {
+  if (!made) throw std::runtime_error(made.error().message);
+  return std::move(made).value();
+}
+
+[[nodiscard]] inline renderer make_scene_renderer(const contact_scene& s, const renderer_settings& settings,
+                                                  const model_plan& plan = {}) {
+  return value_of(make_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}, settings));
+}
+
+/// Wrench on the probe, fixed body at the origin.
+template <class Renderer>
+[[nodiscard]] wrench wrench_at(Renderer& r, const pose& T_wa) {
+  const std::array<pose, 1> fixed{};
+  tick out;
+  if (r.step({T_wa, fixed}, out) != status::ok) throw std::runtime_error("a step of the renderer failed");
+  return out.force.on_probe_w;
+}
+
+/// How far apart two poses are, a radian counting as `lever_m`.
+[[nodiscard]] inline double distance(const pose& a, const pose& b, double lever_m) {
+  return glm::length(b.position - a.position) +
+         lever_m * glm::length(log_rotation(b.rotation * glm::conjugate(a.rotation)));
+}
+
+/// Length of a scene's path, m.
+[[nodiscard]] inline double path_length(const contact_scene& s) {
+  double length = 0.0;
+  for (int i = 0; i < 1000; ++i) length += distance(s.path(i / 1000.0), s.path((i + 1) / 1000.0), s.lever_m);
+  return length;
+}
+
+/// One tick's change of the wrench over what a spring k would change by for the same motion.
+struct tick_change {
+  double at = 0.0;  ///< path parameter at the end of the tick
+  double force = 0.0, torque = 0.0;
+
+  [[nodiscard]] double worse() const { return std::max(force, torque); }
+};
+
+/// Changes between path parameters `from` and `to` in `ticks` equal steps.
+template <class Renderer>
+[[nodiscard]] std::vector<tick_change> walk(Renderer& r, const contact_scene& s, double from, double to,
+                                            std::size_t ticks) {
+  std::vector<tick_change> out;
+  pose last = s.path(from);
+  wrench before = wrench_at(r, last);
+  for (std::size_t i = 1; i <= ticks; ++i) {
+    const double t = from + (to - from) * static_cast<double>(i) / static_cast<double>(ticks);
+    const pose now = s.path(t);
+    const wrench after = wrench_at(r, now);
+    const wrench change = after - before;
+    const double expected = stiffness_n_per_m * distance(last, now, s.lever_m);
+    out.push_back({t, glm::length(change.force) / expected, glm::length(change.torque) / (expected * s.lever_m)});
+    last = now;
+    before = after;
+  }
+  return out;
+}
+
+[[nodiscard]] inline tick_change largest(const std::vector<tick_change>& ticks) {
+  tick_change out;
+  for (const tick_change& t : ticks) {
+    if (t.force > out.force) out.at = t.at;
+    out.force = std::max(out.force, t.force);
+    out.torque = std::max(out.torque, t.torque);
+  }
+  return out;
+}
+
+/// Largest changes at 1 kHz and 10 kHz along the same path at 50 mm/s.
+struct continuity {
+  tick_change slow, fast;
+
+  /// Ten where the wrench jumps, one where it does not. A change that a spring explains is none, at either rate.
+  [[nodiscard]] double force_ratio() const { return std::max(fast.force, 1.0) / std::max(slow.force, 1.0); }
+  [[nodiscard]] double torque_ratio() const { return std::max(fast.torque, 1.0) / std::max(slow.torque, 1.0); }
+};
+
+inline constexpr double slow_step_m = 0.05 * mm;  ///< 50 mm/s for a millisecond
+
+/// Walks the path at 1 kHz, and a part of it at 10 kHz: the worst tenth of the ticks, and every `stride`-th of the
+/// others. A wrench that jumps within a tick has jumped at its end too, so the worst ticks are where the jumps are.
+template <class Renderer>
+[[nodiscard]] continuity measure_continuity(Renderer& r, const contact_scene& s, std::size_t stride) {
+  const auto ticks = static_cast<std::size_t>(path_length(s) / slow_step_m);
+  std::vector<tick_change> slow = walk(r, s, 0.0, 1.0, ticks);
+  std::stable_sort(slow.begin(), slow.end(),
+                   [](const tick_change& a, const tick_change& b) { return a.worse() > b.worse(); });
+  const double length = 1.0 / static_cast<double>(ticks);
+  std::vector<tick_change> fast;
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    if (i <= slow.size() / 10 || i % stride == 0) {
+      fast.push_back(largest(walk(r, s, slow[i].at - length, slow[i].at, 10)));
+    }
+  }
+  return {largest(slow), largest(fast)};
+}
+
+}  // namespace asperity::contacts_test
