@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -47,6 +48,8 @@ struct coarse_regions {
         const std::uint32_t across = index.neighbour[t][k];
         if (across == none) {
           kind[t][k] = edge_kind::convex;
+        } else if (index.normal[t] == vec3(0.0) || index.normal[across] == vec3(0.0)) {
+          kind[t][k] = edge_kind::concave;  // without area there is no angle; the surface goes on, and none can be felt
         } else if (glm::dot(index.normal[t], index.normal[across]) > cos_sharp) {
           kind[t][k] = edge_kind::smooth;
         } else {
@@ -70,7 +73,8 @@ struct coarse_regions {
     std::vector<std::uint32_t> order(mesh.triangles.size());
     for (std::size_t t = 0; t < area.size(); ++t) {
       order[t] = static_cast<std::uint32_t>(t);
-      area[t] = 0.5 * glm::length(area_normal(corners(mesh, t)));
+      const double doubled = glm::length(area_normal(corners(mesh, t)));
+      area[t] = std::isfinite(doubled) ? 0.5 * doubled : 0.0;  // a NaN has no place in an order
     }
     std::sort(order.begin(), order.end(),
               [&](std::uint32_t a, std::uint32_t b) { return area[a] != area[b] ? area[a] > area[b] : a < b; });
