@@ -160,8 +160,9 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
   out.tile_tree = aabb_tree(boxes);
   boxes.clear();
   for (const sharp_edge& e : out.edges) {
-    const vec3 to = e.from_b + e.length_m * e.along_b;
-    boxes.push_back({glm::min(e.from_b, to) - e.extension_m[0], glm::max(e.from_b, to) + e.extension_m[1]});
+    const vec3 from = e.from_b - e.extension_m[0] * e.along_b;
+    const vec3 to = e.from_b + (e.length_m + e.extension_m[1]) * e.along_b;
+    boxes.push_back({glm::min(from, to), glm::max(from, to)});
   }
   out.edge_tree = aabb_tree(boxes);
   return out;
