@@ -29,13 +29,17 @@ struct outline_segment {
     const vec2 d = b - a;
     const double length = glm::length(d);
     if (!(length > 0.0)) return 0.0;
-    const double t0 = glm::dot(a - p, d) / length, t1 = t0 + length;
-    const double l2 = std::max(1e-16, glm::dot(a - p, a - p) - t0 * t0);
-    const auto primitive = [&](double t) {
-      const double r2 = l2 + t * t, r = std::sqrt(r2);
-      return t / (3.0 * l2 * r) * (1.0 / r2 + 2.0 / l2);
-    };
-    return 0.75 * (primitive(t1) - primitive(t0));
+    const vec2 from = a - p;
+    const double t0 = glm::dot(from, d) / length, t1 = t0 + length;
+    const double l = (d.x * from.y - d.y * from.x) / length, l2 = std::max(1e-16, l * l);
+    const double r0 = l2 + t0 * t0, r1 = l2 + t1 * t1, s0 = t0 / std::sqrt(r0), s1 = t1 / std::sqrt(r1);
+    if (t0 < 0.0 && t1 > 0.0) {
+      return 0.25 * (s1 * (1.0 / r1 + 2.0 / l2) - s0 * (1.0 / r0 + 2.0 / l2)) / l2;
+    }
+    // Beyond an end the two terms are nearly the same, on the segment's own line to the last digit. With the difference
+    // worked out, l drops out.
+    const double u0 = 1.0 / r0, u1 = 1.0 / r1;
+    return 0.25 * length * (t0 + t1) / (s0 + s1) * u0 * u1 * (u0 + u1 + (u0 + u1 - l2 * u0 * u1) / (1.0 + s0 * s1));
   }
 };
 
