@@ -23,21 +23,24 @@ struct texel_range {
 
 /// Heights of the textured surface over the nodes of a map.
 ///
-/// Every quad of four texels is drawn into the grid. Where the surface folds over itself the upper sheet counts, but
-/// over its own region a cell knows only its own texels. Nodes that no quad reaches take the mean of their neighbours.
+/// Every quad of four texels is drawn into the grid. Over its own coarse triangle a texel counts before all others:
+/// those of a neighbouring chart reach a little over the common edge, but what they hold there is made up. Where the
+/// surface folds over itself the upper sheet counts. Nodes that no quad reaches take the mean of their neighbours.
 /// Walls are leant on by a slope, outwards, so that nothing is lost that could be touched.
+/// @param under of each node: the place in outline.shown of the triangle over it, or none
 [[nodiscard]] inline std::vector<float> draw_relief(const cell_grid& grid, const cell_outline& outline,
-                                                    const std::vector<char>& own, const textured_model& model,
-                                                    const surface_index& index, double steepest) {
+                                                    const std::vector<std::uint32_t>& under,
+                                                    const textured_model& model, const surface_index& index,
+                                                    double steepest) {
   constexpr float unset = -1e30F;
-  std::vector<float> height(grid.size(), unset);
+  std::vector<float> height(grid.size(), unset), beside(grid.size(), unset);
   const haptic_texture& texture = model.texture;
   for (std::size_t n = 0; n < outline.shown.size(); ++n) {
-    const bool mine = n < outline.own;
     const texel_triangle& z = index.texels[outline.shown[n]];
     if (!z.usable) continue;
     const auto put = [&](std::size_t i, double h) {
-      if (mine || own[i] == 0) height[i] = std::max(height[i], static_cast<float>(h));
+      float& best = under[i] == n ? height[i] : beside[i];
+      best = std::max(best, static_cast<float>(h));
     };
     const texel_range columns(z.corner[0].x, z.corner[1].x, z.corner[2].x, 1.0, texture.width);
     const texel_range rows(z.corner[0].y, z.corner[1].y, z.corner[2].y, 1.0, texture.height);
@@ -54,6 +57,10 @@ struct texel_range {
         grid.fill(ga, gd, grid.to_grid(c), put);
       }
     }
+  }
+
+  for (std::size_t i = 0; i < height.size(); ++i) {
+    if (height[i] == unset) height[i] = beside[i];
   }
 
   // Outwards from what is known, one ring of nodes per round.

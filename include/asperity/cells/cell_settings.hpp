@@ -30,14 +30,15 @@ struct cell_settings {
 
 /// The same with the automatic lengths filled in.
 /// - apron: 1.5 % of the diagonal. - depth limit: 10 %, and never more than the thickness under a cell.
-/// - taper: 0.5 %, and at least one and a half texels. - pitch: one texel, and at least 0.05 %.
+/// - taper: 0.5 %, and at least one and a half texels. - pitch: one texel, but half a coarse one, or the spline
+///   of the map would overshoot; at least 0.05 %.
 /// - sample pitch: 0.3 %, and at least one texel. - feature pitch: 0.3 %.
 /// @param texel_m typical distance between texels on the coarse surface
 [[nodiscard]] inline cell_settings resolve(cell_settings s, const textured_model& model, double texel_m) noexcept {
   const double diagonal = model.box.diagonal();
   if (s.apron_m <= 0.0) s.apron_m = 0.015 * diagonal;
   if (s.depth_limit_m <= 0.0) s.depth_limit_m = 0.1 * diagonal;
-  if (s.pitch_m <= 0.0) s.pitch_m = std::max(texel_m, 5e-4 * diagonal);
+  if (s.pitch_m <= 0.0) s.pitch_m = std::max({0.5 * texel_m, std::min(texel_m, 0.0015 * diagonal), 5e-4 * diagonal});
   if (s.taper_m <= 0.0) s.taper_m = std::max(0.005 * diagonal, 1.5 * s.pitch_m);
   if (s.sample_pitch_m <= 0.0) s.sample_pitch_m = std::max(0.003 * diagonal, texel_m);
   if (s.feature_pitch_m <= 0.0) s.feature_pitch_m = 0.003 * diagonal;

@@ -98,16 +98,19 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
                      const surface_index& index, const coarse_regions& regions) {
   const cell_outline outline = find_outline(cell, region, model.mesh, index, regions, out.settings);
   const cell_grid grid{&cell};
+  constexpr std::uint32_t none = coarse_regions::none;
+  std::vector<std::uint32_t> under(grid.size(), none);  // which of the shown triangles; the region's own come first
   std::vector<char> own(grid.size(), 0), shown(grid.size(), 0);
   for (std::size_t n = 0; n < outline.shown.size(); ++n) {
     const auto c = corners(model.mesh, outline.shown[n]);
     grid.fill(grid.to_grid(c[0]), grid.to_grid(c[1]), grid.to_grid(c[2]), [&](std::size_t i, double) {
+      if (under[i] == none) under[i] = static_cast<std::uint32_t>(n);
       shown[i] = 1;
       if (n < outline.own) own[i] = 1;
     });
   }
   const std::vector<float> clearance = clearance_field(grid, outline, out.settings).make(own, shown);
-  const std::vector<float> height = draw_relief(grid, outline, own, model, index, out.settings.steepest);
+  const std::vector<float> height = draw_relief(grid, outline, under, model, index, out.settings.steepest);
   cell.first = out.nodes.size();
   cell.lowest_m = std::numeric_limits<double>::max();
   cell.highest_m = -std::numeric_limits<double>::max();
