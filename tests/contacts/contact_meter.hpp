@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -130,6 +131,31 @@ template <class Renderer>
     }
   }
   return {largest(slow), largest(fast)};
+}
+
+/// Rotation about the probe's centre of mass and translation of it, world axes.
+[[nodiscard]] inline pose moved(const pose& T_wa, const vec3& centre_b, const vec3& translation, const vec3& rotation) {
+  const quat turned = exp_rotation(rotation) * T_wa.rotation;
+  return {turned, T_wa * centre_b + translation - turned * centre_b};
+}
+
+/// Relief of 0.1 mm from peak to valley, without a direction of its own.
+[[nodiscard]] inline relief waves(double wavelength_m) {
+  return [k = 2.0 * std::numbers::pi / wavelength_m](const vec3& p, const vec3&) {
+    return 0.05 * mm * std::sin(k * (p.x + 0.31 * p.y + 0.2 * p.z)) *
+           std::cos(k * (0.83 * p.y - 0.37 * p.z - 0.11 * p.x) + 0.3);
+  };
+}
+
+/// A renderer of the scene, plain or with waves on both bodies.
+[[nodiscard]] inline renderer make_waved_renderer(const contact_scene& s, bool textured,
+                                                  const renderer_settings& settings) {
+  model_plan probe, fixed;
+  if (textured) {
+    probe.height = waves(3.7 * mm);
+    fixed.height = waves(4.3 * mm);
+  }
+  return value_of(make_renderer({make_model(s.probe, probe), {make_model(s.fixed, fixed)}}, settings));
 }
 
 }  // namespace asperity::contacts_test
