@@ -17,7 +17,7 @@ namespace asperity::detail {
 struct texel_range {
   std::size_t first, last;
   texel_range(double a, double b, double c, double extra, std::uint32_t size) noexcept
-      : first(static_cast<std::size_t>(std::max(0.0, std::floor(std::min({a, b, c}) - extra)))),
+      : first(static_cast<std::size_t>(std::clamp<double>(std::floor(std::min({a, b, c}) - extra), 0.0, size))),
         last(static_cast<std::size_t>(std::clamp(std::ceil(std::max({a, b, c}) + extra), 0.0, size - 1.0))) {}
 };
 

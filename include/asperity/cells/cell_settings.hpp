@@ -18,12 +18,11 @@ struct cell_settings {
   double apron_angle_rad =
       45.0 * std::numbers::pi / 180.0;  ///< a cell reaches over its neighbours as far as they turn less than this
   double apron_m = 0.0;                 ///< and as far as this from its own triangles
-  double depth_limit_m =
-      0.0;               ///< deeper samples have faded to nothing; the fade begins halfway; the fade begins halfway
-  double taper_m = 0.0;  ///< over this distance from an edge samples fade in
-  double pitch_m = 0.0;  ///< distance between the nodes of a relief map
-  double sample_pitch_m = 0.0;   ///< distance between samples on a face
-  double feature_pitch_m = 0.0;  ///< distance between samples along a sharp edge
+  double depth_limit_m = 0.0;           ///< deeper samples have faded to nothing; the fade begins halfway
+  double taper_m = 0.0;                 ///< over this distance from an edge samples fade in
+  double pitch_m = 0.0;                 ///< distance between the nodes of a relief map
+  double sample_pitch_m = 0.0;          ///< distance between samples on a face
+  double feature_pitch_m = 0.0;         ///< distance between samples along a sharp edge
   double steepest = 3.0;  ///< slope that the relief of a map is limited to: a surface seen from one direction has
                           ///< walls, and a wall has no gradient
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "asperity/cells/cell_clearance.hpp"
@@ -42,7 +43,7 @@ namespace detail {
     const auto c = corners(mesh, t);
     const double size = std::sqrt(0.5 * glm::length(area_normal(c)));
     // Barycentric points of a triangular lattice about a spacing apart; at least the triangle's middle.
-    const int side = std::clamp(static_cast<int>(2.0 * size / spacing_m), 1, 64);
+    const int side = static_cast<int>(std::clamp(2.0 * size / spacing_m, 1.0, 64.0));
     for (int i = 0; i < side; ++i) {
       for (int j = 0; i + j < side; ++j) {
         const double u = (i + 1.0 / 3.0) / side, v = (j + 1.0 / 3.0) / side;
@@ -53,7 +54,10 @@ namespace detail {
   return thickness;
 }
 
-/// Plane, axes and extent of a region's map.
+/// Most nodes of one map: half a gigabyte. An automatic pitch needs a tenth of that.
+inline constexpr double max_map_nodes = 1 << 26;
+
+/// Plane, axes and extent of a region's map; no columns and rows where there would be too many of them.
 [[nodiscard]] inline surface_cell place_cell(const coarse_mesh& mesh, const surface_index& index,
                                              const coarse_regions& regions, std::uint32_t region,
                                              const cell_settings& settings) {
@@ -89,8 +93,10 @@ namespace detail {
   const double margin = settings.apron_m + 4.0 * cell.pitch_m;  // so that nothing is left at the border of the map
   cell.low = low - margin;
   const vec2 nodes = glm::ceil((high - low + 2.0 * margin) / cell.pitch_m) + 1.0;
-  cell.columns = static_cast<std::uint32_t>(nodes.x);
-  cell.rows = static_cast<std::uint32_t>(nodes.y);
+  if (nodes.x * nodes.y <= max_map_nodes) {  // false for a NaN
+    cell.columns = static_cast<std::uint32_t>(nodes.x);
+    cell.rows = static_cast<std::uint32_t>(nodes.y);
+  }
   return cell;
 }
 
@@ -125,7 +131,9 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
 }  // namespace detail
 
 /// Cuts a model in cells, draws their relief maps and lays out its samples. Allocates; for seconds, not for a tick.
-/// @return invalid_argument (a setting out of range) | bad_mesh (no triangle with an area) | bad_texture (empty)
+/// @return invalid_argument (a setting out of range, or a pitch too small for the model) | bad_mesh (no triangle with
+/// an
+///         area) | bad_texture (empty)
 [[nodiscard]] inline result<surface_cells> make_surface_cells(const textured_model& model,
                                                               const cell_settings& settings = {}) {
   if (const result<void> ok = check(settings); !ok) return ok.error();
@@ -148,6 +156,11 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
   const aabb_tree triangles(boxes);
   for (std::uint32_t r = 0; r < regions.members.size(); ++r) {
     surface_cell cell = detail::place_cell(model.mesh, index, regions, r, out.settings);
+    if (cell.columns == 0) {
+      return error{error_code::invalid_argument, "cell settings: pitch_m (" + std::to_string(out.settings.pitch_m) +
+                                                     " m) is too small for the size of the model " + model.name +
+                                                     "; raise it, or give the model its box"};
+    }
     detail::draw_map(out, cell, r, model, index, regions);
     cell.depth_limit_m = detail::thickness_under(model.mesh, index, triangles, regions.members[r], cell.n_b,
                                                  out.settings.depth_limit_m, out.settings.apron_m);

@@ -76,7 +76,8 @@ class surface_sampler {
     const vec3 per_y = z.weight[0].z * c[0] + z.weight[1].z * c[1] + z.weight[2].z * c[2];
     const double area = glm::length(glm::cross(per_x, per_y));
     const double pitch = out_.settings.sample_pitch_m;
-    const auto block = static_cast<std::size_t>(std::max(1.0, std::round(pitch / std::sqrt(area))));
+    const double widest = std::max(model_.texture.width, model_.texture.height);
+    const auto block = static_cast<std::size_t>(std::clamp(std::round(pitch / std::sqrt(area)), 1.0, widest));
     const double middle = 0.5 * static_cast<double>(block - 1);
     const texel_range columns(z.corner[0].x, z.corner[1].x, z.corner[2].x, 0.0, model_.texture.width);
     const texel_range rows(z.corner[0].y, z.corner[1].y, z.corner[2].y, 0.0, model_.texture.height);
