@@ -1,6 +1,7 @@
 // What the cells of a body can be told.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

@@ -1,0 +1,125 @@
+// Sharp edges are merged where they are straight and reach on where they turn a little.
+#include "asperity/cells/sharp_edges.hpp"
+
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "asperity/cells/make_surface_cells.hpp"
+#include "meshes.hpp"
+
+namespace asperity {
+namespace {
+
+using detail::find_sharp_edges;
+using test_support::corner_block;
+using test_support::cut_model;
+
+constexpr double reach = 1e-3;
+
+std::vector<sharp_edge> edges_of(const cut_model& cut) {
+  return find_sharp_edges(cut.model.mesh, cut.index, cut.regions, reach);
+}
+
+TEST(SharpEdges, CollinearPiecesAreOne) {
+  for (const std::uint32_t cells : {1U, 2U, 5U}) {
+    const cut_model box(test::box_mesh({0.01, 0.01, 0.01}, cells));
+    const std::vector<sharp_edge> edges = edges_of(box);
+    ASSERT_EQ(edges.size(), 12U);
+    for (const sharp_edge& e : edges) {
+      EXPECT_NEAR(e.length_m, 0.02, 1e-15);
+      EXPECT_EQ(e.extension_m[0], 0.0);
+      EXPECT_EQ(e.extension_m[1], 0.0);
+      // From a corner of the box to a corner of the box.
+      for (const vec3& p : {e.from_b, e.from_b + e.length_m * e.along_b}) {
+        EXPECT_LT(glm::length(glm::abs(p) - 0.01), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(SharpEdges, FaceDirectionsLeadAwayFromTheEdgeAlongTheSurface) {
+  const cut_model block(corner_block(0.01, 0.005));
+  const std::vector<sharp_edge> edges = edges_of(block);
+  ASSERT_EQ(edges.size(), 17U);
+  for (const sharp_edge& e : edges) {
+    const vec3 middle = e.from_b + 0.5 * e.length_m * e.along_b;
+    for (const vec3& f : e.face_b) {
+      EXPECT_NEAR(glm::length(f), 1.0, 1e-12);
+      EXPECT_NEAR(glm::dot(f, e.along_b), 0.0, 1e-12);
+      // A little way along it lies on a face: in the block just below the surface, not above it.
+      const vec3 p = middle + 1e-4 * f;
+      const vec3 q = glm::abs(p);
+      const bool in_box = q.x <= 0.01 + 1e-9 && q.y <= 0.01 + 1e-9 && q.z <= 0.005 + 1e-9;
+      EXPECT_TRUE(in_box && !(p.x > 1e-9 && p.y > 1e-9));
+    }
+    EXPECT_NEAR(glm::dot(e.face_b[0], e.face_b[1]), 0.0, 1e-12);
+  }
+}
+
+TEST(SharpEdges, ReachOnWhereTheChainTurnsALittle) {
+  const cut_model drum(test::prism_mesh(test::regular_polygon(12, 0.01), 0.01));
+  int rim = 0, upright = 0;
+  for (const sharp_edge& e : edges_of(drum)) {
+    const bool is_upright = std::fabs(e.along_b.z) > 0.5;
+    ++(is_upright ? upright : rim);
+    const double expected = is_upright ? 0.0 : reach;  // the rim turns 30 degrees at a time, uprights end at a corner
+    EXPECT_EQ(e.extension_m[0], expected);
+    EXPECT_EQ(e.extension_m[1], expected);
+  }
+  EXPECT_EQ(rim, 24);
+  EXPECT_EQ(upright, 12);
+}
+
+TEST(SharpEdges, EndWhereTheChainTurnsSharply) {
+  for (const sharp_edge& e : edges_of(cut_model(test::prism_mesh(test::regular_polygon(6, 0.01), 0.01)))) {
+    EXPECT_EQ(e.extension_m[0], 0.0);
+    EXPECT_EQ(e.extension_m[1], 0.0);
+  }
+}
+
+TEST(SharpEdges, AChainThatTurnsVeryLittleIsStraight) {
+  // A square whose lower side sags by half a degree in its middle.
+  const double sag = 0.01 * std::tan(0.25 * std::numbers::pi / 180.0);
+  const cut_model bar(
+      test::prism_mesh({{0.01, 0.01}, {-0.01, 0.01}, {-0.01, -0.01}, {0.0, -0.01 - sag}, {0.01, -0.01}}, 0.01));
+  const std::vector<sharp_edge> edges = edges_of(bar);
+  EXPECT_EQ(edges.size(), 12U);
+  for (const sharp_edge& e : edges) {
+    EXPECT_NEAR(e.length_m, 0.02, 1e-6);
+    EXPECT_NEAR(glm::length(e.along_b), 1.0, 1e-12);
+  }
+}
+
+TEST(SharpEdges, AnOpenBorderIsNone) {
+  EXPECT_TRUE(edges_of(cut_model(test::triangle_mesh_of({vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)}))).empty());
+}
+
+// The tree that the finder asks must hold an edge with both its extensions, whichever way it runs.
+TEST(SharpEdges, TheTreeFindsAnEdgeByAnyPointOfIt) {
+  std::vector<vec2> outline;  // turns by 20 to 90 degrees: an edge may go on at one of its ends alone
+  for (const double degrees : {0.0, 20.0, 40.0, 130.0, 220.0, 310.0}) {
+    const double a = degrees * std::numbers::pi / 180.0;
+    outline.push_back(0.01 * vec2(std::cos(a), std::sin(a)));
+  }
+  const textured_model drum = test_support::bare_model(test::prism_mesh(outline, 0.01));
+  cell_settings coarse;
+  coarse.pitch_m = 5e-4;
+  const auto made = make_surface_cells(drum, coarse);
+  ASSERT_TRUE(made);
+  const surface_cells& body = made.value();
+  int one_sided = 0;
+  for (std::uint32_t i = 0; i < body.edges.size(); ++i) {
+    const sharp_edge& e = body.edges[i];
+    one_sided += (e.extension_m[0] > 0.0) != (e.extension_m[1] > 0.0) ? 1 : 0;
+    for (const double s : {-e.extension_m[0], 0.3 * e.length_m, e.length_m + e.extension_m[1]}) {
+      const vec3 p = e.from_b + s * e.along_b;
+      int found = 0;
+      body.edge_tree.query({p - 1e-12, p + 1e-12}, [&](std::uint32_t n) noexcept { found += n == i ? 1 : 0; });
+      EXPECT_EQ(found, 1) << "edge " << i << " at " << s;
+    }
+  }
+  EXPECT_GT(one_sided, 0);
+}
+
+}  // namespace
+}  // namespace asperity
