@@ -1,10 +1,12 @@
 // The collision finder of the shared formulation: lists near cells and nothing else.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "asperity/cells/cell_scene.hpp"
 #include "asperity/collision/concept.hpp"
@@ -23,9 +25,10 @@ class cell_finder {
   using policy_tag = collision_tag;
   using found_type = near_cells;
 
-  /// @param reach_m samples farther outside than this are left out
-  cell_finder(std::shared_ptr<const cell_scene> bodies, double reach_m) noexcept
-      : bodies_(std::move(bodies)), reach_m_(reach_m) {}
+  /// @param reach_m      samples farther outside than this are left out
+  /// @param facing_none  and faces that meet a cell at a smaller cosine: the depth backend's setting of that name
+  cell_finder(std::shared_ptr<const cell_scene> bodies, double reach_m, double facing_none) noexcept
+      : bodies_(std::move(bodies)), reach_m_(reach_m), facing_none_(facing_none) {}
 
   /// @return ok | capacity_reached
   [[nodiscard]] status find(const scene_pose& at, near_cells& out) const noexcept {
@@ -73,7 +76,7 @@ class cell_finder {
         }
         // A face that does not look at the cell has no weight there either.
         const vec3& n = X.origins[tile.origin].normal_b;
-        if (glm::dot(n, axes[2]) > -facing_cosine && glm::dot(n, n) > 0.0) return;
+        if (glm::dot(n, axes[2]) > -facing_none_ && glm::dot(n, n) > 0.0) return;
         if (!open) {
           open = out.add_cell(body, on_probe, c);
           full = !open;
@@ -87,22 +90,35 @@ class cell_finder {
 
   void list_edges(std::uint32_t body, const surface_cells& A, const surface_cells& B, const pose& T_ba,
                   near_cells& out) const noexcept {
-    const double reach = reach_m_ + std::max(A.settings.depth_limit_m, B.settings.depth_limit_m);
+    const double reach = std::max(reach_m_, std::min(A.settings.depth_limit_m, B.settings.depth_limit_m));
     for (std::uint32_t a = 0; a < A.edges.size(); ++a) {
       const sharp_edge& e = A.edges[a];
-      const vec3 along = T_ba.rotation * e.along_b;
-      const vec3 from = T_ba * e.from_b - e.extension_m[0] * along;
-      const vec3 to = from + (e.extension_m[0] + e.length_m + e.extension_m[1]) * along;
+      const vec3 along = T_ba.rotation * e.along_b, start = T_ba * e.from_b;
+      const vec3 from = start - e.extension_m[0] * along, to = start + (e.length_m + e.extension_m[1]) * along;
       B.edge_tree.query({glm::min(from, to) - reach, glm::max(from, to) + reach}, [&](std::uint32_t b) noexcept {
-        out.add_edges({body, a, b});
+        if (cross(e, along, start, B.edges[b], reach)) out.add_edges({body, a, b});
       });
     }
   }
 
-  static constexpr double facing_cosine = 0.75;  ///< below it the depth backend gives a sample no weight
+  // Whether two edges pass each other within their lengths and within reach: no other pair has weight, and boxes alone
+  // bring a thousand of them where two bodies of many short edges meet.
+  [[nodiscard]] static bool cross(const sharp_edge& a, const vec3& along, const vec3& start, const sharp_edge& b,
+                                  double reach) noexcept {
+    const vec3 normal = glm::cross(along, b.along_b), offset = start - b.from_b;
+    const double squared = glm::dot(normal, normal);
+    if (!(squared > 1e-9)) return false;
+    const double distance = glm::dot(normal, offset);
+    if (distance * distance > reach * reach * squared) return false;
+    const double cosine = glm::dot(along, b.along_b), on_a = glm::dot(offset, along),
+                 on_b = glm::dot(offset, b.along_b);
+    const double at_a = (cosine * on_b - on_a) / squared, at_b = (on_b - cosine * on_a) / squared;
+    return at_a >= -a.extension_m[0] && at_a <= a.length_m + a.extension_m[1] && at_b >= -b.extension_m[0] &&
+           at_b <= b.length_m + b.extension_m[1];
+  }
 
   std::shared_ptr<const cell_scene> bodies_;
-  double reach_m_;
+  double reach_m_, facing_none_;
 };
 
 static_assert(collision_finder<cell_finder>);
