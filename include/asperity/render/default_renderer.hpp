@@ -69,8 +69,8 @@ namespace detail {
   shared_settings shared = settings.shared;
   shared.tau_m = detail::shared_tau_m(shared, bodies);
   cell_depth depth(cells, bodies, shared);
-  return renderer(std::move(bodies), cell_finder(cells, cell_depth::reach_m(shared)), std::move(depth),
-                  shared_potential(shared, settings.limits.readings()), settings.limits);
+  return renderer(std::move(bodies), cell_finder(cells, cell_depth::reach_m(shared), shared.facing_none),
+                  std::move(depth), shared_potential(shared, settings.limits.readings()), settings.limits);
 }
 
 /// The paper's renderer for a scene; all memory that its ticks need is taken here.
