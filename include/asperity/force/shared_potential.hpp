@@ -47,6 +47,13 @@ class shared_potential {
     detail::reserve_resident(terms_, readings);
   }
 
+  // A copy would have no room for terms, and those of its last call would point to another one's readings.
+  shared_potential(const shared_potential&) = delete;
+  shared_potential& operator=(const shared_potential&) = delete;
+  shared_potential(shared_potential&&) noexcept = default;
+  shared_potential& operator=(shared_potential&&) noexcept = default;
+  ~shared_potential() = default;
+
   /// Adds up the readings of what was found. @pre readings.size() >= found.size()
   /// @return ok | not_ready (too few readings, or more than the constructor was told) | not_finite; the last two leave
   /// zeros
@@ -57,8 +64,15 @@ class shared_potential {
     energy_j_ = 0.0;
     if (readings.size() < found.size() || found.size() > terms_.capacity()) return status::not_ready;
     readings = readings.first(found.size());
+    const auto refuse = [&]() noexcept {
+      terms_.clear();
+      energy_j_ = 0.0;
+      return status::not_finite;
+    };
     for (const cell_reading& r : readings) {
-      if (!std::isfinite(r.mass) || !std::isfinite(r.overlap)) return status::not_finite;
+      const bool finite = std::isfinite(r.mass) && std::isfinite(r.moment) && std::isfinite(r.overlap) &&
+                          std::isfinite(r.reference_m) && is_finite(r.n_ab_w);
+      if (!finite) return refuse();
       if (r.mass > 0.0) terms_.push_back(make_term(r));
     }
     contact_force sum;
@@ -72,7 +86,7 @@ class shared_potential {
       gradient += t.by_overlap * t.reading->overlap_slope;
     }
     sum.on_probe_w = to_wrench(-1.0 * gradient);
-    if (!is_finite(sum.on_probe_w) || !is_finite(sum.stiffness)) return status::not_finite;
+    if (!is_finite(sum.on_probe_w) || !is_finite(sum.stiffness)) return refuse();
     out = sum;
     return status::ok;
   }
@@ -82,7 +96,7 @@ class shared_potential {
 
   /// What a person would call the contacts of the last call: readings of one body and nearly one direction are one.
   /// For reports and plots; the force knows nothing of it. Contacts outside, within reach, are told too, as gaps.
-  /// @rt safe
+  /// @pre the readings of the last call are still there   @rt safe
   void describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
     contacts.clear();
     for (term& t : terms_) t.told = false;
