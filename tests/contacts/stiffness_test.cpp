@@ -122,6 +122,17 @@ void expect_exact_contacts(bool slab_is_probe) {
 TEST(Stiffness, DepthAndDirectionOfASingleContact) { expect_exact_contacts(false); }
 TEST(Stiffness, DepthAndDirectionWithTheRolesExchanged) { expect_exact_contacts(true); }
 
+// No sample of either body lies over a face of the other: only the pair of edges tells of this contact.
+TEST(Stiffness, DepthAndDirectionOfAnEdgeAcrossAnEdge) {
+  const contact_scene s = edge_on_edge();
+  renderer r = make_scene_renderer(s, scene_settings());
+  const vec3 outwards = glm::normalize(vec3(1, 0, 1));
+  for (double t = 0.05; t < 1.0; t += 0.1) {
+    const vec3 expected = stiffness_n_per_m * mm * (0.2 + 0.6 * std::sin(std::numbers::pi * t)) * outwards;
+    EXPECT_LE(glm::length(wrench_at(r, s.path(t)).force - expected), 1e-3 * glm::length(expected)) << "at " << t;
+  }
+}
+
 // J is what the control loop believes between two ticks. Pressing on a face it is exact to what the ends of the face
 // add. Its part for tilting is the spread of the samples' slopes over tau, which never has the wrong sign; the
 // Boltzmann mean itself curves up to twice as much where all samples are equally deep and down to half as much where
