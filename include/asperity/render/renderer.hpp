@@ -61,6 +61,7 @@ class basic_renderer {
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     out = {};
     found_.clear();
+    if constexpr (!finds_contacts) told_.contacts.clear();
     if (at.T_wb.size() != scene_.fixed.size()) return status::not_ready;
     if (!is_valid(at.T_wa)) return status::invalid_pose;
     for (const pose& T : at.T_wb) {
