@@ -116,5 +116,76 @@ TEST_F(RendererMemory, APolicyThatReportsNothingCountsWithItsSize) {
   EXPECT_EQ(silent.memory_bytes() + feel_->finder().heap_bytes(), feel_->memory_bytes());
 }
 
+/// What make_shared asks for beyond the object: the counts. They belong to nobody in particular.
+template <class T>
+std::size_t counts_of_a_shared() {
+  const std::size_t before = bytes_on_loan();
+  const auto one = std::make_shared<const T>();
+  return bytes_on_loan() - before - sizeof(T);
+}
+
+class SharedRendererMemory : public ::testing::Test {
+ protected:
+  SharedRendererMemory() {
+    settings_.cells.pitch_m = 5e-4;
+    const std::size_t before = bytes_on_loan();
+    auto made = make_renderer({model_, {model_, other_, model_, other_}}, settings_);
+    EXPECT_TRUE(made);
+    if (made) feel_.emplace(std::move(made).value());
+    asked_ = bytes_on_loan() - before;
+  }
+
+  [[nodiscard]] const cell_scene& cells() { return feel_->depth().bodies(); }
+
+  renderer_settings settings_;
+  model_ptr model_ = std::make_shared<const textured_model>(make_model());
+  model_ptr other_ = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
+  std::optional<renderer> feel_;
+  std::size_t asked_ = 0;
+};
+
+TEST_F(SharedRendererMemory, IsWhatItHasAskedFor) {
+  const std::size_t counts = counts_of_a_shared<cell_scene>() + 2 * counts_of_a_shared<surface_cells>();
+  EXPECT_EQ(feel_->memory_bytes() + counts, sizeof(renderer) + asked_);
+  EXPECT_GT(asked_, std::size_t{1} << 20);
+}
+
+TEST_F(SharedRendererMemory, CountsSharedCellsOnce) {
+  // Five bodies, two models: the probe's is also a fixed body, and either appears twice.
+  EXPECT_EQ(cells().fixed[0], cells().probe);
+  EXPECT_EQ(cells().fixed[2], cells().probe);
+  EXPECT_EQ(cells().fixed[1], cells().fixed[3]);
+  EXPECT_EQ(cells().heap_bytes(), heap_bytes(cells().fixed) + 2 * sizeof(surface_cells) + cells().probe->heap_bytes() +
+                                      cells().fixed[1]->heap_bytes());
+  // Finder and depth backend share them: a finder alone reports none.
+  auto one = make_renderer({model_, {other_}}, settings_);
+  ASSERT_TRUE(one);
+  const std::size_t more_bodies = heap_bytes(feel_->scene().fixed) - heap_bytes(one.value().scene().fixed) +
+                                  heap_bytes(cells().fixed) - heap_bytes(one.value().depth().bodies().fixed);
+  EXPECT_EQ(feel_->memory_bytes() - one.value().memory_bytes(), more_bodies);
+}
+
+TEST_F(SharedRendererMemory, StaysTheSameInTicks) {
+  const std::size_t before = feel_->memory_bytes();
+  const std::vector<pose> T_wb{
+      {}, {}, {{1.0, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{1.0, 0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}};
+  tick out;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(feel_->step({{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0305 - 1e-4 * i}}, T_wb}, out), status::ok);
+  }
+  EXPECT_GT(glm::length(out.force.on_probe_w.force), 0.1);
+  EXPECT_EQ(feel_->memory_bytes(), before);
+}
+
+// A report that forgets the smallest of the parts is found out: the comparison is to the byte.
+TEST_F(SharedRendererMemory, AForgottenPartWouldShow) {
+  const surface_cells& c = *cells().probe;
+  for (const std::size_t part :
+       {heap_bytes(c.cells), heap_bytes(c.origins), heap_bytes(c.outgoing), heap_bytes(c.edges), heap_bytes(c.tiles),
+        c.edge_tree.heap_bytes(), feel_->force().heap_bytes(), feel_->contacts().heap_bytes()}) {
+    EXPECT_GT(part, counts_of_a_shared<cell_scene>() + 2 * counts_of_a_shared<surface_cells>());
+  }
+}
+
 }  // namespace
 }  // namespace asperity

@@ -1,9 +1,14 @@
 // The renderer alone, with policies that answer what the test tells them to.
 #include "asperity/render/renderer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
 #include <limits>
+#include <vector>
+
+#include "asperity/collision/near_cells.hpp"
+#include "asperity/depth/cell_reading.hpp"
 
 namespace {
 
@@ -43,6 +48,59 @@ struct scripted_force {
     ++s->sums;
     out.on_probe_w.force = s->force;
     return s->summed;
+  }
+};
+
+/// Policies of the other kind: near cells, their readings, and contacts that the force model tells.
+struct scripted_cells {
+  using policy_tag = collision_tag;
+  using found_type = near_cells;
+  script* s;
+  status find(const scene_pose&, near_cells& out) noexcept {
+    ++s->finds;
+    out.clear();
+    for (std::uint32_t i = 0; i < s->contacts; ++i) {
+      if (!out.add_cell(0, false, i)) continue;
+      out.add_tile(0);
+    }
+    out.add_edges({});
+    return s->found;
+  }
+};
+struct scripted_readings {
+  using policy_tag = depth_tag;
+  using found_type = near_cells;
+  using reading_type = cell_reading;
+  script* s;
+  status measure(const scene_pose&, const near_cells& found, std::span<cell_reading> out) noexcept {
+    ++s->measures;
+    EXPECT_EQ(found.size(), out.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].depth_m = 1e-3 * static_cast<double>(i + 1);
+    return s->measured;
+  }
+};
+struct telling_force {
+  using policy_tag = force_tag;
+  using found_type = near_cells;
+  using reading_type = cell_reading;
+  script* s;
+  std::size_t tells = 2;
+  mutable std::vector<double> read{};
+  status accumulate(const near_cells&, std::span<const cell_reading> readings, contact_force& out) const noexcept {
+    ++s->sums;
+    read.clear();
+    for (const cell_reading& r : readings) read.push_back(r.depth_m);
+    out.on_probe_w.force = s->force;
+    return s->summed;
+  }
+  void describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
+    contacts.clear();
+    for (std::size_t i = 0; i < std::min(tells, depths.size()); ++i) {
+      contact c;
+      c.id = static_cast<std::uint32_t>(i);
+      depths[i].depth_m = 0.5 * static_cast<double>(i);
+      if (!contacts.add(c, {}, {})) return;
+    }
   }
 };
 
@@ -109,6 +167,56 @@ TEST_F(renderer_test, any_failing_stage_leaves_a_zero_wrench) {
   s.force.y = std::numeric_limits<double>::infinity();
   EXPECT_EQ(renderer.step({{}, fixed}, out), status::not_finite);
   EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
+}
+
+struct renderer_of_cells : testing::Test {
+  script s;
+  basic_renderer<scripted_cells, scripted_readings, telling_force> renderer{
+      one_fixed_body(), scripted_cells{&s}, scripted_readings{&s}, telling_force{&s}, near_limits{4, 8, 2}};
+  std::array<pose, 1> fixed{};
+  tick out;
+};
+
+TEST_F(renderer_of_cells, reads_every_cell_and_pair_of_edges_and_hands_out_the_contacts_that_are_told) {
+  s.contacts = 3;
+  ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
+  EXPECT_EQ(renderer.force().read, (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3}));  // three cells, one pair of edges
+  ASSERT_EQ(out.contacts.size(), 2U);
+  ASSERT_EQ(out.depths.size(), 2U);
+  EXPECT_EQ(out.contacts[1].id, 1U);
+  EXPECT_EQ(out.depths[1].depth_m, 0.5);
+  EXPECT_EQ(renderer.contacts().size(), 2U);
+  EXPECT_EQ(out.force.on_probe_w.force.z, 1.0);
+  EXPECT_EQ(out.dropped_contacts, 0U);
+}
+
+TEST_F(renderer_of_cells, tells_no_more_contacts_than_it_has_room_for) {
+  renderer.force().tells = 1000;
+  ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
+  EXPECT_EQ(out.contacts.size(), 64U);
+  EXPECT_EQ(out.depths.size(), 64U);
+}
+
+TEST_F(renderer_of_cells, cells_that_do_not_fit_are_counted_and_the_rest_is_used) {
+  s.contacts = 6;
+  s.found = status::capacity_reached;
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::capacity_reached);
+  EXPECT_EQ(out.dropped_contacts, 2U);
+  EXPECT_EQ(renderer.force().read.size(), 5U);
+  EXPECT_EQ(out.force.on_probe_w.force.z, 1.0);
+}
+
+TEST_F(renderer_of_cells, a_failing_stage_leaves_a_zero_wrench_and_no_contacts) {
+  ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
+  s.summed = status::not_finite;
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::not_finite);
+  EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
+  EXPECT_TRUE(out.contacts.empty());
+  EXPECT_EQ(renderer.contacts().size(), 0U);  // nor those of the tick before
+  s.measured = status::backend_failed;
+  EXPECT_EQ(renderer.step({{}, fixed}, out), status::backend_failed);
+  EXPECT_TRUE(out.contacts.empty());
+  EXPECT_TRUE(out.depths.empty());
 }
 
 }  // namespace
