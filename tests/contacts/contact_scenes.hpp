@@ -64,6 +64,15 @@ struct contact_scene {
           }};
 }
 
+/// Tipped about a bottom edge, 0.4 mm deep, from where the bottom face nearly lies on the slab to where it no longer
+/// faces it.
+[[nodiscard]] inline contact_scene tipping() {
+  return {"tipping", block_mm(10, 10, 5), slab(), [](double t) {
+            const double a = 0.3 + 0.6 * t;
+            return pose_mm({1.3, 0.7, 5 * std::cos(a) + 10 * std::sin(a) - 0.4}, {0, a, 0.1 * t});
+          }};
+}
+
 /// Pressed on floor and two walls one after the other.
 [[nodiscard]] inline contact_scene concave_corner() {
   return {"concave corner", block_mm(8, 8, 5), hollow_corner(20 * mm, 5 * mm), [](double t) {
@@ -137,8 +146,8 @@ struct contact_scene {
 }
 
 [[nodiscard]] inline std::vector<contact_scene> all_scenes() {
-  return {slide(),       slide_off(), rocking(),      concave_corner(), v_groove(),
-          peg_in_hole(), graze(),     edge_on_edge(), stepped_block()};
+  return {slide(),    slide_off(),   rocking(), tipping(),      concave_corner(),
+          v_groove(), peg_in_hole(), graze(),   edge_on_edge(), stepped_block()};
 }
 
 }  // namespace asperity::contacts_test
