@@ -170,6 +170,7 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
   sampler.sample_regions();
   sampler.sample_edges();
   out.edges = detail::find_sharp_edges(model.mesh, index, regions, 0.5 * out.settings.taper_m);
+  detail::lay_edge_relief(out, model, index, regions);
 
   boxes.clear();
   for (const sample_tile& t : out.tiles) boxes.push_back({t.centre_b - t.radius_m, t.centre_b + t.radius_m});

@@ -5,12 +5,27 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <vector>
 
 #include "asperity/cells/coarse_regions.hpp"
+#include "asperity/cells/relief_tap.hpp"
 #include "asperity/cells/surface_cells.hpp"
 
 namespace asperity::detail {
+
+/// Fine surface at a fraction f of edge k of triangle t, from its first corner on. Both charts have a say.
+[[nodiscard]] inline vec3 fine_edge_point(const textured_model& model, const surface_index& index, std::uint32_t t,
+                                          std::size_t k, double f) noexcept {
+  const coarse_triangle& tri = model.mesh.triangles[t];
+  const vec3 p = model.texture.sample((1.0 - f) * tri.uv[k] + f * tri.uv[(k + 1) % 3]);
+  const std::uint32_t across = index.neighbour[t][k];
+  if (across == coarse_regions::none) return p;
+  const coarse_triangle& other = model.mesh.triangles[across];
+  std::size_t m = 0;  // the neighbour's corner at the far end of this edge
+  while (other.vertex[m] != tri.vertex[(k + 1) % 3]) ++m;
+  return 0.5 * (p + model.texture.sample((1.0 - f) * other.uv[(m + 1) % 3] + f * other.uv[m]));
+}
 
 /// Chains of sharp convex edges, cut wherever they turn.
 ///
@@ -90,6 +105,76 @@ namespace asperity::detail {
     out.push_back(edge);
   }
   return out;
+}
+
+/// Gives every sharp edge its relief: how far the fine surface is from it, a feature pitch apart.
+inline void lay_edge_relief(surface_cells& body, const textured_model& model, const surface_index& index,
+                            const coarse_regions& regions) {
+  struct piece {
+    std::uint32_t triangle;
+    std::uint32_t edge;
+  };
+  std::vector<piece> pieces;
+  std::vector<bounds> boxes;
+  for (std::uint32_t t = 0; t < model.mesh.triangles.size(); ++t) {
+    const auto c = corners(model.mesh, t);
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      if (regions.kind[t][k] != edge_kind::convex) continue;
+      pieces.push_back({t, k});
+      boxes.push_back({glm::min(c[k], c[(k + 1) % 3]), glm::max(c[k], c[(k + 1) % 3])});
+    }
+  }
+  const aabb_tree tree(boxes);
+  for (sharp_edge& e : body.edges) {
+    const auto spans =
+        static_cast<std::uint32_t>(std::clamp(std::ceil(e.length_m / body.settings.feature_pitch_m), 1.0, 4096.0));
+    e.first_relief = static_cast<std::uint32_t>(body.edge_relief.size());
+    e.relief = spans + 1;
+    for (std::uint32_t i = 0; i <= spans; ++i) {
+      const vec3 at = e.from_b + (e.length_m * i / spans) * e.along_b;
+      // A merged edge leaves its pieces by a little where they turn by a little.
+      const double slack = 0.02 * e.length_m;
+      double nearest = 1e30;
+      vec3 relief(0.0);
+      tree.query({at - slack, at + slack}, [&](std::uint32_t n) {
+        const auto c = corners(model.mesh, pieces[n].triangle);
+        const vec3 a = c[pieces[n].edge], d = c[(pieces[n].edge + 1) % 3] - a;
+        const double l2 = glm::dot(d, d);
+        const double f = l2 > 0.0 ? std::clamp(glm::dot(at - a, d) / l2, 0.0, 1.0) : 0.0;
+        const vec3 coarse = a + f * d;
+        const double distance = glm::length(at - coarse);
+        if (distance >= nearest) return;
+        const vec3 fine = fine_edge_point(model, index, pieces[n].triangle, pieces[n].edge, f);
+        if (!is_finite(fine)) return;
+        nearest = distance;
+        relief = fine - coarse;
+      });
+      body.edge_relief.emplace_back(relief);
+      body.largest_edge_relief_m = std::max(body.largest_edge_relief_m, glm::length(relief));
+    }
+  }
+}
+
+/// Relief of a sharp edge at a place along it, and its slope along the edge: a spline that ends level, so that it goes
+/// on evenly where the edge reaches past its end.
+[[nodiscard]] inline vec3 read_edge_relief(const surface_cells& body, const sharp_edge& e, double at_m,
+                                           vec3& slope) noexcept {
+  slope = vec3(0.0);
+  if (e.relief < 2) return vec3(0.0);
+  const double spans = e.relief - 1.0, place = std::clamp(at_m / e.length_m, 0.0, 1.0) * spans;
+  const auto cell = static_cast<std::int64_t>(std::min(place, spans - 1.0));
+  const spline_weights w(place - static_cast<double>(cell));
+  vec3 value(0.0);
+  for (std::int64_t i = -1; i <= 2; ++i) {
+    const auto last = static_cast<std::int64_t>(e.relief) - 1;
+    std::int64_t n = std::abs(cell + i);  // mirrored at both ends
+    if (n > last) n = 2 * last - n;
+    const vec3 node(body.edge_relief[e.first_relief + static_cast<std::size_t>(n)]);
+    value += w.value[i + 1] * node;
+    slope += w.slope[i + 1] * node;
+  }
+  slope *= at_m >= 0.0 && at_m <= e.length_m ? spans / e.length_m : 0.0;
+  return value;
 }
 
 }  // namespace asperity::detail

@@ -71,7 +71,8 @@ struct sample_origin {
 struct sharp_edge {
   vec3 from_b{0.0}, along_b{1.0, 0.0, 0.0};  ///< along: unit
   double length_m = 0.0;
-  vec3 face_b[2]{};         ///< unit, in the two faces, away from the edge
+  vec3 face_b[2]{};                            ///< unit, in the two faces, away from the edge
+  std::uint32_t first_relief = 0, relief = 0;  ///< nodes in surface_cells::edge_relief, evenly from end to end; 0: none
   double extension_m[2]{};  ///< at `from` and at the other end: how far it may reach into the edge that goes on there
 };
 
@@ -85,11 +86,14 @@ struct surface_cells {
   std::vector<sample_origin> origins;
   std::vector<vec3> outgoing;
   std::vector<sharp_edge> edges;
+  std::vector<glm::vec3> edge_relief;  ///< from a point of a sharp edge to the fine surface there, metres
+  double largest_edge_relief_m = 0.0;
   aabb_tree tile_tree;
   aabb_tree edge_tree;
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(cells, nodes, samples, tiles, origins, outgoing, edges, tile_tree, edge_tree);
+    return asperity::heap_bytes(cells, nodes, samples, tiles, origins, outgoing, edges, edge_relief, tile_tree,
+                                edge_tree);
   }
 };
 

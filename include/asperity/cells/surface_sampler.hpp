@@ -10,6 +10,7 @@
 
 #include "asperity/cells/cell_relief.hpp"
 #include "asperity/cells/coarse_regions.hpp"
+#include "asperity/cells/sharp_edges.hpp"
 #include "asperity/cells/surface_cells.hpp"
 
 namespace asperity::detail {
@@ -116,28 +117,19 @@ class surface_sampler {
   }
 
   void sample_edge(std::uint32_t t, std::size_t k) {
-    const coarse_triangle& tri = model_.mesh.triangles[t];
     const auto c = corners(model_.mesh, t);
     const vec3 edge = c[(k + 1) % 3] - c[k];
     const double length = glm::length(edge);
     const vec3 along = edge / length;
     std::vector<vec3> leaving{along, -along, glm::cross(index_.normal[t], along)};
     const std::uint32_t across = index_.neighbour[t][k];
-    std::size_t m = 0;  // the neighbour's corner at the far end of this edge
-    if (across != coarse_regions::none) {
-      leaving.push_back(glm::cross(index_.normal[across], -along));
-      while (model_.mesh.triangles[across].vertex[m] != tri.vertex[(k + 1) % 3]) ++m;
-    }
+    if (across != coarse_regions::none) leaving.push_back(glm::cross(index_.normal[across], -along));
     const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(length / out_.settings.feature_pitch_m)));
     std::vector<surface_sample> found;
     for (std::size_t i = 0; i < count; ++i) {
       const double f = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-      vec3 p = model_.texture.sample((1.0 - f) * tri.uv[k] + f * tri.uv[(k + 1) % 3]);
-      if (across != coarse_regions::none) {  // both charts have a say
-        const coarse_triangle& other = model_.mesh.triangles[across];
-        p = 0.5 * (p + model_.texture.sample((1.0 - f) * other.uv[(m + 1) % 3] + f * other.uv[m]));
-      }
-      add(found, p, length / static_cast<double>(count) * out_.settings.feature_pitch_m);
+      add(found, fine_edge_point(model_, index_, t, k, f),
+          length / static_cast<double>(count) * out_.settings.feature_pitch_m);
     }
     finish(with_outgoing(leaving), found);
   }

@@ -90,7 +90,9 @@ class cell_finder {
 
   void list_edges(std::uint32_t body, const surface_cells& A, const surface_cells& B, const pose& T_ba,
                   near_cells& out) const noexcept {
-    const double reach = std::max(reach_m_, std::min(A.settings.depth_limit_m, B.settings.depth_limit_m));
+    // The fine edges may be nearer than the coarse ones.
+    const double reach = std::max(reach_m_, std::min(A.settings.depth_limit_m, B.settings.depth_limit_m)) +
+                         A.largest_edge_relief_m + B.largest_edge_relief_m;
     for (std::uint32_t a = 0; a < A.edges.size(); ++a) {
       const sharp_edge& e = A.edges[a];
       const vec3 along = T_ba.rotation * e.along_b, start = T_ba * e.from_b;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "asperity/cells/sharp_edges.hpp"
 #include "asperity/cells/surface_cells.hpp"
 #include "asperity/collision/near_cells.hpp"
 #include "asperity/core/pose.hpp"
@@ -14,12 +15,25 @@
 
 namespace asperity::detail {
 
+/// Relief of a sharp edge where it is crossed, world; it turns with the probe where it is the probe's.
+[[nodiscard]] inline dual3 relief_at(const surface_cells& body, const sharp_edge& e, const dual6& at,
+                                     const quat& rotation, bool of_probe) noexcept {
+  vec3 slope_b;
+  const vec3 value_w = rotation * read_edge_relief(body, e, at.value, slope_b);
+  const vec3 slope_w = rotation * slope_b;
+  dual3 out = of_probe ? turning(value_w) : dual3(value_w);
+  out.x.slope += slope_w.x * at.slope;
+  out.y.slope += slope_w.y * at.slope;
+  out.z.slope += slope_w.z * at.slope;
+  return out;
+}
+
 /// Reading of two edges that cross: direction m = e_A x e_B, depth m . (a - b) with a, b the points where they cross.
 ///
 /// It counts where both edges are the outermost of their bodies along m (both faces of each lead back), where they
 /// cross within both edges, and where they are not parallel; towards each of these limits it fades, weight and depth,
 /// as a cell's samples do. Only a few pairs are near in a tick, so the derivatives are carried along with the numbers.
-/// @source ours; the coarse edges are meant, their relief is felt by the samples on them
+/// @source ours. The coarse edges say where and along what; the fine surface at the crossing says how deep.
 [[nodiscard]] inline cell_reading read_edges(const surface_cells& A, const pose& T_wa, const surface_cells& B,
                                              const pose& T_wb, const vec3& c_w, const near_edges& which,
                                              const shared_settings& s) noexcept {
@@ -49,7 +63,8 @@ namespace asperity::detail {
   const dual6 scale = dual6(1.0) / (sine_d * sine_d);
   const dual6 at_a = (cosine * along_b - along_a) * scale;  // how far along each edge they cross
   const dual6 at_b = (along_b - cosine * along_a) * scale;
-  const dual6 d = dot(m_d, offset);
+  const dual6 d = dot(m_d, offset) + dot(m_d, relief_at(A, a, at_a, T_wa.rotation, true)) -
+                  dot(m_d, relief_at(B, b, at_b, T_wb.rotation, false));
 
   const double taper = std::max(A.settings.taper_m, B.settings.taper_m);
   const double limit = std::min(A.settings.depth_limit_m, B.settings.depth_limit_m);
