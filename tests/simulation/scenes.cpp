@@ -48,11 +48,11 @@ const std::array<textured_bodies, textured_scene_count>& all_bodies() {
 
 class rendered_scene final : public touched_scene {
  public:
-  explicit rendered_scene(paper_renderer r) : renderer_(std::move(r)) {}
+  explicit rendered_scene(renderer r) : renderer_(std::move(r)) {}
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept override { return renderer_.step(at, out); }
 
  private:
-  paper_renderer renderer_;
+  renderer renderer_;
 };
 
 }  // namespace
@@ -61,10 +61,9 @@ double touch_height_m(std::size_t i) { return all_bodies()[i].touch_height_m; }
 
 std::unique_ptr<touched_scene> make_textured_scene(std::size_t i, double stiffness_n_per_m) {
   const textured_bodies& bodies = all_bodies()[i];
-  paper_settings settings;
-  settings.force.stiffness_n_per_m = stiffness_n_per_m;
-  settings.depth.grid = 16;  // coarse on purpose: many cheap sessions say more than a few exact ones
-  result<paper_renderer> made = make_paper_renderer({bodies.probe, {bodies.fixed}}, settings);
+  renderer_settings settings;
+  settings.shared.stiffness_n_per_m = stiffness_n_per_m;
+  result<renderer> made = make_renderer({bodies.probe, {bodies.fixed}}, settings);
   if (!made) {
     std::fprintf(stderr, "simulation: %s\n", made.error().message.c_str());
     std::abort();
