@@ -106,12 +106,14 @@ TEST(Relief, AHoleInTheTextureTakesTheHeightAroundIt) {
   plate_spec spec;
   spec.height = [](double x, double) { return 0.05 * x; };
   textured_model plate = *make_plate(spec);
-  int lost = 0;
+  int component = 0;
   for (std::uint32_t j = 100; j < 112; ++j) {
-    for (std::uint32_t i = 130; i < 140; ++i, ++lost) {
-      plate.texture.texels[std::size_t{j} * plate.texture.width + i].y = std::numeric_limits<float>::quiet_NaN();
+    for (std::uint32_t i = 130; i < 140; ++i, component = (component + 1) % 3) {
+      glm::vec3& texel = plate.texture.texels[std::size_t{j} * plate.texture.width + i];
+      texel[component] = std::numeric_limits<float>::quiet_NaN();
     }
   }
+  plate.texture.texels[60 * plate.texture.width + 60].z = std::numeric_limits<float>::infinity();
   const top_of top(plate);
   ASSERT_NE(top.cell, nullptr);
   for (const relief_node& n : top.body.nodes) ASSERT_TRUE(std::isfinite(n.height_m) && std::isfinite(n.clearance_m));

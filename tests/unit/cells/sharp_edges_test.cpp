@@ -111,6 +111,16 @@ TEST(SharpEdges, TheTreeFindsAnEdgeByAnyPointOfIt) {
   for (std::uint32_t i = 0; i < body.edges.size(); ++i) {
     const sharp_edge& e = body.edges[i];
     one_sided += (e.extension_m[0] > 0.0) != (e.extension_m[1] > 0.0) ? 1 : 0;
+    for (const int side : {0, 1}) {  // it reaches on at the end where another one goes on
+      const vec3 end = e.from_b + side * e.length_m * e.along_b, heading = (2.0 * side - 1.0) * e.along_b;
+      const bool goes_on = std::any_of(body.edges.begin(), body.edges.end(), [&](const sharp_edge& o) {
+        const bool starts = glm::distance(o.from_b, end) < 1e-9;
+        const bool ends = glm::distance(o.from_b + o.length_m * o.along_b, end) < 1e-9;
+        return &o != &e && ((starts && glm::dot(o.along_b, heading) > std::cos(0.7)) ||
+                            (ends && glm::dot(-o.along_b, heading) > std::cos(0.7)));
+      });
+      EXPECT_EQ(e.extension_m[side] > 0.0, goes_on);
+    }
     for (const double s : {-e.extension_m[0], 0.3 * e.length_m, e.length_m + e.extension_m[1]}) {
       const vec3 p = e.from_b + s * e.along_b;
       int found = 0;

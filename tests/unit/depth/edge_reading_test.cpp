@@ -2,6 +2,7 @@
 #include "asperity/depth/edge_reading.hpp"
 
 #include <gtest/gtest.h>
+#include <numbers>
 
 #include "support/motion.hpp"
 #include "support/random_hulls.hpp"
@@ -137,6 +138,22 @@ TEST(EdgeReading, NothingWhereTheyDoNotCrossAsEdges) {
   EXPECT_TRUE(nothing(read({exp_rotation({0, 0, 0.5 * std::numbers::pi}), {0.0, 0.0, -1e-4}})));
   // Lying on a side: one of its faces leads into the other body.
   EXPECT_TRUE(nothing(read(displaced(across(1e-4), {}, {{}, {0.0, 1.0, 0.0}}))));
+}
+
+TEST(EdgeReading, FadesOutAsAFaceOfEitherBeginsToLeadIn) {
+  // A turn about the probe's own edge leans its faces; a turn about the fixed edge leans the crossing over that one's.
+  for (const vec3& axis : {vec3(0, 1, 0), vec3(1, 0, 0)}) {
+    const auto weight_at = [&](double leads_in) {
+      const double turn = 0.25 * std::numbers::pi + std::asin(leads_in);
+      return read(displaced(across(0.0), {}, {{}, turn * axis})).mass;
+    };
+    const double full = weight_at(-0.01);
+    EXPECT_NEAR(full, 1e-8, 1e-18);
+    EXPECT_NEAR(weight_at(0.5 * 0.17), 0.5 * full, 1e-6 * full);
+    EXPECT_LT(weight_at(0.169), 1e-3 * full);
+    EXPECT_GT(weight_at(0.169), 0.0);
+    EXPECT_EQ(weight_at(0.171), 0.0);
+  }
 }
 
 TEST(EdgeReading, TooDeepIsSaidAndHasNoWeight) {
