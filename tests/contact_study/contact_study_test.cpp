@@ -1,0 +1,58 @@
+// A share of the study on the benchmark models, with the same limits, and what must break them.
+#include <gtest/gtest.h>
+#include <string>
+
+#include "contact_study/report.hpp"
+#include "contact_study/study.hpp"
+#include "contact_study/study_models.hpp"
+
+namespace asperity::contact_study {
+namespace {
+
+/// One of the first three pairs of all_pairs.
+class BakedPair : public testing::TestWithParam<pair_name> {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path folder = ASPERITY_TEST_MODELS_DIR;
+    result<model_ptr> probe = study_model(GetParam().probe, folder, folder);
+    ASSERT_TRUE(probe) << probe.error().message;
+    result<model_ptr> fixed = study_model(GetParam().fixed, folder, folder);
+    ASSERT_TRUE(fixed) << fixed.error().message;
+    result<pair_of_renderers> made = pair_of_renderers::make({std::move(probe).value(), {std::move(fixed).value()}});
+    ASSERT_TRUE(made) << made.error().message;
+    renderers_.emplace(std::move(made).value());
+  }
+
+  std::optional<pair_of_renderers> renderers_;
+};
+
+TEST_P(BakedPair, SharedPotentialNeitherJumpsNorMakesWork) {
+  study_options options;
+  options.poses = 4;
+  options.with_paper = false;
+  const pair_result found = study_pair(std::string(GetParam().probe), *renderers_, options);
+  EXPECT_EQ(broken_limits({found}), "");
+}
+
+// Without this the test above could pass because nothing was touched, or because the measure cannot tell.
+TEST_P(BakedPair, ThePapersClustersDoBoth) {
+  const double k = renderers_->shared().force().settings().stiffness_n_per_m;
+  const feel_function feel = feel_with(renderers_->paper());
+  bool jumped = false, worked = false;
+  for (std::uint64_t index = 0; index < 8 && !(jumped && worked); ++index) {
+    const std::optional<touching_pose> start = find_touching_pose(renderers_->shared(), 1, index);
+    if (!start) continue;
+    for (const motion m : all_motions) {
+      jumped = jumped || measure_jumps(feel, *start, m, k).force_ratio() > 2.0 * ratio_limit;
+    }
+    worked = worked || loop_work(feel, *start, 250) > 10.0 * loop_limit;
+  }
+  EXPECT_TRUE(jumped);
+  EXPECT_TRUE(worked);
+}
+
+INSTANTIATE_TEST_SUITE_P(Benchmark, BakedPair, testing::Values(all_pairs[0], all_pairs[1], all_pairs[2]),
+                         [](const testing::TestParamInfo<pair_name>& pair) { return std::string(pair.param.probe); });
+
+}  // namespace
+}  // namespace asperity::contact_study
