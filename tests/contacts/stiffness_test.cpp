@@ -133,6 +133,26 @@ TEST(Stiffness, DepthAndDirectionOfAnEdgeAcrossAnEdge) {
   }
 }
 
+// The foot of an edge that is deep in the bottom of a groove lies inside the other flank on either side: it is felt
+// there.
+TEST(Stiffness, AnEdgeInAGrooveIsFeltByBothFlanks) {
+  const double slope = 40.0 * std::numbers::pi / 180.0, rise = 20.0 * std::tan(slope);
+  contact_scene s;
+  s.probe = prism(outline_mm({{0, 0}, {3.64, 10}, {-3.64, 10}}), -8 * mm, 8 * mm);  // an edge of 40 degrees
+  s.fixed = prism(outline_mm({{-40, -5}, {40, -5}, {40, rise}, {20, rise}, {0, 0}, {-20, rise}, {-40, rise}}), -30 * mm,
+                  30 * mm);
+  renderer r = make_scene_renderer(s, scene_settings());
+  const vec3 left(std::sin(slope), 0, std::cos(slope)), right(-std::sin(slope), 0, std::cos(slope));
+  for (const double x_mm : {0.0, 0.05, 0.1}) {
+    const vec3 edge = mm * vec3(x_mm, 0, -0.35);
+    const vec3 expected = stiffness_n_per_m * (-glm::dot(left, edge) * left - glm::dot(right, edge) * right);
+    const vec3 force = wrench_at(r, {quat(1, 0, 0, 0), edge}).force;
+    std::printf("edge in a groove: F (%.3f %.3f %.3f) N for (%.3f %.3f %.3f)\n", force.x, force.y, force.z, expected.x,
+                expected.y, expected.z);
+    EXPECT_LE(glm::length(force - expected), 0.05 * glm::length(expected));
+  }
+}
+
 // J is what the control loop believes between two ticks. Pressing on a face it is exact to what the ends of the face
 // add. Its part for tilting is the spread of the samples' slopes over tau, which never has the wrong sign; the
 // Boltzmann mean itself curves up to twice as much where all samples are equally deep and down to half as much where
