@@ -30,6 +30,21 @@ paper_settings small_settings() {
   return s;
 }
 
+// A model that passed as valid must carry a tick against itself.
+template <class Made>
+std::optional<std::string> complaint_of_tick(Made feel, const textured_model& model) {
+  if (!feel) return "no renderer: " + feel.error().message;
+  // Turned a little and sunk into itself by a tenth, so that there is something to feel.
+  const vec3 size = model.box.high - model.box.low;
+  const std::array<pose, 1> T_wb{};
+  const pose T_wa{glm::normalize(quat(1.0, 0.02, 0.03, 0.0)), {0.0, 0.0, 0.9 * size.z}};
+  tick out;
+  const status s = feel->step({T_wa, T_wb}, out);
+  if (s != status::ok && s != status::capacity_reached) return std::string("a tick that is ") + to_string(s);
+  if (!is_finite(out.force.on_probe_w)) return "a force that is not finite";
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> complaint(const result<triangle_mesh>& mesh) {
@@ -51,17 +66,15 @@ std::optional<std::string> complaint(const result<textured_model>& loaded) {
   if (!loaded) return complaint(loaded.error());
   if (const auto valid = validate(*loaded); !valid) return "an invalid model: " + valid.error().message;
   const auto model = std::make_shared<const textured_model>(*loaded);
-  auto feel = make_paper_renderer({model, {model}}, small_settings());
-  if (!feel) return "no renderer: " + feel.error().message;
-  // Turned a little and sunk into itself by a tenth, so that there is something to feel.
-  const vec3 size = model->box.high - model->box.low;
-  const std::array<pose, 1> T_wb{};
-  const pose T_wa{glm::normalize(quat(1.0, 0.02, 0.03, 0.0)), {0.0, 0.0, 0.9 * size.z}};
-  tick out;
-  const status s = feel->step({T_wa, T_wb}, out);
-  if (s != status::ok && s != status::capacity_reached) return std::string("a tick that is ") + to_string(s);
-  if (!is_finite(out.force.on_probe_w)) return "a force that is not finite";
-  return std::nullopt;
+  if (auto bad = complaint_of_tick(make_paper_renderer({model, {model}}, small_settings()), *model)) return bad;
+  // Cutting in cells takes longer than all the rest; one model in 64, the first among them, is enough of it.
+  static std::uint64_t models = 0;
+  if (models++ % 64 != 0) return std::nullopt;
+  const near_limits few{.cells = 64, .tiles = 4096, .edges = 64};
+  auto shared = make_renderer({model, {model}}, {.limits = few});
+  // A relief map that would be too large is refused, with its reason.
+  if (!shared && shared.error().code == error_code::invalid_argument) return complaint(shared.error());
+  return complaint_of_tick(std::move(shared), *model);
 }
 
 std::string kind_of(std::string_view message) {

@@ -10,6 +10,7 @@
 #include "asperity/cells/cell_clearance.hpp"
 #include "asperity/cells/cell_relief.hpp"
 #include "asperity/cells/coarse_regions.hpp"
+#include "asperity/cells/relief_tap.hpp"
 #include "asperity/cells/sharp_edges.hpp"
 #include "asperity/cells/surface_cells.hpp"
 #include "asperity/cells/surface_sampler.hpp"
@@ -19,13 +20,26 @@ namespace asperity {
 
 namespace detail {
 
-/// Thickness of the body under a region, m, or `most` where it is thicker: inward rays from points spread over its
-/// triangles. What lies deeper is not in this body, or not behind this surface.
+/// Thickness of the body under a cell, m, or `most` where it is thicker: inward rays from points spread over its
+/// region. What lies deeper is not in this body, or not behind this surface.
+///
+/// Near a sharp edge every wedge is thin. There the clearance already keeps a depth in bounds, so a thickness counts
+/// only where it is well below the clearance: that of a plate, not of a wedge.
+/// @pre the cell's map is drawn
 [[nodiscard]] inline double thickness_under(const coarse_mesh& mesh, const surface_index& index,
                                             const aabb_tree& triangles, const std::vector<std::uint32_t>& region,
-                                            const vec3& n_b, double most, double spacing_m) {
-  double thickness = most;
+                                            const surface_cells& body, const surface_cell& cell) {
+  constexpr double of_a_plate = 0.7;  // times the clearance: a wedge of 35 degrees is where plate and wedge meet
+  const vec3& n_b = cell.n_b;
+  const double spacing_m = body.settings.apron_m;
+  const relief_map map(body, cell);
+  double thickness = body.settings.depth_limit_m;
   const auto shoot = [&](const vec3& from) {
+    const vec3 over = cell.to_cell(from);
+    relief_map::place place;
+    if (!map.find(over.x, over.y, place)) return;
+    const double clearance = map.read(place).clearance_m;
+    const double counts_below = clearance >= body.settings.apron_m ? thickness : of_a_plate * clearance;
     const vec3 to = from - thickness * n_b;
     triangles.query({glm::min(from, to), glm::max(from, to)}, [&](std::uint32_t g) noexcept {
       if (glm::dot(index.normal[g], n_b) > -0.2) return;  // a wall beside the ray is no other side
@@ -36,7 +50,7 @@ namespace detail {
       const vec3 s = from - o[0], y = glm::cross(s, e1);
       const double u = glm::dot(s, x) / det, v = glm::dot(-n_b, y) / det, away = glm::dot(e2, y) / det;
       const bool hit = u >= 0.0 && v >= 0.0 && u + v <= 1.0 && away > 0.0;
-      if (hit) thickness = std::min(thickness, away);
+      if (hit && away < counts_below) thickness = std::min(thickness, away);
     });
   };
   for (const std::uint32_t t : region) {
@@ -162,8 +176,7 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
                                                      "; raise it, or give the model its box"};
     }
     detail::draw_map(out, cell, r, model, index, regions);
-    cell.depth_limit_m = detail::thickness_under(model.mesh, index, triangles, regions.members[r], cell.n_b,
-                                                 out.settings.depth_limit_m, out.settings.apron_m);
+    cell.depth_limit_m = detail::thickness_under(model.mesh, index, triangles, regions.members[r], out, cell);
     out.cells.push_back(cell);
   }
   detail::surface_sampler sampler(out, model, index, regions);
