@@ -4,10 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <optional>
 
 #include "contact_study/touching_pose.hpp"
 
 namespace asperity::contact_study {
+
+/// What the shared formulation keeps to, and the paper's does not.
+inline constexpr double ratio_limit = 2.0;
+inline constexpr double loop_limit = 1e-4;
 
 /// What a probe feels somewhere.
 struct felt {
@@ -79,6 +84,8 @@ struct jump {
 /// the first.
 struct jumps {
   jump at_1khz, at_10khz;
+  /// Measured where the two above differ by more than ratio_limit: was it a jump, or a change too quick for 1 kHz?
+  std::optional<jump> at_100khz;
 
   /// Changes that one spring explains are no jumps: measures below 1 count as 1.
   [[nodiscard]] double force_ratio() const noexcept {
@@ -87,11 +94,21 @@ struct jumps {
   [[nodiscard]] double torque_ratio() const noexcept {
     return std::max(at_10khz.torque, 1.0) / std::max(at_1khz.torque, 1.0);
   }
+  [[nodiscard]] bool over_limit() const noexcept { return std::max(force_ratio(), torque_ratio()) > ratio_limit; }
+  /// Over the limit, and ten times shorter ticks still do not resolve the change. A true jump grows tenfold again.
+  [[nodiscard]] bool discontinuous() const noexcept {
+    return over_limit() && (!at_100khz || at_100khz->force > ratio_limit * std::max(at_10khz.force, 1.0) ||
+                            at_100khz->torque > ratio_limit * std::max(at_10khz.torque, 1.0));
+  }
 };
 
+/// @param look_closer at 100 kHz too, where the two rates differ by more than the limit
 [[nodiscard]] inline jumps measure_jumps(const feel_function& feel, const touching_pose& start, motion m,
-                                         double stiffness_n_per_m) {
-  return {measure_jump(feel, start, m, 1e3, stiffness_n_per_m), measure_jump(feel, start, m, 1e4, stiffness_n_per_m)};
+                                         double stiffness_n_per_m, bool look_closer) {
+  const auto at = [&](double rate_hz) { return measure_jump(feel, start, m, rate_hz, stiffness_n_per_m); };
+  jumps out{at(1e3), at(1e4), std::nullopt};
+  if (look_closer && out.over_limit()) out.at_100khz = at(1e5);
+  return out;
 }
 
 /// Work once around the loop over the work of all its steps, both without sign: 0 for a force that has a potential, up

@@ -13,10 +13,6 @@
 
 namespace asperity::contact_study {
 
-/// What the shared formulation keeps to, and the paper's does not.
-inline constexpr double ratio_limit = 2.0;
-inline constexpr double loop_limit = 1e-4;
-
 /// What one formulation does from one touching pose.
 struct pose_result {
   std::uint64_t index = 0;                      ///< of the pose, see find_touching_pose()
@@ -41,11 +37,11 @@ struct study_options {
 };
 
 [[nodiscard]] inline pose_result study_pose(const feel_function& feel, const touching_pose& start, std::uint64_t index,
-                                            double stiffness_n_per_m) {
+                                            double stiffness_n_per_m, bool look_closer) {
   pose_result out;
   out.index = index;
   for (std::size_t m = 0; m < all_motions.size(); ++m) {
-    out.moved[m] = measure_jumps(feel, start, all_motions[m], stiffness_n_per_m);
+    out.moved[m] = measure_jumps(feel, start, all_motions[m], stiffness_n_per_m, look_closer);
   }
   out.loop = loop_work(feel, start);
   return out;
@@ -92,8 +88,8 @@ class pair_of_renderers {
       ++out.passed_by;
       continue;
     }
-    out.shared.push_back(study_pose(feel_shared, *start, index, k));
-    if (options.with_paper) out.paper.push_back(study_pose(feel_paper, *start, index, k));
+    out.shared.push_back(study_pose(feel_shared, *start, index, k, true));
+    if (options.with_paper) out.paper.push_back(study_pose(feel_paper, *start, index, k, false));
     if (options.progress && !options.progress(out)) break;
   }
   return out;
@@ -113,9 +109,11 @@ struct spread {
 /// One line of the table: one motion of one pair in one formulation.
 struct motion_summary {
   spread force_1khz, force_10khz, force_ratio, torque_ratio;
-  std::size_t over_limit = 0;    ///< motions with a ratio, of force or torque, above ratio_limit
-  std::uint64_t worst_pose = 0;  ///< where the ratio, of force or torque, is largest
-  bool ok = true;                ///< every tick was
+  std::size_t over_limit = 0;     ///< motions with a ratio, of force or torque, above ratio_limit
+  std::size_t discontinuous = 0;  ///< of them, those that grow on at 100 kHz
+  bool resolved = true;           ///< all of them were looked at that closely
+  std::uint64_t worst_pose = 0;   ///< where the ratio, of force or torque, is largest
+  bool ok = true;                 ///< every tick was
 };
 
 [[nodiscard]] inline motion_summary summarise(const std::vector<pose_result>& poses, motion m) {
@@ -129,7 +127,9 @@ struct motion_summary {
     force_ratio.push_back(j.force_ratio());
     torque_ratio.push_back(j.torque_ratio());
     const double ratio = std::max(j.force_ratio(), j.torque_ratio());
-    if (ratio > ratio_limit) ++out.over_limit;
+    if (j.over_limit()) ++out.over_limit;
+    if (j.discontinuous()) ++out.discontinuous;
+    out.resolved = out.resolved && (!j.over_limit() || j.at_100khz);
     if (ratio > worst) worst = ratio, out.worst_pose = p.index;
     out.ok = out.ok && j.at_1khz.ok && j.at_10khz.ok;
   }
