@@ -62,15 +62,15 @@ class clearance_field {
   void label_nodes(const std::vector<char>& own, const std::vector<char>& shown) {
     const std::vector<float> to_own = grid_.distance_to(own, 1e9);
     for (std::size_t i = 0; i < label_.size(); ++i) {
-      if (to_own[i] > settings_.apron_m) continue;
+      const bool near = to_own[i] <= settings_.apron_m;
       if (shown[i] != 0) {
-        label_[i] = label::inside;
+        if (near) label_[i] = label::inside;
       } else {
         const nearest d = nearest_rim(grid_.position(i));
         const double slack = 0.05 * grid_.cell->pitch_m;  // a tie at a vertex goes to the edge that can be felt
         if (d.convex <= std::min(d.concave, d.smooth) + slack) {
           label_[i] = label::beyond_edge;
-        } else if (d.concave <= d.smooth + slack) {
+        } else if (d.concave <= d.smooth + slack && near) {
           label_[i] = label::inside;  // inside the neighbouring wall, where the feet of deep samples lie
         }
       }

@@ -30,7 +30,7 @@ struct cell_settings {
 
 /// The same with the automatic lengths filled in.
 /// - apron: 1.5 % of the diagonal. - depth limit: 10 %, and never more than the thickness under a cell.
-/// - taper: 0.5 %, and at least one and a half texels. - pitch: one texel, but half a coarse one, or the spline
+/// - taper: 0.5 %, and at least one and a half pitches. - pitch: one texel, but half a coarse one, or the spline
 ///   of the map would overshoot; at least 0.05 %.
 /// - sample pitch: 0.3 %, and at least one texel. - feature pitch: 0.3 %.
 /// @param texel_m typical distance between texels on the coarse surface

@@ -23,8 +23,8 @@ namespace detail {
 /// Thickness of the body under a cell, m, or `most` where it is thicker: inward rays from points spread over its
 /// region. What lies deeper is not in this body, or not behind this surface.
 ///
-/// Near a sharp edge every wedge is thin. There the clearance already keeps a depth in bounds, so a thickness counts
-/// only where it is well below the clearance: that of a plate, not of a wedge.
+/// Near a sharp edge every wedge is thin, and the clearance already keeps a depth in bounds. Within an apron of such an
+/// edge a thickness counts only where it is well below the clearance: that of a plate, not of a wedge.
 /// @pre the cell's map is drawn
 [[nodiscard]] inline double thickness_under(const coarse_mesh& mesh, const surface_index& index,
                                             const aabb_tree& triangles, const std::vector<std::uint32_t>& region,
@@ -136,7 +136,8 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
   cell.highest_m = -std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < grid.size(); ++i) {
     out.nodes.push_back({height[i], clearance[i]});
-    if (!(clearance[i] > 0.0F)) continue;
+    // Nodes just beyond the end are known to the spline before it.
+    if (!(clearance[i] > -2.0 * cell.pitch_m)) continue;
     cell.lowest_m = std::min<double>(cell.lowest_m, height[i]);
     cell.highest_m = std::max<double>(cell.highest_m, height[i]);
   }
@@ -179,6 +180,7 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
     cell.depth_limit_m = detail::thickness_under(model.mesh, index, triangles, regions.members[r], out, cell);
     out.cells.push_back(cell);
   }
+  out.nodes.shrink_to_fit();
   detail::surface_sampler sampler(out, model, index, regions);
   sampler.sample_regions();
   sampler.sample_edges();

@@ -13,7 +13,7 @@ namespace asperity {
 struct shared_settings {
   double stiffness_n_per_m = 2000.0;  ///< of a face that is met squarely
 
-  /// Softness of the maximum, m. 0: 2 % of the larger relief of the two bodies, and at least 150 millionths of the
+  /// Softness of the maximum, m. 0: 2 % of the larger relief of the two bodies, and at least 200 millionths of the
   /// smaller body's diagonal. The depth of a contact is told 0 to 2 tau too small; where two slopes meet, as on a
   /// ridge, the stiffness grows with 1 / tau.
   double tau_m = 0.0;
