@@ -25,7 +25,8 @@ namespace asperity {
 ///     q_gh = K_gh exp((K_gh max(lam_h, 0) + min(lam_h, 0)) / tau),   y_gh = K_gh max(V_h, 0) + min(V_h, 0)
 ///     s_g = M_g / sum_h K_gh M_h                    its share of the spring
 ///
-/// V_h is the Boltzmann mean depth of a reading, lam_h = tau ln(mass_h / a0), M_h its overlap, and K_gh falls smoothly
+/// V_h is the Boltzmann mean depth of a reading, lam_h = tau ln(mass_h / a0), M_h its overlap; in the third line max
+/// and min are rounded off within tau, or the force would jump where a reading crosses the surface. K_gh falls smoothly
 /// from 1 to 0 as the angle between two directions grows from 25 to 60 degrees. So cells that face the same way share
 /// one spring however many they are, cells that clearly do not have one each, and nothing in between jumps.
 /// A conservative force by construction: it has a potential.
@@ -226,8 +227,8 @@ class shared_potential {
     for (term& t : terms_) {
       t.same = t.reading->body != r.body ? 0.0 : (&t == &own ? 1.0 : sameness(r.n_ab_w, t.reading->n_ab_w));
       if (!(t.same > 0.0)) continue;
-      t.boltzmann = t.log_mass_m > 0.0 ? t.same * t.log_mass_m : t.log_mass_m;
-      t.shown_m = t.value_m > 0.0 ? t.same * t.value_m : t.value_m;
+      t.boltzmann = t.log_mass_m - (1.0 - t.same) * above_surface(t.log_mass_m);
+      t.shown_m = t.value_m - (1.0 - t.same) * above_surface(t.value_m);
       largest = std::max(largest, t.boltzmann);
       overlap += t.same * t.reading->overlap;
     }
@@ -252,8 +253,8 @@ class shared_potential {
       const cell_reading& h = *t.reading;
       const double p = t.same * t.boltzmann / sum, above = t.shown_m - own.depth_m;
       if (p < 1e-14 && h.overlap <= 0.0) continue;  // nothing that the sum could hold
-      const double by_value = p * (t.value_m > 0.0 ? t.same : 1.0);
-      const double by_log_mass = p * above * (t.log_mass_m > 0.0 ? t.same : 1.0) / tau;
+      const double by_value = p * (1.0 - (1.0 - t.same) * above_surface_slope(t.value_m));
+      const double by_log_mass = p * above * (1.0 - (1.0 - t.same) * above_surface_slope(t.log_mass_m)) / tau;
       t.by_overlap -= by_share * r.overlap * t.same / (overlap * overlap);
       t.by_mass += by_depth * (by_log_mass * tau - by_value * t.value_m) / h.mass;
       t.by_moment += by_depth * by_value / h.mass;
@@ -261,8 +262,8 @@ class shared_potential {
       slope_mean += (p / h.mass) * h.slope_sum;
       product += (p / h.mass) * h.slope_product;
       const double by_same = -by_share * r.overlap * h.overlap / (overlap * overlap) +
-                             by_depth * (t.boltzmann / sum * above + p * above * std::max(t.log_mass_m, 0.0) / tau +
-                                         p * std::max(t.value_m, 0.0));
+                             by_depth * (t.boltzmann / sum * above + p * above * above_surface(t.log_mass_m) / tau +
+                                         p * above_surface(t.value_m));
       gradient.angular += by_same * same_turn(r, h, &t == &own);
     }
     own.gradient = slope;
@@ -271,6 +272,15 @@ class shared_potential {
     own.curvature = product;
     add_outer(stiffness, -k * own.share, slope);
     stiffness += (-k * own.share * own.depth_m) * product;
+  }
+
+  // max(x, 0), rounded off within tau of the surface: a corner of the energy would be a jump of the force.
+  [[nodiscard]] double above_surface(double x) const noexcept {
+    const double tau = settings_.tau_m, lifted = x + tau;
+    return x >= tau ? x : (x <= -tau ? 0.0 : lifted * lifted / (4.0 * tau));
+  }
+  [[nodiscard]] double above_surface_slope(double x) const noexcept {
+    return std::clamp(0.5 * (x / settings_.tau_m + 1.0), 0.0, 1.0);
   }
 
   // d K_gh / d(rotation of the probe).
