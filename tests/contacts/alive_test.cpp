@@ -113,7 +113,9 @@ void rest_everywhere(double seconds) {
       EXPECT_LT(r.vibration_m, still_m) << place.name;
       EXPECT_LT(r.drift_m, still_m) << place.name;
       // Negative control: the same force without its slope, held for a period.
-      if (slow) EXPECT_GT(held.vibration_m, moving_m) << place.name;
+      if (slow) {
+        EXPECT_GT(held.vibration_m, moving_m) << place.name;
+      }
     }
   }
 }
