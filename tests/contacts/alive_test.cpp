@@ -122,7 +122,7 @@ void rest_everywhere(double seconds) {
 
 TEST(alive, a_probe_at_rest_stays_at_rest) { rest_everywhere(6.0); }
 
-/// Ten times as long; ./dev study asks for it.
+/// Ten times as long; ask for it with --gtest_also_run_disabled_tests.
 TEST(alive, DISABLED_for_a_whole_minute) { rest_everywhere(60.0); }
 
 }  // namespace
