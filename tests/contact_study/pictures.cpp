@@ -84,11 +84,11 @@ result<void> draw_spectra(const std::filesystem::path& file) {
     return out;
   };
   command::plot_page page;
-  page.title = "A uniform slide: the shared potential brings no line above a millionth of the force";
+  page.title = "A uniform slide: what sampling adds to the spectrum of the exact depth";
   page.caption =
-      "Rough, crowned box on a rough plate at 50 mm/s, 8192 ticks a second; the normal force is 0.8 N. The paper's "
-      "window "
-      "carries its samples along: 50 um apart, 1 kHz.";
+      "Rough, crowned box on a rough plate, 50 mm/s, 8192 ticks a second, force 0.8 N. One pair of texel pitches; "
+      "others "
+      "move and scale the lines.";
   page.x_label = "frequency, Hz";
   page.panels.resize(2);
   page.panels[0].y_label = page.panels[1].y_label = "log10(amplitude / N)";

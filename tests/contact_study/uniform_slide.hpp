@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -35,14 +36,16 @@ struct uniform_slide {
            1.2e-3 * crown;
   }
 
-  [[nodiscard]] static scene bodies() {
+  /// @param box_texture, plate_texture texels per side: they set the lattices that samples lie on
+  [[nodiscard]] static scene bodies(std::uint32_t box_texture = 768, std::uint32_t plate_texture = 1536) {
     using test_support::make_textured_box;
     // Each body is rough on the face that meets the other one only.
     const auto box = [](const vec3& p, const vec3& n) { return n.z < -0.5 ? box_height_m(p.x, p.y) : 0.0; };
     const auto plate = [](const vec3& p, const vec3& n) { return n.z > 0.5 ? plate_height_m(p.x, p.y) : 0.0; };
-    return {std::make_shared<const textured_model>(make_textured_box({box_half_m, box_half_m, thickness_m}, 768, box)),
+    return {std::make_shared<const textured_model>(
+                make_textured_box({box_half_m, box_half_m, thickness_m}, box_texture, box)),
             {std::make_shared<const textured_model>(
-                make_textured_box({plate_half_m, plate_half_m, thickness_m}, 1536, plate))}};
+                make_textured_box({plate_half_m, plate_half_m, thickness_m}, plate_texture, plate))}};
   }
 
   [[nodiscard]] static pose at(std::size_t i) noexcept {
