@@ -62,7 +62,7 @@ TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
 TEST(UniformSlide, AHardMaximumOverTheSameSamplesRings) {
   const scene bodies = uniform_slide::bodies(384);
   renderer_settings settings;
-  settings.shared.tau_m = detail::shared_tau_m({}, bodies) / 32.0;
+  settings.shared.tau_m = make_renderer(bodies).value().force().settings().tau_m / 32.0;
   renderer hard = make_renderer(bodies, settings).value();
   const excess more = excess_of(felt_on_slide(feel_with(hard)));
   std::printf("hard: %.2g in the textures' band, %.2g above\n", more.textures, more.above);

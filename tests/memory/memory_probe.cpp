@@ -63,9 +63,9 @@ int main(int argc, char** argv) {
   print("fixed", asperity::memory_bytes(*fixed), asperity::heap_bytes(fixed->texture), before, after);
 
   before = after;
-  auto feel = asperity::make_paper_renderer({probe, {fixed}});
+  auto feel = asperity::make_renderer({probe, {fixed}});
   after = measure();
   if (!feel) return 1;
-  print("renderer", feel->memory_bytes(), feel->finder().heap_bytes(), before, after);
+  print("renderer", feel->memory_bytes(), feel->depth().heap_bytes(), before, after);
   return 0;
 }

@@ -157,18 +157,15 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
   }
   const detail::surface_index index(model);
   surface_cells out;
-  out.settings = resolve(settings, model, detail::measure_texture(model, index).texel_m);
+  const detail::texture_scale scale = detail::measure_texture(model, index);
+  out.settings = resolve(settings, model, scale.texel_m);
+  out.relief_m = scale.relief_m;
   const detail::coarse_regions regions(model.mesh, index, out.settings);
   if (regions.members.empty()) {
     return error{error_code::bad_mesh, "the model " + model.name + " has no coarse triangle with an area"};
   }
 
-  std::vector<bounds> boxes;
-  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
-    const auto c = corners(model.mesh, t);
-    boxes.push_back({glm::min(c[0], glm::min(c[1], c[2])), glm::max(c[0], glm::max(c[1], c[2]))});
-  }
-  const aabb_tree triangles(boxes);
+  const aabb_tree triangles(triangle_boxes(model.mesh));
   for (std::uint32_t r = 0; r < regions.members.size(); ++r) {
     surface_cell cell = detail::place_cell(model.mesh, index, regions, r, out.settings);
     if (cell.columns == 0) {
@@ -187,7 +184,7 @@ inline void draw_map(surface_cells& out, surface_cell& cell, std::uint32_t regio
   out.edges = detail::find_sharp_edges(model.mesh, index, regions, 0.5 * out.settings.taper_m);
   detail::lay_edge_relief(out, model, index, regions);
 
-  boxes.clear();
+  std::vector<bounds> boxes;
   for (const sample_tile& t : out.tiles) boxes.push_back({t.centre_b - t.radius_m, t.centre_b + t.radius_m});
   out.tile_tree = aabb_tree(boxes);
   boxes.clear();

@@ -79,6 +79,7 @@ struct sharp_edge {
 /// All of one body. Immutable once made.
 struct surface_cells {
   cell_settings settings;  ///< resolved
+  double relief_m = 0.0;   ///< peak to valley of the sine with the texture's mean square height
   std::vector<surface_cell> cells;
   std::vector<relief_node> nodes;
   std::vector<surface_sample> samples;

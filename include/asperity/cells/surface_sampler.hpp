@@ -72,9 +72,7 @@ class surface_sampler {
     const texel_triangle& z = index_.texels[t];
     if (!z.usable) return;
     const auto c = corners(model_.mesh, t);
-    // Coarse surface per texel, as in measure_texture().
-    const vec3 per_x = z.weight[0].y * c[0] + z.weight[1].y * c[1] + z.weight[2].y * c[2];
-    const vec3 per_y = z.weight[0].z * c[0] + z.weight[1].z * c[1] + z.weight[2].z * c[2];
+    const auto [per_x, per_y] = z.per_texel(c);
     const double area = glm::length(glm::cross(per_x, per_y));
     const double pitch = out_.settings.sample_pitch_m;
     const double widest = std::max(model_.texture.width, model_.texture.height);

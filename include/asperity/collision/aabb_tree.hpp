@@ -27,6 +27,17 @@ namespace asperity {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
 
+/// The smallest box around every triangle of a coarse mesh, in its order.
+[[nodiscard]] inline std::vector<bounds> triangle_boxes(const coarse_mesh& mesh) {
+  std::vector<bounds> boxes;
+  boxes.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto c = corners(mesh, t);
+    boxes.push_back({glm::min(c[0], glm::min(c[1], c[2])), glm::max(c[0], glm::max(c[1], c[2]))});
+  }
+  return boxes;
+}
+
 /// Binary tree over boxes, split at the median along the longest side. Built once, never changed.
 class aabb_tree {
  public:

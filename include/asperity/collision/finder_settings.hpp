@@ -78,12 +78,7 @@ struct collision_body {
       boxes.push_back(shapes.back().box);
     }
     piece_tree = aabb_tree(boxes);
-    boxes.clear();
-    for (std::size_t t = 0; t < model->mesh.triangles.size(); ++t) {
-      const auto c = corners(model->mesh, t);
-      boxes.push_back({glm::min(c[0], glm::min(c[1], c[2])), glm::max(c[0], glm::max(c[1], c[2]))});
-    }
-    triangle_tree = aabb_tree(boxes);
+    triangle_tree = aabb_tree(triangle_boxes(model->mesh));
     triangle_normals = std::move(features.triangle_normals);
   }
 

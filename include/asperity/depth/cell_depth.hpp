@@ -162,8 +162,6 @@ class cell_depth {
         face = facing_of(p.X, p.X.origins[known], R_wx, R_wc[2]);
       }
       if (!(face.factor > 0.0)) continue;
-      const double top = (R_cx * tile.centre_b + x_origin).z;
-      if (cell.highest_m - top + tile.radius_m < -reach_m(settings_)) continue;
       for (const surface_sample& sample : std::span(p.X.samples).subspan(tile.first, tile.count)) {
         add_sample(reader, R_cx * vec3(sample.position_b) + x_origin, sample.area_m2, face, s);
       }

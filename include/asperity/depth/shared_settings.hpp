@@ -13,9 +13,10 @@ namespace asperity {
 struct shared_settings {
   double stiffness_n_per_m = 2000.0;  ///< of a face that is met squarely
 
-  /// Softness of the maximum, m. 0: 2 % of the larger relief of the two bodies, and at least 200 millionths of the
+  /// Softness of the maximum, m. 0: 5 % of the larger relief of the two bodies, and at least half a thousandth of the
   /// smaller body's diagonal. The depth of a contact is told 0 to 2 tau too small; where two slopes meet, as on a
-  /// ridge, the stiffness grows with 1 / tau.
+  /// ridge, the stiffness grows with 1 / tau. With less, a hand that moves at 50 mm/s meets slopes that a contact loop
+  /// of 1 kHz cannot tell from jumps; with more, fine texture fades.
   double tau_m = 0.0;
 
   double facing_full = 0.92, facing_none = 0.75;    ///< -n_A . n_B between which a face's samples fade in

@@ -24,6 +24,11 @@ struct texel_triangle {
     const auto at = [&](std::size_t k) { return weight[k].x + weight[k].y * z.x + weight[k].z * z.y; };
     return {at(0), at(1), at(2)};
   }
+  /// How far the coarse surface goes per texel along the image's x and y; `c` are the triangle's corners.
+  [[nodiscard]] std::array<vec3, 2> per_texel(const std::array<vec3, 3>& c) const noexcept {
+    return {weight[0].y * c[0] + weight[1].y * c[1] + weight[2].y * c[2],
+            weight[0].z * c[0] + weight[1].z * c[1] + weight[2].z * c[2]};
+  }
   /// Corner whose opposite edge is the one that a position is farthest outside of.
   [[nodiscard]] std::size_t outermost(const vec3& bary) const noexcept {
     const double d0 = bary.x * altitude[0], d1 = bary.y * altitude[1], d2 = bary.z * altitude[2];

@@ -34,9 +34,7 @@ struct texture_scale {
     const auto c = corners(model.mesh, t);
     const texel_triangle& z = index.texels[t];
     const vec3 n = index.normal[t];
-    // Coarse surface per texel: the corners weighted by what a texel step changes in the barycentric coordinates.
-    const vec3 per_x = z.weight[0].y * c[0] + z.weight[1].y * c[1] + z.weight[2].y * c[2];
-    const vec3 per_y = z.weight[0].z * c[0] + z.weight[1].z * c[1] + z.weight[2].z * c[2];
+    const auto [per_x, per_y] = z.per_texel(c);
     const double e = glm::dot(per_x, per_x), f = glm::dot(per_x, per_y), g = glm::dot(per_y, per_y);
     const double det = e * g - f * f;
     if (!(det > 0.0)) continue;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "asperity/force/concept.hpp"
+#include "asperity/force/direction_sameness.hpp"
 
 namespace asperity {
 
@@ -41,9 +42,7 @@ class gradient_penalty {
   using policy_tag = force_tag;
 
   explicit gradient_penalty(const gradient_penalty_settings& settings = {}) noexcept
-      : settings_(settings),
-        cos_same_(std::cos(settings.same_direction_rad)),
-        cos_other_(std::cos(settings.other_direction_rad)) {}
+      : settings_(settings), sameness_(settings.same_direction_rad, settings.other_direction_rad) {}
 
   /// Adds up the contacts. @pre depths.size() >= contacts.size()
   /// @return ok | not_ready (sizes do not fit) | not_finite (NaN or infinity in a depth); the last two leave zeros
@@ -61,7 +60,7 @@ class gradient_penalty {
       double all = 0.0;
       for (std::size_t j = 0; j < list.size(); ++j) {
         if (list[j].body == list[i].body) {
-          all += sameness(list[i].window.n_ab_w, list[j].window.n_ab_w) * share_mass(depths[j]);
+          all += sameness_(list[i].window.n_ab_w, list[j].window.n_ab_w) * share_mass(depths[j]);
         }
       }
       const double k = settings_.stiffness_n_per_m * own / all;
@@ -85,12 +84,9 @@ class gradient_penalty {
     return d <= 0.0 || has(p.flags, depth_flag::no_overlap) ? 0.0 : d;  // a NaN stays one, to be reported
   }
   [[nodiscard]] double share_mass(const penetration& p) const noexcept { return p.area_m2 * depth(p) * depth(p); }
-  [[nodiscard]] double sameness(const vec3& n_i, const vec3& n_j) const noexcept {
-    return smoothstep((glm::dot(n_i, n_j) - cos_other_) / (cos_same_ - cos_other_));
-  }
 
   gradient_penalty_settings settings_;
-  double cos_same_, cos_other_;
+  detail::direction_sameness sameness_;
 };
 
 static_assert(force_model<gradient_penalty>);

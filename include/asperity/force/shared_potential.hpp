@@ -15,6 +15,7 @@
 #include "asperity/depth/cell_reading.hpp"
 #include "asperity/depth/shared_settings.hpp"
 #include "asperity/force/concept.hpp"
+#include "asperity/force/direction_sameness.hpp"
 
 namespace asperity {
 
@@ -42,9 +43,7 @@ class shared_potential {
 
   /// @param settings with tau_m filled in   @param readings most that one call brings, over all bodies
   shared_potential(const shared_settings& settings, std::size_t readings)
-      : settings_(settings),
-        cos_same_(std::cos(settings.same_direction_rad)),
-        cos_other_(std::cos(settings.other_direction_rad)) {
+      : settings_(settings), sameness_(settings.same_direction_rad, settings.other_direction_rad) {
     detail::reserve_resident(terms_, readings);
   }
 
@@ -112,10 +111,6 @@ class shared_potential {
     }
   }
 
-  /// How much two directions are one: K.
-  [[nodiscard]] double sameness(const vec3& n_g, const vec3& n_h) const noexcept {
-    return smoothstep((glm::dot(n_g, n_h) - cos_other_) / (cos_same_ - cos_other_));
-  }
   [[nodiscard]] const shared_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(terms_); }
 
@@ -144,7 +139,7 @@ class shared_potential {
   [[nodiscard]] contact tell(term& first, penetration& depth, std::uint32_t id) const noexcept {
     const vec3 n_first = first.reading->n_ab_w;
     const auto together = [&](const term& t) {
-      return !t.told && t.reading->body == first.reading->body && sameness(n_first, t.reading->n_ab_w) >= 0.5;
+      return !t.told && t.reading->body == first.reading->body && sameness_(n_first, t.reading->n_ab_w) >= 0.5;
     };
     const bool overlaps = first.reading->overlap > 0.0;
     const auto weight_of = [&](const term& t) {
@@ -225,7 +220,7 @@ class shared_potential {
     const cell_reading& r = *own.reading;
     double overlap = 0.0, largest = -1e9;
     for (term& t : terms_) {
-      t.same = t.reading->body != r.body ? 0.0 : (&t == &own ? 1.0 : sameness(r.n_ab_w, t.reading->n_ab_w));
+      t.same = t.reading->body != r.body ? 0.0 : (&t == &own ? 1.0 : sameness_(r.n_ab_w, t.reading->n_ab_w));
       if (!(t.same > 0.0)) continue;
       t.boltzmann = t.log_mass_m - (1.0 - t.same) * above_surface(t.log_mass_m);
       t.shown_m = t.value_m - (1.0 - t.same) * above_surface(t.value_m);
@@ -286,13 +281,12 @@ class shared_potential {
   // d K_gh / d(rotation of the probe).
   [[nodiscard]] vec3 same_turn(const cell_reading& g, const cell_reading& h, bool same) const noexcept {
     if (same) return vec3(0.0);
-    const double width = cos_same_ - cos_other_;
-    const double s = smoothstep_slope((glm::dot(g.n_ab_w, h.n_ab_w) - cos_other_) / width) / width;
+    const double s = sameness_.slope(g.n_ab_w, h.n_ab_w);
     return s == 0.0 ? vec3(0.0) : s * (glm::transpose(g.turn) * h.n_ab_w + glm::transpose(h.turn) * g.n_ab_w);
   }
 
   shared_settings settings_;
-  double cos_same_, cos_other_;
+  detail::direction_sameness sameness_;
   // Working space, and what the last call can still be asked about. No call reads what another one left.
   mutable std::vector<term> terms_;
   mutable double energy_j_ = 0.0;

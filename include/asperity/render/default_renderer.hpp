@@ -44,15 +44,15 @@ namespace detail {
 }
 
 /// Softness of the shared maximum for a scene, the automatic one filled in. One for all bodies, whatever the pose.
-[[nodiscard]] inline double shared_tau_m(const shared_settings& s, const scene& bodies) {
+[[nodiscard]] inline double shared_tau_m(const shared_settings& s, const scene& bodies,
+                                         const cell_scene& cells) noexcept {
   if (s.tau_m > 0.0) return s.tau_m;
-  const auto relief = [](const textured_model& m) { return measure_texture(m, surface_index(m)).relief_m; };
-  double smaller = bodies.probe->box.diagonal(), rougher = relief(*bodies.probe);
-  for (const model_ptr& m : bodies.fixed) {
-    smaller = std::min(smaller, m->box.diagonal());
-    rougher = std::max(rougher, relief(*m));
+  double smaller = bodies.probe->box.diagonal(), rougher = cells.probe->relief_m;
+  for (std::size_t b = 0; b < bodies.fixed.size(); ++b) {
+    smaller = std::min(smaller, bodies.fixed[b]->box.diagonal());
+    rougher = std::max(rougher, cells.fixed[b]->relief_m);
   }
-  return std::max(0.02 * rougher, 2e-4 * smaller);
+  return std::max(0.05 * rougher, 5e-4 * smaller);
 }
 
 }  // namespace detail
@@ -67,7 +67,7 @@ namespace detail {
   if (!cut) return cut.error();
   const auto cells = std::make_shared<const cell_scene>(std::move(cut).value());
   shared_settings shared = settings.shared;
-  shared.tau_m = detail::shared_tau_m(shared, bodies);
+  shared.tau_m = detail::shared_tau_m(shared, bodies, *cells);
   cell_depth depth(cells, bodies, shared);
   return renderer(std::move(bodies), cell_finder(cells, cell_depth::reach_m(shared), shared.facing_none),
                   std::move(depth), shared_potential(shared, settings.limits.readings()), settings.limits);

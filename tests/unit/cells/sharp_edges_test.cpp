@@ -6,6 +6,7 @@
 
 #include "asperity/cells/make_surface_cells.hpp"
 #include "meshes.hpp"
+#include "support/small_models.hpp"
 
 namespace asperity {
 namespace {
@@ -129,6 +130,68 @@ TEST(SharpEdges, TheTreeFindsAnEdgeByAnyPointOfIt) {
     }
   }
   EXPECT_GT(one_sided, 0);
+}
+
+using detail::read_edge_relief;
+
+// The two charts that meet in an edge tell each of its own normal's part; half of each is the edge's.
+TEST(EdgeRelief, LiesBetweenTheReliefsOfBothCharts) {
+  const auto wave = [](double x) { return 1e-4 * std::sin(600.0 * x); };
+  const textured_model box = test_support::make_textured_box(
+      {0.01, 0.005, 0.008}, 384,
+      [&](const vec3& p, const vec3& n) { return n.z > 0.5 ? wave(p.x) : (n.y > 0.5 ? 5e-5 : 0.0); });
+  const auto made = make_surface_cells(box);
+  ASSERT_TRUE(made);
+  const surface_cells& body = made.value();
+  int waving = 0;
+  for (const sharp_edge& e : body.edges) {
+    const vec3 middle = e.from_b + 0.5 * e.length_m * e.along_b;
+    const bool top = middle.z > 0.0079, back = middle.y > 0.0049;
+    // Not at the very ends: a texel at a corner knows of its own face alone.
+    for (double f = 0.05; f < 0.951; f += 0.01) {
+      const vec3 p = e.from_b + f * e.length_m * e.along_b;
+      const vec3 expected(0.0, back ? 2.5e-5 : 0.0, top ? 0.5 * wave(p.x) : 0.0);
+      vec3 slope;
+      EXPECT_LT(glm::distance(read_edge_relief(body, e, f * e.length_m, slope), expected), 3e-6) << f;
+    }
+    waving += top && std::fabs(e.along_b.x) > 0.5 ? 1 : 0;
+  }
+  EXPECT_EQ(waving, 2);
+  EXPECT_GE(body.largest_edge_relief_m, 0.5e-4);
+  EXPECT_LE(body.largest_edge_relief_m, 0.6e-4 + 1e-6);
+}
+
+TEST(EdgeRelief, IsASplineThatEndsLevel) {
+  surface_cells body;
+  sharp_edge e;
+  e.length_m = 0.02;
+  for (const double z : {1.0, 2.0, -1.0, 0.5}) body.edge_relief.emplace_back(vec3(0.0, 1e-5, 1e-5 * z));
+  e.first_relief = 1;  // its own nodes only: 2, -1, 0.5
+  e.relief = 3;
+  vec3 slope;
+  const auto at = [&](double s) { return read_edge_relief(body, e, s, slope); };
+  EXPECT_NEAR(at(0.0).z, 2e-5, 1e-11);
+  EXPECT_NEAR(at(0.01).z, -1e-5, 1e-11);
+  EXPECT_NEAR(at(0.02).z, 0.5e-5, 1e-11);
+  for (double s = -0.005; s < 0.0251; s += 3.1e-4) {
+    const vec3 by_difference = (at(s + 1e-7) - at(s - 1e-7)) / 2e-7;
+    const vec3 value = at(s);
+    EXPECT_LT(glm::distance(slope, by_difference), 1e-7) << s;
+    EXPECT_NEAR(value.y, 1e-5, 1e-11);
+    if (s < 0.0 || s > e.length_m) {
+      EXPECT_EQ(value, at(s < 0.0 ? 0.0 : e.length_m)) << s;
+    }
+  }
+  for (const double end : {0.0, 0.02}) {  // the slope is continuous there too
+    static_cast<void>(at(end));
+    EXPECT_LT(glm::length(slope), 1e-12) << end;
+  }
+}
+
+TEST(EdgeRelief, OfAnEdgeWithoutOneIsFlat) {
+  vec3 slope(1.0);
+  EXPECT_EQ(read_edge_relief({}, {}, 0.5, slope), vec3(0.0));
+  EXPECT_EQ(slope, vec3(0.0));
 }
 
 }  // namespace

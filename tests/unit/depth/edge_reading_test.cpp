@@ -34,6 +34,18 @@ surface_cells wedge() {
   return body;
 }
 
+/// The same edge with a fine surface that waves about it.
+surface_cells rough_wedge() {
+  surface_cells body = wedge();
+  constexpr std::uint32_t nodes = 21;
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    const double s = 0.7 * i;
+    body.edge_relief.emplace_back(vec3(1e-5 * std::cos(s), 3e-5 * std::sin(1.3 * s), 6e-5 * std::sin(s)));
+  }
+  body.edges[0].relief = nodes;
+  return body;
+}
+
 shared_settings with_tau(double tau = 2e-5) {
   shared_settings s;
   s.tau_m = tau;
@@ -45,7 +57,7 @@ pose across(double depth, double angle = 0.5 * std::numbers::pi) {
   return {exp_rotation({0, 0, angle}) * quat(0, 1, 0, 0), {0.0, 0.0, -depth}};
 }
 
-const surface_cells probe_wedge = wedge(), fixed_wedge = wedge();
+const surface_cells probe_wedge = wedge(), fixed_wedge = wedge(), rough = rough_wedge();
 const vec3 c_a{0.003, -0.002, 0.004};  // centre of mass, body frame
 
 cell_reading read(const pose& T_wa, const shared_settings& s = with_tau(), const surface_cells& a = probe_wedge,
@@ -97,6 +109,27 @@ TEST(EdgeReading, ThatTouchHaveTheDepthAndDirectionOfTheirCrossing) {
       EXPECT_EQ(r.overlap > 0.0, depth > 0.0);
       EXPECT_EQ(r.area_m2 > 0.0, depth > 0.0);
     }
+  }
+}
+
+// Coarse edges say where they cross, their fine surface there how deep: it adds what it stands out along the normal.
+TEST(EdgeReading, IsAsDeepAsTheFineSurfacesAtTheCrossing) {
+  for (const double shift : {-6e-3, 0.0, 2.3e-3}) {
+    pose T = across(1e-4, 1.1);
+    T.position.x += shift;
+    T.position.y += 1e-3;
+    const cell_reading plain = read(T), a_rough = read(T, with_tau(), rough),
+                       b_rough = read(T, with_tau(), wedge(), rough);
+    ASSERT_EQ(plain.samples, 1U);
+    vec3 slope;
+    const double at_a = (inverse(T) * plain.witness_w).x + 0.5 * length, at_b = plain.witness_w.x + 0.5 * length;
+    const vec3 relief_a = T.rotation * detail::read_edge_relief(rough, rough.edges[0], at_a, slope);
+    const vec3 relief_b = detail::read_edge_relief(rough, rough.edges[0], at_b, slope);
+    const double expected_a = glm::dot(plain.n_ab_w, relief_a), expected_b = glm::dot(-plain.n_ab_w, relief_b);
+    EXPECT_GT(std::max(std::fabs(expected_a), std::fabs(expected_b)), 5e-6);  // or this would show nothing
+    EXPECT_NEAR(a_rough.depth_m - plain.depth_m, expected_a, 1e-9);
+    EXPECT_NEAR(b_rough.depth_m - plain.depth_m, expected_b, 1e-9);
+    EXPECT_EQ(a_rough.n_ab_w, plain.n_ab_w);
   }
 }
 
@@ -194,7 +227,8 @@ TEST(EdgeReading, SlopesAreTheDerivativesThroughAllFades) {
     const pose T = displaced(across(depth, angle), {0, 0, -depth},
                              {{random(-0.01, 0.01), random(-0.01, 0.01), 0.0}, 0.7 * random.in_box(1.0)});
     const vec3 c_w = T * c_a;
-    const cell_reading r = read(T, s);
+    const surface_cells &a = n % 3 == 0 ? rough : probe_wedge, &b = n % 5 == 0 ? rough : fixed_wedge;
+    const cell_reading r = read(T, s, a, b);
     if (r.samples == 0 || r.mass < 1e-12) continue;
     ++tested;
     outside += r.depth_m < 0.0 ? 1 : 0;
@@ -208,8 +242,8 @@ TEST(EdgeReading, SlopesAreTheDerivativesThroughAllFades) {
     const vec6 given[3] = {r.mass_slope, r.moment_slope, r.overlap_slope};
     for (int which = 0; which < 3; ++which) {
       const vec6 expected = derivative(
-          [&](const vec6& q) { return number(read(displaced(T, c_w, q), s), which, r.reference_m, s.tau_m); }, 1e-9,
-          lever);
+          [&](const vec6& q) { return number(read(displaced(T, c_w, q), s, a, b), which, r.reference_m, s.tau_m); },
+          1e-9, lever);
       const double size = std::max(largest(expected, lever), number(r, which, r.reference_m, s.tau_m) / s.tau_m);
       const double error = size > 0.0 ? largest(given[which] - expected, lever) / size : 0.0;
       worst = std::max(worst, error);
@@ -217,7 +251,7 @@ TEST(EdgeReading, SlopesAreTheDerivativesThroughAllFades) {
     }
     for (int k = 0; k < 3; ++k) {  // and the direction's
       const vec6 expected =
-          derivative([&](const vec6& q) { return read(displaced(T, c_w, q), s).n_ab_w[k]; }, 1e-7, 1.0);
+          derivative([&](const vec6& q) { return read(displaced(T, c_w, q), s, a, b).n_ab_w[k]; }, 1e-7, 1.0);
       for (int j = 0; j < 3; ++j) EXPECT_NEAR(r.turn[j][k], expected.angular[j], 1e-6);
     }
   }
