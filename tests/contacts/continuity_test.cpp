@@ -100,4 +100,27 @@ TEST(Continuity, SlideOffPressesLittleHarder) {
   EXPECT_EQ(glm::length(wrench_at(r, s.path(1.1)).force), 0.0);
 }
 
+// Near an edge, where a sample is deeper than its clearance, its depth falls as it goes deeper: the price of letting go
+// without a jump. What comes of it is a pull, here downwards onto a body that lies below; this bounds it.
+TEST(Continuity, APullNearEdgesIsSmall) {
+  const contact_scene s = stepped_block();
+  for (const double tau : {0.02 * mm, 0.05 * mm}) {
+    renderer r = make_scene_renderer(s, scene_settings(tau));
+    constexpr int ticks = 1000;
+    double push_n = 0.0, pull_n = 0.0;
+    int pulling = 0;
+    for (int i = 0; i <= ticks; ++i) {
+      const double up_n = wrench_at(r, s.path(static_cast<double>(i) / ticks)).force.z;
+      push_n = std::max(push_n, up_n);
+      pull_n = std::max(pull_n, -up_n);
+      pulling += up_n < 0.0 ? 1 : 0;
+    }
+    std::printf("%s, tau %.2f mm: pushes by up to %.2f N, pulls by up to %.2f N, in %.1f %% of the ticks\n",
+                s.name.c_str(), tau / mm, push_n, pull_n, 100.0 * pulling / ticks);
+    EXPECT_GT(push_n, 0.5);
+    EXPECT_LT(pull_n, (tau < 0.03 * mm ? 0.25 : 0.1) * push_n);
+    EXPECT_LT(pulling, ticks / 50);
+  }
+}
+
 }  // namespace
