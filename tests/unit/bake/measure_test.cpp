@@ -16,6 +16,7 @@ constexpr std::uint32_t side = 256;
 struct textured {
   coarse_mesh mesh;
   haptic_texture texture;
+  double texel_m = 0.0;
 };
 
 textured textured_box() {
@@ -24,6 +25,7 @@ textured textured_box() {
   const atlas charts = *make_atlas(box, side);
   stage_monitor monitor;
   textured out;
+  out.texel_m = charts.texel_m;
   out.mesh.positions = box.positions;
   for (std::size_t t = 0; t < box.triangles.size(); ++t) out.mesh.triangles.push_back({box.triangles[t], charts.uv[t]});
   const crease_normals directions(box, tree, 0.5 * charts.texel_m);
@@ -34,7 +36,7 @@ textured textured_box() {
 surface_error measure_against(const triangle_mesh& full, const textured& t, unsigned threads = 1) {
   const triangle_bvh tree(full.positions, full.triangles);
   stage_monitor monitor;
-  return *measure(full, tree, t.mesh, t.texture, threads, monitor);
+  return *measure(full, tree, t.mesh, t.texture, t.texel_m, threads, monitor);
 }
 
 TEST(Measure, TheSameSurfaceIsNoDistanceAway) {
@@ -46,11 +48,11 @@ TEST(Measure, TheSameSurfaceIsNoDistanceAway) {
 TEST(Measure, AScaledOriginalIsAsFarAsItsFacesAndCorners) {
   const double gap = 0.001;
   const surface_error e = measure_against(shapes::box({0.042, 0.042, 0.042}, {12, 12, 12}), textured_box());
-  EXPECT_NEAR(e.to_original_max_m, gap, 1e-6);  // the faces
+  EXPECT_NEAR(e.to_original.max_m, gap, 1e-6);  // the faces
   EXPECT_NEAR(e.to_original_rms_m, gap, 1e-6);
-  EXPECT_NEAR(e.to_textured_max_m, gap * std::sqrt(3.0), 1e-6);  // the corners
+  EXPECT_NEAR(e.to_textured.max_m, gap * std::sqrt(3.0), 1e-6);  // the corners
   EXPECT_GT(e.to_textured_rms_m, gap);
-  EXPECT_DOUBLE_EQ(e.max_m(), e.to_textured_max_m);
+  EXPECT_DOUBLE_EQ(e.max_m(), e.to_textured.max_m);
   EXPECT_NEAR(e.rms_m(), std::hypot(e.to_original_rms_m, e.to_textured_rms_m) / std::sqrt(2.0), 1e-15);
 }
 
@@ -60,7 +62,7 @@ TEST(Measure, OneWrongTexelShows) {
   const auto i = static_cast<std::size_t>(uv.x * side);
   const auto j = static_cast<std::size_t>(uv.y * side);
   t.texture.texels[j * side + i] *= 1.1F;
-  EXPECT_GT(measure_against(shapes::box({0.04, 0.04, 0.04}, {6, 6, 6}), t).to_original_max_m, 0.0005);
+  EXPECT_GT(measure_against(shapes::box({0.04, 0.04, 0.04}, {6, 6, 6}), t).to_original.max_m, 0.0005);
 }
 
 TEST(Measure, SeesACrack) {
