@@ -33,7 +33,7 @@ constexpr double least_range_in_diagonals = 0.005;
 constexpr double least_band_texels = 0.5;
 // A wider gap at a coarse edge is closed; narrower ones are what bilinear lookups leave where the surface is curved.
 constexpr double widest_gap_texels = 0.25;
-constexpr double fit_spacing_in_diagonals = 0.002;
+constexpr double fit_spacing_in_diagonals = 0.005;
 
 error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
 
@@ -150,7 +150,7 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   out.name = options.name;
   out.mesh = with_uvs(coarse->mesh, *charts);
   out.texture = std::move(projected->texture);
-  stitch(out.mesh, widest_gap_texels * charts->texel_m, out.texture);
+  stitch(out.mesh, full_tree, widest_gap_texels * charts->texel_m, out.texture);
   out.pieces = std::move(*pieces);
   out.mass = compute_mass_properties(out.mesh);
   out.box = bounds_of(out.mesh.positions);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "bake/fine_points.hpp"
@@ -48,30 +48,22 @@ bool measure_one_way(const fine_points& from, const triangle_bvh& to, unsigned t
 
 length_spread spread_of(const std::vector<double>& values_m, const std::vector<double>& weights) {
   if (values_m.empty()) return {};
-  std::vector<std::uint32_t> order(values_m.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return values_m[a] != values_m[b] ? values_m[a] < values_m[b] : a < b;
-  });
+  std::vector<std::pair<double, double>> sorted(values_m.size());
   double whole = 0.0;
-  for (const std::uint32_t i : order) whole += weights[i];
-  length_spread out;
-  out.max_m = values_m[order.back()];
-  out.median_m = out.p99_m = out.max_m;
-  double sum = 0.0;
-  bool past_median = false;
-  for (const std::uint32_t i : order) {
-    sum += weights[i];
-    if (!past_median && sum >= 0.5 * whole) {
-      out.median_m = values_m[i];
-      past_median = true;
-    }
-    if (sum >= 0.99 * whole) {
-      out.p99_m = values_m[i];
-      break;
-    }
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    sorted[i] = {values_m[i], weights[i]};
+    whole += weights[i];
   }
-  return out;
+  std::sort(sorted.begin(), sorted.end());
+  const auto percentile = [&](double share) {
+    double sum = 0.0;
+    for (const auto& [value, weight] : sorted) {
+      sum += weight;
+      if (sum >= share * whole) return value;
+    }
+    return sorted.back().first;
+  };
+  return {percentile(0.5), percentile(0.99), sorted.back().first};
 }
 
 double largest_crack(const coarse_mesh& coarse, const haptic_texture& texture) {

@@ -10,7 +10,7 @@ namespace asperity::bake {
 namespace {
 
 constexpr int fewest_samples = 3;  // along a side
-constexpr int most_samples = 32;
+constexpr int most_samples = 16;
 
 template <class Visit>
 void sample(const std::array<vec3, 3>& c, double spacing_m, const Visit& visit) {

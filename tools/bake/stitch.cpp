@@ -61,21 +61,24 @@ struct seam {
     return largest;
   }
 
-  void close(haptic_texture& texture) const {
+  // Both sides go to the original's point nearest to their middle: a middle between two walls lies on neither.
+  void close(const triangle_bvh& full, haptic_texture& texture) const {
     for (int i = 0; i <= samples; ++i) {
       const double s = static_cast<double>(i) / samples;
       const vec2 a = along(here, s);
       const vec2 b = along(there, s);
-      const vec3 half = 0.5 * (texture.sample(b) - texture.sample(a));
-      move(texture, footprint_at(texture, a), half);
-      move(texture, footprint_at(texture, b), -half);
+      const vec3 p = texture.sample(a);
+      const vec3 q = texture.sample(b);
+      const vec3 meet = full.closest(0.5 * (p + q)).point;
+      move(texture, footprint_at(texture, a), meet - p);
+      move(texture, footprint_at(texture, b), meet - q);
     }
   }
 };
 
 }  // namespace
 
-std::size_t stitch(const coarse_mesh& coarse, double limit_m, haptic_texture& texture) {
+std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double limit_m, haptic_texture& texture) {
   std::vector<index_triangle> triangles;
   for (const coarse_triangle& t : coarse.triangles) triangles.push_back(t.vertex);
   const connectivity net = connect(triangles, coarse.positions.size());
@@ -98,7 +101,7 @@ std::size_t stitch(const coarse_mesh& coarse, double limit_m, haptic_texture& te
     for (std::size_t i = 0; i < seams.size(); ++i) {
       if (seams[i].gap(texture) <= limit_m) continue;
       open = touched[i] = true;
-      seams[i].close(texture);
+      seams[i].close(full, texture);
     }
     if (!open) break;
   }

@@ -1,6 +1,7 @@
 // asperity bake: from a full-resolution mesh to a textured model.
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -82,7 +83,8 @@ result<void> check_size(const bake_command& options, const triangle_mesh& mesh) 
     high = glm::max(high, p);
   }
   const double diagonal = glm::length(high - low);
-  if (is_sensible_size(diagonal)) return {};
+  // Without any size, or with none that is a number, the mesh has another fault, which the bake names.
+  if (!std::isfinite(diagonal) || diagonal == 0.0 || is_sensible_size(diagonal)) return {};
   std::string choices;
   for (const length_unit& u : length_units) {
     if (is_sensible_size(diagonal * u.metres))

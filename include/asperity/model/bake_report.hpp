@@ -39,6 +39,8 @@ struct bake_quality {
 
   double surface_to_hull_max_m = 0.0;  ///< deepest that a coarse triangle lies within its convex piece
   double bridged_air_max_m = 0.0;      ///< farthest that a convex piece stands off the coarse mesh, outside of it
+
+  friend bool operator==(const bake_quality&, const bake_quality&) = default;
 };
 
 /// What the bake measured. Distances in metres, between the textured surface and the full-resolution original.

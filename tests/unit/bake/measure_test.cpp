@@ -72,6 +72,60 @@ TEST(Measure, SeesACrack) {
   EXPECT_GT(measure_against(shapes::box({0.04, 0.04, 0.04}, {6, 6, 6}), t).crack_max_m, 0.00015);
 }
 
+TEST(Measure, PercentilesAreByWeight) {
+  EXPECT_EQ(spread_of({}, {}), length_spread{});
+  EXPECT_EQ(spread_of({3.0}, {2.0}), (length_spread{3.0, 3.0, 3.0}));
+  // 0 to 99, in no order: half lies within the 50th, 99 % within the 99th.
+  std::vector<double> values;
+  for (int i = 0; i < 100; ++i) values.push_back((37 * i) % 100);
+  EXPECT_EQ(spread_of(values, std::vector<double>(100, 0.1)), (length_spread{49.0, 98.0, 99.0}));
+  // The largest weighs nothing: it shows in the maximum only.
+  EXPECT_EQ(spread_of({1.0, 2.0, 50.0}, {0.3, 0.7, 0.0}), (length_spread{2.0, 2.0, 50.0}));
+}
+
+// A dent of 1 mm in a twentieth of one face: 1 of 120 of the surface.
+TEST(Measure, PercentilesTellASmallPlaceFromAllOfIt) {
+  const textured box = textured_box();
+  const surface_error e =
+      measure_against(shapes::box({0.04, 0.04, 0.04}, {40, 40, 40},
+                                  [](vec3 p) {
+                                    const bool dent = p.z > 0.0199 && std::abs(p.x) < 0.0045 && std::abs(p.y) < 0.0045;
+                                    return dent ? p - vec3(0.0, 0.0, 0.001) : p;
+                                  }),
+                      box);
+  EXPECT_LT(e.to_textured.median_m, 1e-7);
+  EXPECT_NEAR(e.to_textured.max_m, 0.001, 1e-6);
+  EXPECT_NEAR(e.to_original.max_m, 0.001, 1e-6);
+  EXPECT_LT(e.to_original.median_m, 1e-7);
+  EXPECT_EQ(e.lost.share, 0.0);
+}
+
+TEST(Measure, SeesTheMiddleOfALargeTriangle) {
+  // The original's corners are where the texture is; the middles of its faces are not.
+  textured t = textured_box();
+  for (glm::vec3& texel : t.texture.texels)
+    if (texel.z > 0.01999F && texel.z < 0.02001F && std::abs(texel.x) < 0.01F && std::abs(texel.y) < 0.01F)
+      texel.z -= 0.001F;
+  EXPECT_NEAR(measure_against(shapes::box({0.04, 0.04, 0.04}, {1, 1, 1}), t).to_textured.max_m, 0.001, 1e-6);
+}
+
+TEST(Measure, SpacingIsATexelOnAFlatFaceAndMoreOnASlope) {
+  haptic_texture texture{4, 3, {}};
+  std::vector<std::uint32_t> chart;
+  for (std::uint32_t j = 0; j < 3; ++j)
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      texture.texels.emplace_back(0.001F * static_cast<float>(i), 0.001F * static_cast<float>(j),
+                                  i == 1 ? 0.002F : 0.0F);
+      chart.push_back(i == 3 ? 1 : 0);
+    }
+  // Along the rows 6 pairs are steep; along the columns 8 pairs are flat. Pairs between the charts do not count.
+  const length_spread s = texel_spacing(texture, chart);
+  EXPECT_NEAR(s.median_m, 0.001, 1e-9);
+  EXPECT_NEAR(s.max_m, std::sqrt(5.0) * 0.001, 1e-9);
+  chart.assign(12, no_halfedge);
+  EXPECT_EQ(texel_spacing(texture, chart), length_spread{});
+}
+
 TEST(Measure, DoesNotDependOnTheNumberOfThreads) {
   const triangle_mesh full = shapes::box({0.041, 0.041, 0.041}, {20, 20, 20});
   const textured t = textured_box();
