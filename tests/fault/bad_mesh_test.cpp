@@ -99,6 +99,40 @@ TEST_F(bad_mesh, truncated_binary_ply) {
   }
 }
 
+// A cube of 50 mm, drawn in millimetres.
+std::string cube_50_units() {
+  return "v 0 0 0\nv 50 0 0\nv 50 50 0\nv 0 50 0\nv 0 0 50\nv 50 0 50\nv 50 50 50\nv 0 50 50\n" +
+         std::string(cube_without_lid) + "f 5 6 7 8\n";
+}
+
+TEST_F(bad_mesh, another_unit_is_asked_for) {
+  const std::string message = expect_refused("part.obj", cube_50_units(), "invalid_argument");
+  for (const char* part : {"86.6 m", "--units mm (86.6 mm)", "--units cm", "--units in", "--units m ", "--scale"})
+    EXPECT_NE(message.find(part), std::string::npos) << part << ": " << message;
+}
+
+TEST_F(bad_mesh, said_units_are_taken) {
+  write("part.obj", cube_50_units());
+  const std::vector<std::string> bake{"bake", path("part.obj"), "-o", path("out.glb"), "--texture", "64"};
+  const std::pair<const char*, double> units[] = {{"mm", 0.05}, {"cm", 0.5}, {"in", 1.27}, {"m", 50.0}};
+  for (const auto& [unit, side] : units) {
+    std::vector<std::string> args = bake;
+    args.insert(args.end(), {"--units", unit});
+    const json baked = expect_document(args, "asperity.bake/1");
+    EXPECT_NEAR(baked.at("size").at("high").at(0).get<double>(), side, 1e-6) << unit;
+    EXPECT_NEAR(baked.at("scale").get<double>() * 50.0, side, 1e-12) << unit;
+  }
+}
+
+TEST_F(bad_mesh, a_speck_is_asked_about_too) {
+  std::string speck(cube_vertices);
+  for (std::size_t at = 0; (at = speck.find("0.1", at)) != std::string::npos; at += 6) speck.replace(at, 3, "0.0001");
+  const std::string message = expect_refused("speck.obj", speck + cube_without_lid + "f 5 6 7 8\n", "invalid_argument");
+  EXPECT_NE(message.find("173 um"), std::string::npos) << message;
+  EXPECT_NE(message.find("--units m "), std::string::npos) << message;
+  EXPECT_EQ(message.find("--units mm"), std::string::npos) << message;
+}
+
 TEST_F(bad_mesh, coarse_mesh_is_checked_too) {
   write("low.obj", std::string(cube_vertices) + cube_without_lid);
   expect_failure({"bake", (small_models() / "block.ply").string(), "--coarse", path("low.obj"), "-o", path("out.glb"),

@@ -48,11 +48,21 @@ TEST_F(documents, bake_and_inspect_tell_the_same) {
   EXPECT_GT(baked["bake"]["max_error"], baked["bake"]["rms_error"]);
   EXPECT_GT(baked["bake"]["relief"], 0.9e-3);  // ridges of half a millimetre either way, seen by a small texture
   EXPECT_FALSE(baked["stages"].empty());
+  for (const char* way : {"to_original", "to_textured"}) {
+    expect_keys(baked["bake"][way], {"rms", "p50", "p99", "max"});
+    EXPECT_LE(baked["bake"][way]["p50"], baked["bake"][way]["p99"]);
+    EXPECT_LE(baked["bake"][way]["p99"], baked["bake"][way]["max"]);
+  }
+  EXPECT_GT(baked["bake"]["crack"], 0.0);
+  expect_keys(baked["bake"]["lost"], {"share", "largest_share", "centre", "low", "high"});
+  expect_keys(baked["texture"]["spacing"], {"p50", "p99", "max"});
+  EXPECT_NEAR(baked["texture"]["utilisation"], baked["texture"]["coverage"], 0.05);
+  EXPECT_LT(baked["pieces"]["surface_to_hull"], 1e-6);  // a block is its own hull
 
   const json seen = expect_document({"inspect", path("brick.glb")}, "asperity.inspect/1");
   for (const char* key : {"name", "full_triangles", "coarse", "pieces", "texture"})
     EXPECT_EQ(seen[key], baked[key]) << key;
-  EXPECT_EQ(seen["bake"]["max_error"], baked["bake"]["max_error"]);
+  EXPECT_EQ(seen["bake"], baked["bake"]);
   // The file keeps positions in single precision.
   EXPECT_NEAR(seen["size"]["diagonal"], baked["size"]["diagonal"], 1e-8);
   EXPECT_NEAR(seen["mass_properties"]["volume"], baked["mass_properties"]["volume"], 1e-11);

@@ -33,7 +33,10 @@ TEST_F(usage, bad_number) {
                                                                  {"--texture", "12x"},
                                                                  {"--scale", "nan"},
                                                                  {"--scale", "0"},
-                                                                 {"--scale", "inf"}}) {
+                                                                 {"--scale", "inf"},
+                                                                 {"--units", "km"},
+                                                                 {"--units", "mm", "--scale", "0.001"},
+                                                                 {"--pieces", "0"}}) {
     arguments args = bake;
     args.insert(args.end(), wrong.begin(), wrong.end());
     expect_failure(args, 2, "usage");

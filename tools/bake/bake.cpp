@@ -11,11 +11,13 @@
 #include "bake/geometry.hpp"
 #include "bake/measure.hpp"
 #include "bake/parallel.hpp"
+#include "bake/piece_fit.hpp"
 #include "bake/pieces.hpp"
 #include "bake/project.hpp"
 #include "bake/relief_fit.hpp"
 #include "bake/simplify.hpp"
 #include "bake/stage_monitor.hpp"
+#include "bake/stitch.hpp"
 #include "bake/triangle_bvh.hpp"
 
 namespace asperity::bake {
@@ -29,6 +31,9 @@ constexpr std::uint32_t largest_texture = 8192;
 constexpr double range_per_cage = 2.0;
 constexpr double least_range_in_diagonals = 0.005;
 constexpr double least_band_texels = 0.5;
+// A wider gap at a coarse edge is closed; narrower ones are what bilinear lookups leave where the surface is curved.
+constexpr double widest_gap_texels = 0.25;
+constexpr double fit_spacing_in_diagonals = 0.005;
 
 error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
 
@@ -40,6 +45,8 @@ result<void> check_options(const bake_options& options) {
     return error{error_code::invalid_argument, "texture size " + std::to_string(options.texture_size) + " is outside " +
                                                    std::to_string(smallest_texture) + " to " +
                                                    std::to_string(largest_texture) + " texels per side"};
+  if (options.pieces && *options.pieces == 0)
+    return error{error_code::invalid_argument, "a model of no convex pieces cannot be touched; ask for 1 or more"};
   return {};
 }
 
@@ -71,6 +78,27 @@ coarse_mesh with_uvs(const triangle_mesh& mesh, const atlas& charts) {
   out.positions = mesh.positions;
   out.triangles.resize(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) out.triangles[t] = {mesh.triangles[t], charts.uv[t]};
+  return out;
+}
+
+bake_quality quality_of(const surface_error& errors, const atlas& charts, const length_spread& spacing,
+                        const piece_fit& fit) {
+  bake_quality out;
+  out.to_original = errors.to_original;
+  out.to_textured = errors.to_textured;
+  out.to_original_rms_m = errors.to_original_rms_m;
+  out.to_textured_rms_m = errors.to_textured_rms_m;
+  out.crack_max_m = errors.crack_max_m;
+  out.texel_m = charts.texel_m;
+  out.atlas_utilisation = charts.utilisation;
+  out.texel_spacing = spacing;
+  out.lost_share = errors.lost.share;
+  out.lost_part_share = errors.lost.part_share;
+  out.lost_part_centre = errors.lost.part_centre;
+  out.lost_part_low = errors.lost.part_low;
+  out.lost_part_high = errors.lost.part_high;
+  out.surface_to_hull_max_m = fit.surface_to_hull_max_m;
+  out.bridged_air_max_m = fit.bridged_air_max_m;
   return out;
 }
 
@@ -108,19 +136,27 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (!projected) return projected.error();
 
   if (!monitor.begin("pieces")) return cancelled();
-  auto pieces = decompose(coarse->mesh, piece_limits{}, monitor);
+  auto pieces = options.pieces ? decompose_into(coarse->mesh, *options.pieces, monitor)
+                               : decompose(coarse->mesh, piece_limits{}, monitor);
   if (!pieces) return pieces.error();
+
+  if (options.pieces && pieces->size() != *options.pieces)
+    remark(options, "made " + std::to_string(pieces->size()) + " convex pieces, not the " +
+                        std::to_string(*options.pieces) + " asked for");
+  const auto fit = measure_fit(coarse->mesh, *pieces, fit_spacing_in_diagonals * diagonal, monitor);
+  if (!fit) return cancelled();
 
   textured_model out;
   out.name = options.name;
   out.mesh = with_uvs(coarse->mesh, *charts);
   out.texture = std::move(projected->texture);
+  stitch(out.mesh, full_tree, widest_gap_texels * charts->texel_m, out.texture);
   out.pieces = std::move(*pieces);
   out.mass = compute_mass_properties(out.mesh);
   out.box = bounds_of(out.mesh.positions);
 
   if (!monitor.begin("measure")) return cancelled();
-  const auto errors = measure(full->mesh, full_tree, out.mesh, out.texture, threads, monitor);
+  const auto errors = measure(full->mesh, full_tree, out.mesh, out.texture, charts->texel_m, threads, monitor);
   if (!errors) return errors.error();
   out.report.rms_error_m = errors->rms_m();
   out.report.max_error_m = errors->max_m();
@@ -129,6 +165,7 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   out.report.full_triangles = full->mesh.triangles.size();
   out.report.fallback_texels = projected->fallback_texels;
   out.report.texels = projected->texels;
+  out.report.quality = quality_of(*errors, *charts, texel_spacing(out.texture, projected->chart), *fit);
   return out;
 }
 

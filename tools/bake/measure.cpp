@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
+#include "bake/fine_points.hpp"
 #include "bake/geometry.hpp"
 #include "bake/halfedges.hpp"
 #include "bake/parallel.hpp"
@@ -11,112 +13,61 @@
 namespace asperity::bake {
 namespace {
 
-// The textured surface as triangles, with the area that each vertex stands for.
-struct sampled_surface {
-  triangle_mesh mesh;
-  std::vector<double> area;
-};
+// Distances from points of the original this far apart miss nothing that is as wide as the texture's own detail.
+constexpr double original_step_texels = 2.0;
+constexpr int least_crack_samples = 32;
+constexpr double crack_samples_per_texel = 2.0;
 
-struct row {
-  std::uint32_t first;
-  std::uint32_t segments;
-};
-
-// Triangles between two rows of points over the same directions, the longer row below.
-void stitch(const row& below, const row& above, std::vector<index_triangle>& out) {
-  std::uint32_t i = 0;
-  std::uint32_t j = 0;
-  while (i < below.segments || j < above.segments) {
-    const bool step_below =
-        j == above.segments || (i < below.segments && (2 * i + 1) * above.segments <= (2 * j + 1) * below.segments);
-    if (step_below) {
-      out.push_back({below.first + i, below.first + i + 1, above.first + j});
-      ++i;
-    } else {
-      out.push_back({below.first + i, above.first + j + 1, above.first + j});
-      ++j;
-    }
-  }
-}
-
-// Rows parallel to the triangle's longest edge, about one texel apart, so that slivers do not get more than their
-// share.
-void sample_triangle(const coarse_triangle& t, const haptic_texture& texture, sampled_surface& out) {
-  const vec2 side{texture.width, texture.height};
-  std::array<double, 3> edge{};
-  for (std::size_t k = 0; k < 3; ++k) edge[k] = glm::length(side * (t.uv[(k + 1) % 3] - t.uv[k]));
-  const auto base = static_cast<std::size_t>(std::max_element(edge.begin(), edge.end()) - edge.begin());
-  const vec2 a = t.uv[base];
-  const vec2 b = t.uv[(base + 1) % 3];
-  const vec2 apex = t.uv[(base + 2) % 3];
-  const vec2 along = side * (b - a);
-  const vec2 up = side * (apex - a);
-  const double height = std::abs(along.x * up.y - along.y * up.x) / edge[base];
-  const auto rows = static_cast<std::uint32_t>(std::max(1.0, std::ceil(height)));
-  row below{};
-  for (std::uint32_t j = 0; j <= rows; ++j) {
-    const double s = static_cast<double>(j) / rows;
-    const row here{static_cast<std::uint32_t>(out.mesh.positions.size()),
-                   j == rows ? 0U : static_cast<std::uint32_t>(std::max(1.0, std::ceil((1.0 - s) * edge[base])))};
-    for (std::uint32_t i = 0; i <= here.segments; ++i) {
-      const double r = here.segments == 0 ? 0.0 : static_cast<double>(i) / here.segments;
-      out.mesh.positions.push_back(texture.sample((1.0 - s) * ((1.0 - r) * a + r * b) + s * apex));
-    }
-    if (j > 0) stitch(below, here, out.mesh.triangles);
-    below = here;
-  }
-}
-
-std::vector<double> vertex_areas(const triangle_mesh& mesh) {
-  std::vector<double> area(mesh.positions.size(), 0.0);
-  for (const index_triangle& t : mesh.triangles) {
-    const double third = glm::length(area_normal(corners(mesh.positions, t))) / 6.0;
-    for (const std::uint32_t v : t) area[v] += third;
-  }
-  return area;
-}
-
-sampled_surface sample_surface(const coarse_mesh& coarse, const haptic_texture& texture) {
-  sampled_surface out;
-  for (const coarse_triangle& t : coarse.triangles) sample_triangle(t, texture, out);
-  out.area = vertex_areas(out.mesh);
-  return out;
-}
-
-struct distance_sum {
-  double weighted_squares = 0.0;
-  double weight = 0.0;
-  double largest = 0.0;
+struct one_way {
+  std::vector<double> distance;
+  length_spread spread;
+  double rms = 0.0;
 };
 
 // @return false where the bake was cancelled
-bool measure_one_way(const std::vector<vec3>& from, const std::vector<double>& weight, const triangle_bvh& to,
-                     unsigned threads, stage_monitor& monitor, double start, double& rms, double& largest) {
-  std::vector<distance_sum> of_block(block_count(from.size()));
-  const auto visit = [&](std::size_t block, std::size_t begin, std::size_t end) {
-    distance_sum& sum = of_block[block];
-    for (std::size_t i = begin; i < end; ++i) {
-      const double d = to.closest(from[i]).distance_m;
-      sum.weighted_squares += weight[i] * d * d;
-      sum.weight += weight[i];
-      sum.largest = std::max(sum.largest, d);
-    }
+bool measure_one_way(const fine_points& from, const triangle_bvh& to, unsigned threads, stage_monitor& monitor,
+                     double start, one_way& out) {
+  const std::vector<vec3>& points = from.mesh.positions;
+  out.distance.resize(points.size());
+  const auto visit = [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) out.distance[i] = to.closest(points[i]).distance_m;
   };
-  if (!parallel_blocks(from.size(), threads, monitor, start, start + 0.5, visit)) return false;
-  distance_sum all;
-  for (const distance_sum& s : of_block) {
-    all.weighted_squares += s.weighted_squares;
-    all.weight += s.weight;
-    all.largest = std::max(all.largest, s.largest);
+  if (!parallel_blocks(points.size(), threads, monitor, start, start + 0.45, visit)) return false;
+  double weighted_squares = 0.0;
+  double weight = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    weighted_squares += from.area[i] * out.distance[i] * out.distance[i];
+    weight += from.area[i];
   }
-  rms = all.weight > 0.0 ? std::sqrt(all.weighted_squares / all.weight) : 0.0;
-  largest = all.largest;
+  out.rms = weight > 0.0 ? std::sqrt(weighted_squares / weight) : 0.0;
+  out.spread = spread_of(out.distance, from.area);
   return true;
 }
 
-// The two triangles at an edge look it up in two places of the texture; the answers should be the same.
+}  // namespace
+
+length_spread spread_of(const std::vector<double>& values_m, const std::vector<double>& weights) {
+  if (values_m.empty()) return {};
+  std::vector<std::pair<double, double>> sorted(values_m.size());
+  double whole = 0.0;
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    sorted[i] = {values_m[i], weights[i]};
+    whole += weights[i];
+  }
+  std::sort(sorted.begin(), sorted.end());
+  const auto percentile = [&](double share) {
+    double sum = 0.0;
+    for (const auto& [value, weight] : sorted) {
+      sum += weight;
+      if (sum >= share * whole) return value;
+    }
+    return sorted.back().first;
+  };
+  return {percentile(0.5), percentile(0.99), sorted.back().first};
+}
+
 double largest_crack(const coarse_mesh& coarse, const haptic_texture& texture) {
-  constexpr int samples = 32;
+  const vec2 side{texture.width, texture.height};
   std::vector<index_triangle> triangles;
   for (const coarse_triangle& t : coarse.triangles) triangles.push_back(t.vertex);
   const connectivity net = connect(triangles, coarse.positions.size());
@@ -126,6 +77,8 @@ double largest_crack(const coarse_mesh& coarse, const haptic_texture& texture) {
     if (mate == no_halfedge || mate < h) continue;
     const auto& here = coarse.triangles[h / 3].uv;
     const auto& there = coarse.triangles[mate / 3].uv;
+    const double texels = glm::length(side * (here[next_halfedge(h) % 3] - here[h % 3]));
+    const int samples = std::max(least_crack_samples, static_cast<int>(std::ceil(crack_samples_per_texel * texels)));
     for (int i = 0; i <= samples; ++i) {
       const double s = static_cast<double>(i) / samples;
       const vec3 p = texture.sample((1.0 - s) * here[h % 3] + s * here[next_halfedge(h) % 3]);
@@ -136,24 +89,45 @@ double largest_crack(const coarse_mesh& coarse, const haptic_texture& texture) {
   return largest;
 }
 
-}  // namespace
+length_spread texel_spacing(const haptic_texture& texture, const std::vector<std::uint32_t>& chart) {
+  std::vector<double> spacing;
+  spacing.reserve(2 * chart.size());
+  const auto take = [&](std::size_t a, std::size_t b) {
+    if (chart[a] != no_halfedge && chart[a] == chart[b])
+      spacing.push_back(glm::length(vec3(texture.texels[b]) - vec3(texture.texels[a])));
+  };
+  for (std::size_t i = 0; i < chart.size(); ++i) {
+    if ((i + 1) % texture.width != 0) take(i, i + 1);
+    if (i + texture.width < chart.size()) take(i, i + texture.width);
+  }
+  return spread_of(spacing, std::vector<double>(spacing.size(), 1.0));
+}
 
 double surface_error::rms_m() const noexcept {
   return std::sqrt(0.5 * (to_original_rms_m * to_original_rms_m + to_textured_rms_m * to_textured_rms_m));
 }
 
-double surface_error::max_m() const noexcept { return std::max(to_original_max_m, to_textured_max_m); }
+double surface_error::max_m() const noexcept { return std::max(to_original.max_m, to_textured.max_m); }
 
 result<surface_error> measure(const triangle_mesh& full, const triangle_bvh& full_tree, const coarse_mesh& coarse,
-                              const haptic_texture& texture, unsigned threads, stage_monitor& monitor) {
-  const sampled_surface textured = sample_surface(coarse, texture);
-  const triangle_bvh textured_tree(textured.mesh.positions, textured.mesh.triangles);
+                              const haptic_texture& texture, double texel_m, unsigned threads, stage_monitor& monitor) {
+  const error cancelled{error_code::cancelled, "the bake was cancelled"};
   surface_error out;
-  const bool done = measure_one_way(textured.mesh.positions, textured.area, full_tree, threads, monitor, 0.0,
-                                    out.to_original_rms_m, out.to_original_max_m) &&
-                    measure_one_way(full.positions, vertex_areas(full), textured_tree, threads, monitor, 0.5,
-                                    out.to_textured_rms_m, out.to_textured_max_m);
-  if (!done) return error{error_code::cancelled, "the bake was cancelled"};
+  const fine_points textured = sample_textured(coarse, texture);
+  one_way forth;
+  if (!measure_one_way(textured, full_tree, threads, monitor, 0.0, forth)) return cancelled;
+  out.to_original = forth.spread;
+  out.to_original_rms_m = forth.rms;
+  const triangle_bvh textured_tree(textured.mesh.positions, textured.mesh.triangles);
+  const fine_points original = sample_mesh(full, original_step_texels * texel_m);
+  one_way back;
+  if (!measure_one_way(original, textured_tree, threads, monitor, 0.45, back)) return cancelled;
+  out.to_textured = back.spread;
+  out.to_textured_rms_m = back.rms;
+  const std::vector<char> lost =
+      find_lost(original, back.distance, textured_tree, lost_reach_texels * texel_m, threads, monitor);
+  if (monitor.cancelled()) return cancelled;
+  out.lost = measure_lost(full, original, lost);
   out.crack_max_m = largest_crack(coarse, texture);
   return out;
 }

@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <tuple>
 
 #include "bake/convex_hull.hpp"
 #include "bake/geometry.hpp"
-#include "bake/triangle_bvh.hpp"
+#include "bake/solid.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -37,7 +36,7 @@ class decomposition {
   decomposition(const triangle_mesh& mesh, const piece_limits& limits)
       : mesh_(mesh),
         net_(connect(mesh.triangles, mesh.positions.size())),
-        tree_(mesh.positions, mesh.triangles),
+        solid_(mesh),
         owner_(mesh.triangles.size(), no_halfedge),
         in_patch_(mesh.positions.size(), no_halfedge) {
     const bounds box = bounds_of(mesh.positions);
@@ -149,7 +148,7 @@ class decomposition {
           const double b1 = static_cast<double>(i) / n;
           const double b2 = static_cast<double>(j) / n;
           const vec3 q = (1.0 - b1 - b2) * c[0] + b1 * c[1] + b2 * c[2];
-          if (tree_.closest(q, bridged_air_).triangle == no_halfedge && !is_inside(q)) return true;
+          if (solid_.surface().closest(q, bridged_air_).triangle == no_halfedge && !solid_.holds(q)) return true;
         }
     }
     return false;
@@ -191,31 +190,6 @@ class decomposition {
       if (from >= to) return false;
     }
     return true;
-  }
-
-  // Where the nearest point lies within a triangle, the side of that triangle tells; at edges and corners the winding
-  // number does, which costs a look at every triangle.
-  bool is_inside(const vec3& p) const {
-    const auto nearest = tree_.closest(p);
-    const double height = glm::dot(planes_[nearest.triangle].normal, p - nearest.point);
-    return std::abs(height) > (1.0 - 1e-12) * nearest.distance_m ? height < 0.0 : winds_around(p);
-  }
-
-  // Winding number of the mesh about p, from the solid angles of its triangles (van Oosterom and Strackee, 1983).
-  bool winds_around(const vec3& p) const {
-    double angle = 0.0;
-    for (const index_triangle& t : mesh_.triangles) {
-      const auto c = bake::corners(mesh_.positions, t);
-      const vec3 a = c[0] - p;
-      const vec3 b = c[1] - p;
-      const vec3 d = c[2] - p;
-      const double la = glm::length(a);
-      const double lb = glm::length(b);
-      const double ld = glm::length(d);
-      angle += 2.0 * std::atan2(glm::dot(a, glm::cross(b, d)),
-                                la * lb * ld + glm::dot(a, b) * ld + glm::dot(b, d) * la + glm::dot(d, a) * lb);
-    }
-    return angle > 2.0 * std::numbers::pi;
   }
 
   convex_piece finish(const patch& p) const {
@@ -270,7 +244,7 @@ class decomposition {
 
   const triangle_mesh& mesh_;
   connectivity net_;
-  triangle_bvh tree_;
+  solid solid_;
   std::vector<plane> planes_;
   std::vector<lattice_point> lattice_;
   std::vector<std::uint32_t> owner_;     // patch of each triangle
@@ -290,6 +264,34 @@ result<std::vector<convex_piece>> decompose(const triangle_mesh& mesh, const pie
   auto pieces = work.run(monitor);
   if (!pieces) return error{error_code::cancelled, "the bake was cancelled"};
   return std::move(*pieces);
+}
+
+result<std::vector<convex_piece>> decompose_into(const triangle_mesh& mesh, std::size_t count, stage_monitor& monitor) {
+  constexpr int most_tries = 8;
+  double tight = -6.0;  // powers of two
+  double loose = 4.0;
+  const auto away = [count](std::size_t n) {
+    return std::abs(std::log(static_cast<double>(n) / static_cast<double>(count)));
+  };
+  std::optional<std::vector<convex_piece>> best;
+  double best_power = 0.0;
+  double power = 0.0;
+  for (int i = 0; i < most_tries; ++i) {
+    piece_limits limits;
+    limits.tolerance *= std::exp2(power);
+    limits.bridged_air *= std::exp2(power);
+    auto pieces = decompose(mesh, limits, monitor);
+    if (!pieces) return pieces.error();
+    const std::size_t n = pieces->size();
+    if (!best || away(n) < away(best->size()) || (n == best->size() && power < best_power)) {
+      best = std::move(*pieces);
+      best_power = power;
+    }
+    if (n == count) break;
+    (n > count ? tight : loose) = power;
+    power = 0.5 * (tight + loose);
+  }
+  return std::move(*best);
 }
 
 }  // namespace asperity::bake

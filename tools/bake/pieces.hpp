@@ -28,4 +28,10 @@ struct piece_limits {
 [[nodiscard]] result<std::vector<convex_piece>> decompose(const triangle_mesh& mesh, const piece_limits& limits,
                                                           stage_monitor& monitor);
 
+/// The same with limits scaled together, from a 64th to 16 times the usual ones, to bring the number of pieces near
+/// `count`: that of the tried splits whose number is nearest to it, by ratio, and among equals the tightest.
+/// @pre count >= 1
+[[nodiscard]] result<std::vector<convex_piece>> decompose_into(const triangle_mesh& mesh, std::size_t count,
+                                                               stage_monitor& monitor);
+
 }  // namespace asperity::bake

@@ -129,6 +129,7 @@ result<projection> project(const triangle_mesh& coarse, const atlas& charts, con
   const glm::vec3 nowhere(std::numeric_limits<float>::quiet_NaN());
   projection out;
   out.texture = {texture_size, texture_size, std::vector<glm::vec3>(owners.size(), nowhere)};
+  out.chart.assign(owners.size(), no_halfedge);
   std::vector<tally> of_block(block_count(owners.size()));
   const auto fill = [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -139,6 +140,7 @@ result<projection> project(const triangle_mesh& coarse, const atlas& charts, con
       const vec2 p{static_cast<double>(i % texture_size) + 0.5, static_cast<double>(row) + 0.5};
       vec3 q;
       if (o.distance == 0.0F) {
+        out.chart[i] = charts.chart[o.triangle];
         q = surface(o.triangle, triangle.coordinates(p), &of_block[block]);
       } else {
         const vec2 edge = triangle.clamp(p);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/haptic_texture.hpp"
@@ -16,11 +17,12 @@ namespace asperity::bake {
 
 struct projection {
   haptic_texture texture;
-  std::size_t texels = 0;           ///< inside a chart, gutters not counted
-  std::size_t fallback_texels = 0;  ///< of these, projected to the closest point
-  double highest_m = 0.0;           ///< largest displacement along the direction of projection
-  double lowest_m = 0.0;            ///< smallest
-  double max_displacement_m = 0.0;  ///< largest distance between a texel and its coarse surface point
+  std::vector<std::uint32_t> chart;  ///< per texel: the chart that it lies in; no_halfedge in gutters and outside
+  std::size_t texels = 0;            ///< inside a chart, gutters not counted
+  std::size_t fallback_texels = 0;   ///< of these, projected to the closest point
+  double highest_m = 0.0;            ///< largest displacement along the direction of projection
+  double lowest_m = 0.0;             ///< smallest
+  double max_displacement_m = 0.0;   ///< largest distance between a texel and its coarse surface point
 };
 
 /// Fills every texel inside a chart with the point where the direction of its coarse surface point, followed both ways,

@@ -191,6 +191,29 @@ triangle_bvh::nearest triangle_bvh::closest(const vec3& p, double within) const 
   return best;
 }
 
+bool triangle_bvh::has_facing(const vec3& p, const vec3& n, double within) const noexcept {
+  const double within2 = within * within;
+  std::array<std::uint32_t, stack_size> stack;
+  std::size_t depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const std::uint32_t at = stack[--depth];
+    const node& here = nodes_[at];
+    if (distance2(here, p) > within2) continue;
+    if (here.count == 0) {
+      stack[depth++] = here.right_or_first;
+      stack[depth++] = at + 1;
+      continue;
+    }
+    for (std::uint32_t i = here.right_or_first; i < here.right_or_first + here.count; ++i) {
+      if (!(glm::dot(area_normal(corners_[i]), n) > 0.0)) continue;
+      const vec3 q = closest_on_triangle(p, corners_[i]);
+      if (glm::dot(p - q, p - q) <= within2) return true;
+    }
+  }
+  return false;
+}
+
 std::optional<triangle_bvh::crossing> triangle_bvh::nearest_front_crossing(const vec3& p, const vec3& d,
                                                                            double range) const noexcept {
   const vec3 inverse = 1.0 / d;

@@ -37,6 +37,9 @@ class triangle_bvh {
   /// The point of the surface nearest to p, no farther than `within`.
   [[nodiscard]] nearest closest(const vec3& p, double within = std::numeric_limits<double>::infinity()) const noexcept;
 
+  /// Is a point within `within` of p on a triangle whose outward side faces along n, by less than a right angle?
+  [[nodiscard]] bool has_facing(const vec3& p, const vec3& n, double within) const noexcept;
+
   /// The crossing of the line p + s d, |s| <= range, that is nearest to p among the triangles whose outward side
   /// faces along d. Edges and corners count, so a line cannot slip through between two triangles. @pre |d| = 1
   [[nodiscard]] std::optional<crossing> nearest_front_crossing(const vec3& p, const vec3& d,

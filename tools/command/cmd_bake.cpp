@@ -1,6 +1,9 @@
 // asperity bake: from a full-resolution mesh to a textured model.
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,7 +32,9 @@ struct bake_command {
   std::size_t triangles = 600;
   std::uint32_t texture = 1024;
   unsigned threads = 0;
-  double scale = 1.0;
+  std::optional<double> scale;  // metres per unit, by --scale
+  std::optional<std::string> units;
+  std::optional<std::size_t> pieces;
   bool close_holes = false;
 };
 
@@ -53,6 +58,46 @@ class stage_clock {
   std::chrono::steady_clock::time_point since_;
 };
 
+struct length_unit {
+  const char* name;
+  double metres;
+};
+constexpr std::array<length_unit, 4> length_units{{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"in", 0.0254}}};
+
+double metres_per_unit(const bake_command& options) {
+  if (options.scale) return *options.scale;
+  for (const length_unit& u : length_units)
+    if (options.units == u.name) return u.metres;
+  return 1.0;
+}
+
+// Mesh formats other than glTF do not say what their numbers mean. Where they would make a body that nobody holds in
+// his hand, the unit is asked for.
+result<void> check_size(const bake_command& options, const triangle_mesh& mesh) {
+  if (options.scale || options.units || mesh.positions.empty()) return {};
+  if (extension_error(options.full, {".gltf", ".glb"}).empty()) return {};
+  vec3 low = mesh.positions.front();
+  vec3 high = low;
+  for (const vec3& p : mesh.positions) {
+    low = glm::min(low, p);
+    high = glm::max(high, p);
+  }
+  const double diagonal = glm::length(high - low);
+  // Without any size, or with none that is a number, the mesh has another fault, which the bake names.
+  if (!std::isfinite(diagonal) || diagonal == 0.0 || is_sensible_size(diagonal)) return {};
+  std::string choices;
+  for (const length_unit& u : length_units) {
+    if (is_sensible_size(diagonal * u.metres))
+      choices += (choices.empty() ? "" : ", or ") + std::string("--units ") + u.name + " (" +
+                 length_text(diagonal * u.metres) + ")";
+  }
+  return error{error_code::invalid_argument,
+               options.full + ": its diagonal would be " + length_text(diagonal) +
+                   " if its unit is the metre, outside " + sensible_sizes() +
+                   "; say the unit: " + (choices.empty() ? "" : choices + ", or ") +
+                   "--units m if it is that large or small, or --scale with metres per unit"};
+}
+
 void scale_mesh(triangle_mesh& mesh, double factor) {
   if (factor == 1.0) return;
   for (vec3& p : mesh.positions) p *= factor;
@@ -73,7 +118,7 @@ answer report(const bake_command& options, const textured_model& model, const ba
               const stage_clock& clock, std::vector<std::string> notes) {
   for (std::string& warning : warnings(model)) notes.push_back(std::move(warning));
   answer out;
-  out.document = {{"file", options.out}, {"source", options.full}, {"scale", options.scale}};
+  out.document = {{"file", options.out}, {"source", options.full}, {"scale", metres_per_unit(options)}};
   out.document.update(describe(model));
   out.document["repair"] = {{"holes_closed", holes.holes},
                             {"triangles_added", holes.triangles_added},
@@ -114,7 +159,8 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   enter("read", 0.0);
   result<triangle_mesh> full = io::load_mesh(options.full);
   if (!full) return full.error();
-  scale_mesh(*full, options.scale);
+  if (const result<void> ok = check_size(options, *full); !ok) return ok.error();
+  scale_mesh(*full, metres_per_unit(options));
   bake::hole_report holes;
   if (options.close_holes) {
     const result<bake::hole_report> closed = bake::close_holes(*full);
@@ -126,6 +172,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.name = options.name.empty() ? fs::path(options.full).stem().string() : options.name;
   settings.triangles = options.triangles;
   settings.texture_size = options.texture;
+  settings.pieces = options.pieces;
   settings.threads = options.threads;
   settings.progress = enter;
   std::vector<std::string> remarks;
@@ -133,7 +180,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!options.coarse.empty()) {
     result<triangle_mesh> coarse = io::load_mesh(options.coarse);
     if (!coarse) return coarse.error();
-    scale_mesh(*coarse, options.scale);
+    scale_mesh(*coarse, metres_per_unit(options));
     settings.coarse = std::move(coarse).value();
   }
   const result<textured_model> model = bake::bake(*full, settings);
@@ -163,9 +210,13 @@ void add_bake(command_line& line) {
   sub.add_option("--texture", o->texture, "Texels per side of the haptic texture")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
-  sub.add_option("--scale", o->scale, "Metres per unit of the meshes (0.001 for millimetres)")
-      ->check(positive_number_error, "NUMBER > 0")
-      ->capture_default_str();
+  auto* scale = sub.add_option("--scale", o->scale, "Metres per unit of the meshes (0.001 for millimetres)")
+                    ->check(positive_number_error, "NUMBER > 0");
+  sub.add_option("--units", o->units, "Unit of the meshes: m, cm, mm or in")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
+      ->excludes(scale);
+  sub.add_option("--pieces", o->pieces, "Convex pieces to aim for; by default as many as the usual tolerances make")
+      ->check(CLI::Range(1, 1000000));
   sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
   sub.add_option("--threads", o->threads, "Threads to use; 0 takes all. The result does not depend on it")

@@ -21,6 +21,14 @@ namespace asperity::command {
 /// Lines of warnings for a person; empty where there are none.
 [[nodiscard]] std::string warnings_text(const std::vector<std::string>& warnings);
 
+/// Is a diagonal within what a body to be felt may measure? What is not is a mix-up of units, most likely.
+[[nodiscard]] constexpr bool is_sensible_size(double diagonal_m) noexcept {
+  return diagonal_m >= 1e-3 && diagonal_m <= 10.0;
+}
+
+/// The same range in words.
+[[nodiscard]] inline const char* sensible_sizes() noexcept { return "1 mm to 10 m"; }
+
 [[nodiscard]] inline json to_json(const vec3& v) { return json::array({v.x, v.y, v.z}); }
 
 }  // namespace asperity::command

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "asperity/core/math.hpp"
 #include "asperity/core/status.hpp"
 
 namespace asperity::io {
@@ -56,6 +57,19 @@ class json_object {
     const json& v = raw(key);
     if (!v.is_number() || !std::isfinite(v.get<double>())) reject(path(key) + " is not a finite number");
     return v.get<double>();
+  }
+  /// Three finite numbers.
+  [[nodiscard]] vec3 vector(const char* key) const {
+    const json& v = raw(key);
+    vec3 out{0.0};
+    for (int i = 0; i < 3; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      if (!v.is_array() || v.size() != 3 || !v[at].is_number() || !std::isfinite(v[at].get<double>())) {
+        reject(path(key) + " is not three finite numbers");
+      }
+      out[i] = v[at].get<double>();
+    }
+    return out;
   }
   [[nodiscard]] std::string text(const char* key) const {
     const json& v = raw(key);

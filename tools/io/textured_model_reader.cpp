@@ -183,6 +183,30 @@ std::vector<convex_piece> read_pieces(const gltf_document& document, const json_
   return pieces;
 }
 
+length_spread read_spread(const json_object& from) {
+  return {from.number("median_m"), from.number("p99_m"), from.number("max_m")};
+}
+
+bake_quality read_quality(const json_object& from) {
+  bake_quality out;
+  out.to_original = read_spread(from.object("to_original"));
+  out.to_textured = read_spread(from.object("to_textured"));
+  out.to_original_rms_m = from.number("to_original_rms_m");
+  out.to_textured_rms_m = from.number("to_textured_rms_m");
+  out.crack_max_m = from.number("crack_max_m");
+  out.texel_m = from.number("texel_m");
+  out.atlas_utilisation = from.number("atlas_utilisation");
+  out.texel_spacing = read_spread(from.object("texel_spacing"));
+  out.lost_share = from.number("lost_share");
+  out.lost_part_share = from.number("lost_part_share");
+  out.lost_part_centre = from.vector("lost_part_centre");
+  out.lost_part_low = from.vector("lost_part_low");
+  out.lost_part_high = from.vector("lost_part_high");
+  out.surface_to_hull_max_m = from.number("surface_to_hull_max_m");
+  out.bridged_air_max_m = from.number("bridged_air_max_m");
+  return out;
+}
+
 bake_report read_report(const json_object& from) {
   bake_report report;
   report.rms_error_m = from.number("rms_error_m");
@@ -192,6 +216,7 @@ bake_report read_report(const json_object& from) {
   report.full_triangles = static_cast<std::size_t>(from.whole("full_triangles"));
   report.fallback_texels = static_cast<std::size_t>(from.whole("fallback_texels"));
   report.texels = static_cast<std::size_t>(from.whole("texels"));
+  if (from.has("quality")) report.quality = read_quality(from.object("quality"));
   return report;
 }
 

@@ -15,6 +15,7 @@
 #include "file_bytes.hpp"
 #include "haptic_texture_extension.hpp"
 #include "relief_image.hpp"
+#include "report_object.hpp"
 
 namespace asperity::io {
 namespace {
@@ -180,24 +181,6 @@ bool add_pieces(const textured_model& model, glb_builder& glb, object& to) {
   pieces["triangles"] = value(glb.add_view(triangles));
   to["pieces"] = value(std::move(pieces));
   return true;
-}
-
-object report_object(const bake_report& report) {
-  const auto count = [](std::size_t n) {
-    return value(static_cast<int>(std::min<std::size_t>(n, std::numeric_limits<int>::max())));
-  };
-  return {{"rms_error_m", value(report.rms_error_m)},
-          {"max_error_m", value(report.max_error_m)},
-          {"relief_m", value(report.relief_m)},
-          {"max_displacement_m", value(report.max_displacement_m)},
-          {"full_triangles", count(report.full_triangles)},
-          {"fallback_texels", count(report.fallback_texels)},
-          {"texels", count(report.texels)}};
-}
-
-bool is_finite(const bake_report& r) {
-  return std::isfinite(r.rms_error_m) && std::isfinite(r.max_error_m) && std::isfinite(r.relief_m) &&
-         std::isfinite(r.max_displacement_m);
 }
 
 result<void> write(const textured_model& given, const std::filesystem::path& file) {

@@ -9,23 +9,13 @@
 
 #include "asperity/core/memory.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/model/bake_report.hpp"
 #include "asperity/model/coarse_mesh.hpp"
 #include "asperity/model/convex_piece.hpp"
 #include "asperity/model/haptic_texture.hpp"
 #include "asperity/model/mass_properties.hpp"
 
 namespace asperity {
-
-/// What the bake measured. Distances in metres, between the textured surface and the full-resolution original.
-struct bake_report {
-  double rms_error_m = 0.0;         ///< root mean square over both directions (texture to original and back)
-  double max_error_m = 0.0;         ///< largest of either direction
-  double relief_m = 0.0;            ///< peak to valley of the displacement along the coarse normal
-  double max_displacement_m = 0.0;  ///< largest distance between a texel and its coarse surface point
-  std::size_t full_triangles = 0;
-  std::size_t fallback_texels = 0;  ///< texels projected to the closest point because their ray met no front face
-  std::size_t texels = 0;           ///< texels inside a chart
-};
 
 struct bounds {
   vec3 low{0.0};

@@ -11,6 +11,7 @@
 #include "asperity/model/validate.hpp"
 #include "bake/geometry.hpp"
 #include "bake/halfedges.hpp"
+#include "bake/triangle_bvh.hpp"
 #include "shapes.hpp"
 
 namespace asperity::bake {
@@ -84,6 +85,46 @@ TEST(Bake, ReportsWhatItMeasured) {
   EXPECT_EQ(report.fallback_texels, 0u);
 }
 
+TEST(Bake, ReportsItsQuality) {
+  const bake_report& report = baked_torus().report;
+  const double diagonal = baked_torus().box.diagonal();
+  ASSERT_TRUE(report.quality);
+  const bake_quality& q = *report.quality;
+  for (const length_spread& s : {q.to_original, q.to_textured, q.texel_spacing}) {
+    EXPECT_GT(s.median_m, 0.0);
+    EXPECT_LT(s.median_m, s.p99_m);
+    EXPECT_LE(s.p99_m, s.max_m);
+  }
+  EXPECT_DOUBLE_EQ(std::max(q.to_original.max_m, q.to_textured.max_m), report.max_error_m);
+  EXPECT_DOUBLE_EQ(std::hypot(q.to_original_rms_m, q.to_textured_rms_m) / std::sqrt(2.0), report.rms_error_m);
+  EXPECT_LT(q.crack_max_m, 2e-3 * diagonal);
+  EXPECT_NEAR(q.texel_spacing.median_m, q.texel_m, 0.1 * q.texel_m);
+  EXPECT_NEAR(q.atlas_utilisation, static_cast<double>(report.texels) / (256.0 * 256.0), 0.02);
+  EXPECT_LT(q.surface_to_hull_max_m, 1e-3 * diagonal);
+  EXPECT_LT(q.bridged_air_max_m, 4.2e-3 * diagonal);
+}
+
+// Texel by texel, from the texture coordinates alone: inside a triangle and two texels around it all are positions.
+TEST(Bake, LeavesNoHoleInAChartOrItsGutter) {
+  const textured_model& model = baked_torus();
+  const double side = model.texture.width;
+  std::size_t looked_at = 0;
+  for (const coarse_triangle& t : model.mesh.triangles) {
+    const std::array<vec3, 3> c{vec3(side * t.uv[0], 0.0), vec3(side * t.uv[1], 0.0), vec3(side * t.uv[2], 0.0)};
+    const bounds box = bounds_of(c);
+    for (int j = static_cast<int>(box.low.y) - 2; j <= static_cast<int>(box.high.y) + 2; ++j)
+      for (int i = static_cast<int>(box.low.x) - 2; i <= static_cast<int>(box.high.x) + 2; ++i) {
+        if (i < 0 || j < 0 || i >= static_cast<int>(side) || j >= static_cast<int>(side)) continue;
+        const vec3 centre{i + 0.5, j + 0.5, 0.0};
+        if (glm::length(centre - closest_on_triangle(centre, c)) > 1.999) continue;
+        const vec3 texel = model.texture.at(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+        EXPECT_TRUE(std::isfinite(texel.x) && std::isfinite(texel.y) && std::isfinite(texel.z)) << i << ", " << j;
+        ++looked_at;
+      }
+  }
+  EXPECT_GT(looked_at, model.report.texels);
+}
+
 TEST(Bake, TheTextureIsWholeAcrossTheEdgesOfItsCharts) {
   const coarse_mesh& mesh = baked_torus().mesh;
   std::vector<index_triangle> triangles;
@@ -117,6 +158,8 @@ TEST(Bake, GivesTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(one->report.rms_error_m, four->report.rms_error_m);
   EXPECT_EQ(one->report.max_error_m, four->report.max_error_m);
   EXPECT_EQ(one->report.relief_m, four->report.relief_m);
+  EXPECT_EQ(one->report.quality->to_textured, four->report.quality->to_textured);
+  EXPECT_EQ(one->report.quality->crack_max_m, four->report.quality->crack_max_m);
 }
 
 TEST(Bake, KeepsWhatAFileKeeps) {
@@ -207,10 +250,23 @@ TEST(Bake, RemarksOnWhatItDidDifferently) {
                                                "the coarse mesh was inside-out and has been turned"}));
 }
 
+TEST(Bake, RemarksOnPiecesThatItCouldNotMake) {
+  std::vector<std::string> remarks;
+  bake_options options = small_options();
+  options.texture_size = 64;
+  options.pieces = 7;
+  options.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
+  ASSERT_TRUE(bake(shapes::box(block_size, {2, 2, 2}), options).has_value());
+  EXPECT_EQ(remarks, std::vector<std::string>{"made 1 convex pieces, not the 7 asked for"});
+}
+
 TEST(Bake, RefusesOptionsOutOfRange) {
   bake_options few = small_options();
   few.triangles = 3;
   EXPECT_EQ(bake(full_torus(), few).error().code, error_code::invalid_argument);
+  bake_options none = small_options();
+  none.pieces = 0;
+  EXPECT_EQ(bake(full_torus(), none).error().code, error_code::invalid_argument);
   bake_options tiny = small_options();
   tiny.texture_size = 1;
   EXPECT_EQ(bake(full_torus(), tiny).error().code, error_code::invalid_argument);

@@ -8,6 +8,7 @@
 #include "asperity/model/validate.hpp"
 #include "glb_editor.hpp"
 #include "scratch_folder.hpp"
+#include "some_quality.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity {
@@ -20,7 +21,9 @@ using test_support::scratch_folder;
 class HostileGlb : public ::testing::Test {
  protected:
   HostileGlb() {
-    const auto saved = io::save_textured_model(test_support::make_flat_box({1, 1, 1}, 24), folder_.file("good.glb"));
+    textured_model model = test_support::make_flat_box({1, 1, 1}, 24);
+    model.report.quality = test_support::some_quality();
+    const auto saved = io::save_textured_model(model, folder_.file("good.glb"));
     EXPECT_TRUE(saved) << saved.error().message;
     good_ = test_support::read_all(folder_.file("good.glb"));
   }
@@ -185,6 +188,16 @@ TEST_F(HostileGlb, Extension) {
   expect_edit_refused("hull face that names vertex 9 of 8", [](e g) { g.put(8, 0, std::uint32_t{9}); });
   expect_edit_refused("covers coarse triangle 12 of 12", [](e g) { g.put(9, 0, std::uint32_t{12}); });
   expect_edit_refused("rms_error_m is not a finite number", [](e g) { g.haptic()["report"]["rms_error_m"] = "small"; });
+  const auto quality = [](e g) -> nlohmann::json& { return g.haptic()["report"]["quality"]; };
+  expect_edit_refused("report.quality is not a JSON object", [&](e g) { quality(g) = 1; });
+  expect_edit_refused("quality.lost_share is missing", [&](e g) { quality(g).erase("lost_share"); });
+  expect_edit_refused("quality.to_original.p99_m is not a finite number",
+                      [&](e g) { quality(g)["to_original"]["p99_m"] = "1"; });
+  expect_edit_refused("quality.lost_part_low is not three finite numbers", [&](e g) {
+    quality(g)["lost_part_low"] = {1, 2};
+  });
+  expect_edit_refused("quality.lost_part_high is not three finite numbers",
+                      [&](e g) { quality(g)["lost_part_high"][2] = "high"; });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "scratch_folder.hpp"
+#include "some_quality.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity {
@@ -86,6 +87,10 @@ TEST(Save, RefusesAModelThatWouldNotLoad) {
 
   textured_model report = make_flat_box({1, 1, 1});
   report.report.max_error_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(io::save_textured_model(report, folder.file("m.glb")));
+  report.report.max_error_m = 0.0;
+  report.report.quality = test_support::some_quality();
+  report.report.quality->lost_part_high.y = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(io::save_textured_model(report, folder.file("m.glb")));
   EXPECT_EQ(folder.files(), 0U);
 }

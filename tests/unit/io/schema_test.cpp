@@ -8,6 +8,7 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "glb_editor.hpp"
 #include "scratch_folder.hpp"
+#include "some_quality.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity {
@@ -20,6 +21,7 @@ bool has_type(const json& value, const std::string& type) {
   if (type == "integer") return value.is_number_integer();
   if (type == "number") return value.is_number();
   if (type == "string") return value.is_string();
+  if (type == "array") return value.is_array();
   ADD_FAILURE() << "the schema has a type that this test does not know: " << type;
   return false;
 }
@@ -40,6 +42,15 @@ std::string breach(const json& value, const json& schema, const json& root, cons
       good = value >= rule;
     } else if (key == "maximum") {
       good = value <= rule;
+    } else if (key == "minItems") {
+      good = value.size() >= rule;
+    } else if (key == "maxItems") {
+      good = value.size() <= rule;
+    } else if (key == "items") {
+      for (std::size_t i = 0; i < value.size(); ++i) {
+        const auto inner = breach(value[i], rule, root, place + "/" + std::to_string(i));
+        if (!inner.empty()) return inner;
+      }
     } else if (key == "required") {
       for (const std::string name : rule) good = good && value.contains(name);
     } else if (key == "properties") {
@@ -65,7 +76,9 @@ class Schema : public ::testing::Test {
     schema_ = json::parse(test_support::read_all(std::filesystem::path(ASPERITY_SOURCE_DIR) /
                                                  "docs/reference/ASPERITY_mesh_haptic_texture.schema.json"));
     const test_support::scratch_folder folder;
-    EXPECT_TRUE(io::save_textured_model(test_support::make_flat_box({1, 1, 1}, 24), folder.file("m.glb")));
+    textured_model model = test_support::make_flat_box({1, 1, 1}, 24);
+    model.report.quality = test_support::some_quality();
+    EXPECT_TRUE(io::save_textured_model(model, folder.file("m.glb")));
     extension_ = test_support::glb_editor(test_support::read_all(folder.file("m.glb"))).haptic();
   }
   json schema_;
@@ -79,12 +92,21 @@ TEST_F(Schema, EveryKeyOfTheWriterIsDescribedAndRequired) {
   for (const auto& item : flat.items()) {
     json damaged = extension_;
     const json::json_pointer place(item.key());
-    damaged[place.parent_pointer()].erase(place.back());
+    json& parent = damaged[place.parent_pointer()];
+    if (parent.is_array())
+      parent.erase(parent.begin());
+    else
+      parent.erase(place.back());
     EXPECT_NE(breach(damaged, schema_, schema_, ""), "") << item.key() << " can be left out";
     damaged = extension_;
     damaged[place] = json::array();
     EXPECT_NE(breach(damaged, schema_, schema_, ""), "") << item.key() << " can be anything";
   }
+}
+
+TEST_F(Schema, AReportWithoutQualityIsAnOlderOne) {
+  extension_["report"].erase("quality");
+  EXPECT_EQ(breach(extension_, schema_, schema_, ""), "");
 }
 
 }  // namespace

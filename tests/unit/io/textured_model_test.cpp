@@ -8,6 +8,7 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "glb_editor.hpp"
 #include "scratch_folder.hpp"
+#include "some_quality.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity {
@@ -21,6 +22,7 @@ textured_model sample_model() {
   textured_model model = make_textured_box({0.02, 0.03, 0.01}, 64, ridges(1e-3, 5e-3));
   model.name = "box \"quoted\" \xc3\xa9";
   model.report = {1e-6, 2.5e-5, 0.1, 3.3e-3, 660000, 17, 4096};
+  model.report.quality = test_support::some_quality();
   // Two pieces, one of them flat, as a bake of a concave part would leave them.
   convex_piece flat;
   flat.vertices = {model.mesh.positions[0], model.mesh.positions[2], model.mesh.positions[3]};
@@ -68,6 +70,7 @@ void expect_same(const textured_model& a, const textured_model& b) {
   EXPECT_EQ(a.report.full_triangles, b.report.full_triangles);
   EXPECT_EQ(a.report.fallback_texels, b.report.fallback_texels);
   EXPECT_EQ(a.report.texels, b.report.texels);
+  EXPECT_EQ(a.report.quality, b.report.quality);
 }
 
 TEST(TexturedModelFile, ComesBackBitForBit) {
@@ -78,6 +81,18 @@ TEST(TexturedModelFile, ComesBackBitForBit) {
   ASSERT_TRUE(saved) << saved.error().message;
   const auto back = io::load_textured_model(folder.file("m.glb"));
   ASSERT_TRUE(back) << back.error().message;
+  expect_same(model, *back);
+}
+
+TEST(TexturedModelFile, WithoutTheQualityOfItsBakeStillLoads) {
+  const scratch_folder folder;
+  textured_model model = sample_model();
+  model.report.quality.reset();
+  ASSERT_TRUE(io::save_textured_model(model, folder.file("old.glb")));
+  EXPECT_EQ(test_support::read_all(folder.file("old.glb")).find("quality"), std::string::npos);
+  const auto back = io::load_textured_model(folder.file("old.glb"));
+  ASSERT_TRUE(back) << back.error().message;
+  EXPECT_FALSE(back->report.quality);
   expect_same(model, *back);
 }
 

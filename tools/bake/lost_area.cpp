@@ -1,0 +1,84 @@
+#include "bake/lost_area.hpp"
+
+#include <algorithm>
+
+#include "bake/geometry.hpp"
+
+namespace asperity::bake {
+
+std::vector<char> find_lost(const fine_points& original, const std::vector<double>& distance,
+                            const triangle_bvh& textured, double reach_m, unsigned threads, stage_monitor& monitor) {
+  const std::vector<vec3>& points = original.mesh.positions;
+  const std::vector<vec3> normals = vertex_normals(points, original.mesh.triangles);
+  std::vector<char> lost(points.size(), 0);
+  const auto visit = [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      lost[i] = distance[i] > reach_m || !textured.has_facing(points[i], normals[i], reach_m) ? 1 : 0;
+  };
+  if (!parallel_blocks(points.size(), threads, monitor, 0.9, 1.0, visit)) return {};
+  return lost;
+}
+
+lost_area measure_lost(const triangle_mesh& full, const fine_points& original, const std::vector<char>& lost) {
+  lost_area out;
+  if (std::find(lost.begin(), lost.end(), char{1}) == lost.end()) return out;
+  double whole = 0.0;
+  double sum = 0.0;
+  std::vector<double> of_source(full.triangles.size(), 0.0);
+  std::vector<vec3> moment(full.triangles.size(), vec3(0.0));
+  for (std::size_t i = 0; i < original.mesh.triangles.size(); ++i) {
+    const index_triangle& t = original.mesh.triangles[i];
+    const double third = glm::length(area_normal(corners(original.mesh.positions, t))) / 6.0;
+    whole += 3.0 * third;
+    for (const std::uint32_t v : t) {
+      if (!lost[v]) continue;
+      sum += third;
+      of_source[original.source[i]] += third;
+      moment[original.source[i]] += third * original.mesh.positions[v];
+    }
+  }
+  if (!(sum > 0.0)) return out;
+  out.share = sum / whole;
+
+  // Flood over edges between triangles that have lost something.
+  const connectivity net = connect(full.triangles, full.positions.size());
+  std::vector<std::uint32_t> part(full.triangles.size(), no_halfedge);
+  std::vector<double> area;
+  std::vector<vec3> centre;
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t seed = 0; seed < part.size(); ++seed) {
+    if (!(of_source[seed] > 0.0) || part[seed] != no_halfedge) continue;
+    const auto number = static_cast<std::uint32_t>(area.size());
+    area.push_back(0.0);
+    centre.emplace_back(0.0);
+    part[seed] = number;
+    open.push_back(seed);
+    while (!open.empty()) {
+      const std::uint32_t t = open.back();
+      open.pop_back();
+      area[number] += of_source[t];
+      centre[number] += moment[t];
+      for (std::uint32_t k = 0; k < 3; ++k) {
+        const std::uint32_t mate = net.mate[3 * t + k];
+        if (mate == no_halfedge || !(of_source[mate / 3] > 0.0) || part[mate / 3] != no_halfedge) continue;
+        part[mate / 3] = number;
+        open.push_back(mate / 3);
+      }
+    }
+  }
+  const auto largest = static_cast<std::uint32_t>(std::max_element(area.begin(), area.end()) - area.begin());
+  out.part_share = area[largest] / whole;
+  out.part_centre = centre[largest] / area[largest];
+  std::vector<vec3> points;
+  for (std::size_t i = 0; i < original.mesh.triangles.size(); ++i) {
+    if (part[original.source[i]] != largest) continue;
+    for (const std::uint32_t v : original.mesh.triangles[i])
+      if (lost[v]) points.push_back(original.mesh.positions[v]);
+  }
+  const bounds box = bounds_of(points);
+  out.part_low = box.low;
+  out.part_high = box.high;
+  return out;
+}
+
+}  // namespace asperity::bake
