@@ -17,6 +17,7 @@
 #include "bake/simplify.hpp"
 #include "bake/stage_monitor.hpp"
 #include "bake/triangle_bvh.hpp"
+#include "bake/winding.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -59,6 +60,10 @@ result<simplified_mesh> coarse_of(const checked_mesh& full, const triangle_bvh& 
   if (!given) return given.error();
   simplified_mesh out{std::move(given->mesh), {}};
   if (given->flipped) out.note = "the coarse mesh was inside-out and has been turned";
+  if (given->turned_triangles > 0) {
+    const std::string turned = "of the coarse mesh " + winding_remark(given->turned_triangles);
+    out.note = out.note.empty() ? turned : out.note + "; " + turned;
+  }
   return out;
 }
 
@@ -84,6 +89,7 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (const auto sound = check_options(options); !sound) return sound.error();
   const auto full = check(full_mesh);
   if (!full) return full.error();
+  if (full->turned_triangles > 0) remark(options, winding_remark(full->turned_triangles));
   if (full->flipped) remark(options, "the mesh was inside-out and has been turned");
   const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles);
   const double diagonal = bounds_of(full->mesh.positions).diagonal();

@@ -115,11 +115,16 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   result<triangle_mesh> full = io::load_mesh(options.full);
   if (!full) return full.error();
   scale_mesh(*full, options.scale);
+  std::vector<std::string> remarks;
   bake::hole_report holes;
   if (options.close_holes) {
     const result<bake::hole_report> closed = bake::close_holes(*full);
     if (!closed) return closed.error();
     holes = *closed;
+    if (holes.triangles_turned > 0) {
+      remarks.push_back("before its holes were closed, " + std::to_string(holes.triangles_turned) +
+                        " triangles that were wound against their neighbours have been turned");
+    }
   }
 
   bake::bake_options settings;
@@ -128,7 +133,6 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.texture_size = options.texture;
   settings.threads = options.threads;
   settings.progress = enter;
-  std::vector<std::string> remarks;
   settings.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
   if (!options.coarse.empty()) {
     result<triangle_mesh> coarse = io::load_mesh(options.coarse);
