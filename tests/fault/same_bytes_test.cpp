@@ -11,7 +11,7 @@ namespace {
 class same_bytes : public command_test {
  protected:
   // A torus with waves on it, so that every stage has work for several threads; `missing` of its faces are left out.
-  void write_torus(const std::string& name, int missing = 0, int around = 120, int across = 40) const {
+  void write_torus(const std::string& name, int missing = 0, int around = 80, int across = 24) const {
     std::string text;
     for (int i = 0; i < around; ++i) {
       for (int j = 0; j < across; ++j) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 #include <gtest/gtest.h>
 #include <optional>
 #include <string>
@@ -29,6 +30,12 @@ constexpr std::size_t share = __has_feature(address_sanitizer) ? 8 : 1;
 #else
 constexpr std::size_t share = 1;
 #endif
+
+// ASPERITY_FUZZ_TIMES=n runs n times as many: for an afternoon under a sanitizer.
+std::size_t runs(std::size_t usual) {
+  const char* times = std::getenv("ASPERITY_FUZZ_TIMES");
+  return usual * std::max<std::size_t>(1, times == nullptr ? 1 : std::strtoul(times, nullptr, 10)) / share;
+}
 
 struct bake_outcome {
   result<textured_model> model;
@@ -85,6 +92,8 @@ TEST(HostileBakes, EveryPlantedFaultIsNamedOrItsRepairReportedInEveryFormat) {
   for (const planted_fault& fault : planted_faults()) {
     for (const mesh_format& format : mesh_formats()) {
       if (fault.needs_indices && !format.indexed) continue;
+      // Refusals cost little. A bake to the end costs more, and beyond the reader no format makes a difference.
+      if (fault.baked && (&format - mesh_formats().data() + &fault - planted_faults().data()) % 3 != 0) continue;
       SCOPED_TRACE(std::string(fault.name) + ", " + format.name);
       random_source random(17);
       triangle_mesh mesh = good_ball();
@@ -121,9 +130,9 @@ struct tally {
 TEST(HostileBakes, ShapesChangedAtRandomEndInASentenceOrAModel) {
   const triangle_mesh good = good_ball();
   for (const mesh_format& format : mesh_formats()) {
-    random_source random(2004);
+    random_source random(2004 + static_cast<std::size_t>(&format - mesh_formats().data()));
     tally all;
-    for (std::size_t run = 0; run < 48 / share; ++run) {
+    for (std::size_t run = 0; run < runs(16); ++run) {
       const triangle_mesh mesh = mutated_shape(good, random);
       const bool close_holes = random.once_in(3);
       const bool as_coarse = random.once_in(6);
@@ -136,9 +145,9 @@ TEST(HostileBakes, ShapesChangedAtRandomEndInASentenceOrAModel) {
     }
     all.print("shapes", format.name);
     if (share > 1) continue;
-    EXPECT_GE(all.kinds.size(), 10U);
-    EXPECT_GE(all.baked, all.runs / 20);
-    EXPECT_LE(all.baked, all.runs / 2);
+    EXPECT_GE(all.kinds.size(), 5U);
+    EXPECT_GE(all.baked, 1U);
+    EXPECT_LE(all.baked, all.runs * 3 / 4);
   }
 }
 
@@ -173,9 +182,9 @@ TEST(HostileBakes, FilesChangedAtRandomEndInASentenceOrAModel) {
     const std::size_t header = good.find("end_header\n");
     const std::size_t text_end = format.text ? good.size() : header == std::string::npos ? 0 : header + 11;
     const bool is_glb = std::string(format.extension) == ".glb";
-    random_source random(11);
+    random_source random(11 + static_cast<std::size_t>(&format - mesh_formats().data()));
     tally all;
-    for (std::size_t run = 0; run < 80 / share; ++run) {
+    for (std::size_t run = 0; run < runs(32); ++run) {
       const std::string bytes = random.once_in(2) ? mutated_bytes(good, random)
                                 : is_glb          ? mutated_glb(good, random)
                                                   : mutated_mesh(good, text_end, random);

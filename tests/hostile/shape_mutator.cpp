@@ -130,6 +130,12 @@ std::vector<planted_fault> make_faults() {
        {},
        true},
       {"a cavity", [](mesh& m, random_source&) { append(m, mesh(m), 0.5, vec3(0.0), true); }, {}, true},
+      {"two balls through each other",
+       [](mesh& m, random_source&) {
+         append(m, mesh(m), 0.8, {0.04, 0.001, 0.002}, false);
+       },
+       {"pairs of triangles cross"},
+       true},
       {"two balls, one inside-out",
        [](mesh& m, random_source&) {
          append(m, mesh(m), 0.5, {0.2, 0.0, 0.0}, true);

@@ -38,8 +38,8 @@ double percentile(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
-comparison compare_with_originals(const original_and_bake& a, const original_and_bake& b, int poses,
-                                  std::uint64_t seed) {
+comparison compare_with_originals(const original_and_bake& a, const original_and_bake& b, int poses, std::uint64_t seed,
+                                  double steepest) {
   comparison out;
   paper_settings settings;
   settings.depth.grid = comparison_grid;
@@ -73,9 +73,7 @@ comparison compare_with_originals(const original_and_bake& a, const original_and
         continue;
       }
       ++out.contacts;
-      // A bake's error is a distance across the surface; along n a slope makes it longer. A wall, where that has no
-      // limit, counts as 45 degrees.
-      const auto along_n = [](double slope) { return std::hypot(1.0, std::min(slope, 1.0)); };
+      const auto along_n = [&](double slope) { return std::hypot(1.0, std::min(slope, steepest)); };
       // What the grid misses of the originals themselves, and the bakes' own largest errors.
       const double bound = (truth.dense.depth_m - truth.grid.depth_m) +
                            along_n(truth.dense.slope_a) * a.model->report.max_error_m +
@@ -84,8 +82,11 @@ comparison compare_with_originals(const original_and_bake& a, const original_and
       out.worst_share = std::max(out.worst_share, error / bound);
       if (error > bound) {
         ++out.beyond;
-        std::printf("    pose %d contact %zu: depth %.4f mm, originals %.4f mm, on the same grid %.4f mm\n", out.poses,
-                    i, p.depth_m * 1e3, truth.dense.depth_m * 1e3, truth.grid.depth_m * 1e3);
+        std::printf(
+            "    pose %d contact %zu: depth %.4f mm, originals %.4f mm, on the same grid %.4f mm; bound %.4f mm, "
+            "slopes %.2f and %.2f\n",
+            out.poses, i, p.depth_m * 1e3, truth.dense.depth_m * 1e3, truth.grid.depth_m * 1e3, bound * 1e3,
+            truth.dense.slope_a, truth.dense.slope_b);
       }
       const auto untextured = measure_brute_force(
           {&bare_a, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "asperity/asperity.hpp"
+#include "asperity/model/triangle_mesh.hpp"
 
 namespace asperity::oracle {
 
@@ -94,9 +95,10 @@ struct comparison {
 inline constexpr int comparison_grid = 64;
 inline constexpr int comparison_refinement = 5;
 
-/// Compares contacts of the paper's renderer in that many seeded poses.
+/// Compares contacts of the paper's renderer in that many seeded poses. A bake's error is a distance across the
+/// surface; along n a slope makes it longer. A wall, where that has no limit, counts as `steepest` (1: 45 degrees).
 [[nodiscard]] comparison compare_with_originals(const original_and_bake& a, const original_and_bake& b, int poses,
-                                                std::uint64_t seed);
+                                                std::uint64_t seed, double steepest = 1.0);
 
 [[nodiscard]] double percentile(std::vector<double> values, double share);
 

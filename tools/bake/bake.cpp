@@ -14,6 +14,7 @@
 #include "bake/pieces.hpp"
 #include "bake/project.hpp"
 #include "bake/relief_fit.hpp"
+#include "bake/self_crossing.hpp"
 #include "bake/simplify.hpp"
 #include "bake/stage_monitor.hpp"
 #include "bake/triangle_bvh.hpp"
@@ -93,6 +94,9 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (full->flipped) remark(options, "the mesh was inside-out and has been turned");
   const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles);
   const double diagonal = bounds_of(full->mesh.positions).diagonal();
+  const auto crossings = find_self_crossings(full->mesh, full_tree, threads, monitor);
+  if (!crossings) return cancelled();
+  if (crossings->pairs > 0) remark(options, crossing_remark(*crossings));
 
   if (!monitor.begin("simplify")) return cancelled();
   const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);
