@@ -1,11 +1,13 @@
-// load_probe mesh|model|bare FILE: loads one file in a process of its own and prints how far its memory went (peak
-// resident bytes beyond the start), then "loaded" or the error's message. `bare` takes tinygltf without the guard.
+// load_probe mesh|model|bare|bake FILE: loads one file in a process of its own and prints how far its memory went (peak
+// resident bytes beyond the start), then "loaded" or the error's message. `bare` takes tinygltf without the guard,
+// `bake` bakes the mesh too, with a small texture.
 #include <cstdio>
 #include <cstring>
 #include <string>
 #include <string_view>
 #include <tiny_gltf.h>
 
+#include "asperity/bake/bake.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 
@@ -27,6 +29,17 @@ unsigned long status_kb(const char* key) {
 std::string load_mesh(const char* file) {
   const auto mesh = asperity::io::load_mesh(file);
   return mesh ? "loaded" : mesh.error().message;
+}
+
+std::string load_and_bake(const char* file) {
+  const auto mesh = asperity::io::load_mesh(file);
+  if (!mesh) return mesh.error().message;
+  asperity::bake::bake_options options;
+  options.triangles = 200;
+  options.texture_size = 128;
+  options.threads = 1;
+  const auto model = asperity::bake::bake(*mesh, options);
+  return model ? "loaded" : model.error().message;
 }
 
 std::string load_model(const char* file) {
@@ -52,6 +65,7 @@ int main(int argc, char** argv) {
   const unsigned long before = status_kb("VmHWM");
   const std::string said = how == "bare"   ? load_bare(argv[2])
                            : how == "mesh" ? load_mesh(argv[2])
+                           : how == "bake" ? load_and_bake(argv[2])
                                            : load_model(argv[2]);
   std::printf("%lu\n%s\n", 1024 * (status_kb("VmHWM") - before), said.c_str());
   return 0;

@@ -1,12 +1,10 @@
 // The whole chain against the full-resolution meshes: models baked by the command, contacts found by the library, and
 // its depth compared with the brute-force depth of the two originals in the same window.
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -14,180 +12,28 @@
 #include "asperity/asperity.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
+#include "oracle/against_originals.hpp"
 #include "oracle/brute_force.hpp"
 
 namespace {
 
 using namespace asperity;
+using oracle::original_and_bake;
+using oracle::percentile;
+using oracle::reach;
 
 const std::filesystem::path models_dir = ASPERITY_TEST_MODELS_DIR;
 constexpr int poses_per_pair = 70;
-constexpr int grid = 64;
-constexpr int refinement = 5;
+constexpr int grid = oracle::comparison_grid;
 
-struct loaded_body {
-  triangle_mesh full;
-  model_ptr model;
-};
-
-loaded_body load(const std::string& name) {
+original_and_bake load(const std::string& name) {
   auto full = io::load_mesh(models_dir / (name + ".ply"));
   auto model = io::load_textured_model(models_dir / (name + ".glb"));
   if (!full || !model) {
     ADD_FAILURE() << (full ? model.error().message : full.error().message);
     return {};
   }
-  return {std::move(full).value(), std::make_shared<const textured_model>(std::move(model).value())};
-}
-
-double uniform(std::mt19937_64& rng, double low, double high) {
-  return low + (high - low) * static_cast<double>(rng() >> 11) * 0x1p-53;
-}
-
-vec3 random_direction(std::mt19937_64& rng) {
-  const double z = uniform(rng, -1.0, 1.0);
-  const double a = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(a), r * std::sin(a), z};
-}
-
-quat random_rotation(std::mt19937_64& rng) {
-  const double u = uniform(rng, 0.0, 1.0);
-  const double a = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double b = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double r = std::sqrt(1.0 - u);
-  const double s = std::sqrt(u);
-  return {s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b)};
-}
-
-// The bake reports how far its texels lie from the coarse surface, and how far they may be from the original.
-double reach(const loaded_body& b) { return b.model->report.max_displacement_m + b.model->report.max_error_m; }
-
-// Depth of the deepest contact; minus infinity where nothing touches.
-double deepest(const tick& t) {
-  double d = -std::numeric_limits<double>::infinity();
-  for (const penetration& p : t.depths) {
-    if (!has(p.flags, depth_flag::no_overlap)) d = std::max(d, p.depth_m);
-  }
-  return d;
-}
-
-// A seeded pose at which the probe, coming from outside along a random direction with a random orientation, overlaps by
-// some tenths of a millimetre.
-template <contact_renderer Renderer>
-bool touching_pose(Renderer& r, std::mt19937_64& rng, pose& T_wa) {
-  const textured_model& a = *r.scene().probe;
-  const textured_model& b = *r.scene().fixed.front();
-  const std::array<pose, 1> fixed{};
-  const quat rotation = random_rotation(rng);
-  const vec3 from = random_direction(rng);
-  const vec3 centre_b = 0.5 * (b.box.low + b.box.high);
-  const vec3 aside = glm::cross(from, random_direction(rng));
-  const vec3 target = centre_b + 0.3 * uniform(rng, 0.0, 1.0) * b.box.diagonal() * aside;
-  const vec3 centre_a = 0.5 * (a.box.low + a.box.high);
-  const double wanted = uniform(rng, 0.0, 0.0004);
-  const auto at = [&](double distance) { return pose{rotation, target + distance * from - rotation * centre_a}; };
-
-  tick t;
-  double outside = 0.5 * (a.box.diagonal() + b.box.diagonal()) + 0.4 * b.box.diagonal();
-  const double step = 0.02 * std::min(a.box.diagonal(), b.box.diagonal());
-  double inside = outside;
-  do {  // march in until the first overlap, so that a thin part is not jumped over
-    outside = inside;
-    inside -= step;
-    if (inside < -outside || r.step({at(inside), fixed}, t) != status::ok) return false;
-  } while (!(deepest(t) > wanted));
-  for (int i = 0; i < 12; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    if (r.step({at(middle), fixed}, t) != status::ok) return false;
-    (deepest(t) > wanted ? inside : outside) = middle;
-  }
-  T_wa = at(inside);
-  return r.step({T_wa, fixed}, t) == status::ok && deepest(t) > 0.0;
-}
-
-struct row {
-  int poses = 0, contacts = 0;
-  int beyond = 0;                    // further from the true depth than sampling and bakes explain
-  double worst_share = 0.0;          // of that bound
-  double rms_error_m = 0.0;          // of both bakes
-  std::vector<double> errors_m;      // from the originals on the finer grid
-  std::vector<double> on_grid_m;     // from the originals on the same grid: what sampling has no part in
-  std::vector<double> untextured_m;  // the same of the coarse surfaces alone: what a lost texture would show
-};
-
-double percentile(std::vector<double> v, double p) {
-  if (v.empty()) return 0.0;
-  std::sort(v.begin(), v.end());
-  return v[std::min(v.size() - 1, static_cast<std::size_t>(p * static_cast<double>(v.size())))];
-}
-
-triangle_mesh bare(const coarse_mesh& mesh) {
-  triangle_mesh out{mesh.positions, {}, {}};
-  for (const coarse_triangle& t : mesh.triangles) out.triangles.push_back(t.vertex);
-  return out;
-}
-
-row compare(const std::string& probe_name, const std::string& fixed_name, std::uint64_t seed) {
-  const loaded_body a = load(probe_name);
-  const loaded_body b = load(fixed_name);
-  row out;
-  if (a.model == nullptr || b.model == nullptr) return out;
-  paper_settings settings;
-  settings.depth.grid = grid;
-  auto made = make_paper_renderer({a.model, {b.model}}, settings);
-  if (!made) {
-    ADD_FAILURE() << made.error().message;
-    return out;
-  }
-  out.rms_error_m = a.model->report.rms_error_m + b.model->report.rms_error_m;
-  const triangle_mesh bare_a = bare(a.model->mesh);
-  const triangle_mesh bare_b = bare(b.model->mesh);
-  const std::array<pose, 1> fixed{};
-  std::mt19937_64 rng(seed);
-  for (int attempt = 0; out.poses < poses_per_pair && attempt < 4 * poses_per_pair; ++attempt) {
-    pose T_wa;
-    if (!touching_pose(*made, rng, T_wa)) continue;
-    ++out.poses;
-    tick t;
-    if (made->step({T_wa, fixed}, t) != status::ok) {
-      ADD_FAILURE() << "a pose that was found once is not found again";
-      continue;
-    }
-    for (std::size_t i = 0; i < t.contacts.size(); ++i) {
-      const contact& c = t.contacts[i];
-      const penetration& p = t.depths[i];
-      const auto truth = oracle::measure_brute_force(
-          {&a.full, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
-          {&b.full, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)}, c.window, grid, refinement);
-      if (has(p.flags, depth_flag::no_overlap) || truth.samples == 0) {
-        EXPECT_EQ(has(p.flags, depth_flag::no_overlap), truth.samples == 0) << probe_name << " pose " << out.poses;
-        continue;
-      }
-      ++out.contacts;
-      // A bake's error is a distance across the surface; along n a slope makes it longer. A wall, where that has no
-      // limit, counts as 45 degrees.
-      const auto along_n = [](double slope) { return std::hypot(1.0, std::min(slope, 1.0)); };
-      // What the grid misses of the originals themselves, and the bakes' own largest errors.
-      const double bound = (truth.dense.depth_m - truth.grid.depth_m) +
-                           along_n(truth.dense.slope_a) * a.model->report.max_error_m +
-                           along_n(truth.dense.slope_b) * b.model->report.max_error_m;
-      const double error = std::fabs(p.depth_m - truth.dense.depth_m);
-      out.worst_share = std::max(out.worst_share, error / bound);
-      if (error > bound) {
-        ++out.beyond;
-        std::printf("    pose %d contact %zu: depth %.4f mm, originals %.4f mm, on the same grid %.4f mm\n", out.poses,
-                    i, p.depth_m * 1e3, truth.dense.depth_m * 1e3, truth.grid.depth_m * 1e3);
-      }
-      const auto untextured = oracle::measure_brute_force(
-          {&bare_a, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
-          {&bare_b, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)}, c.window, grid, 1);
-      out.errors_m.push_back(error);
-      out.on_grid_m.push_back(std::fabs(p.depth_m - truth.grid.depth_m));
-      out.untextured_m.push_back(std::fabs(untextured.grid.depth_m - truth.grid.depth_m));
-    }
-  }
-  return out;
+  return {name, std::move(full).value(), std::make_shared<const textured_model>(std::move(model).value())};
 }
 
 TEST(brute_force_models, depth_agrees_with_the_full_resolution_meshes) {
@@ -195,19 +41,17 @@ TEST(brute_force_models, depth_agrees_with_the_full_resolution_meshes) {
     const char *probe, *fixed;
     std::uint64_t seed;
   };
-  std::printf("  |depth - originals| in um: on a grid %d times finer, on the same grid, and there without texture\n",
-              refinement);
-  std::printf("  %-20s %5s %8s %10s %7s %7s %6s %9s %7s %7s %9s\n", "pair", "poses", "contacts", "finer: p50", "p95",
-              "max", "share", "same: p50", "p95", "max", "bare: p50");
+  oracle::print_heading();
   int poses = 0;
   for (const pair& p : {pair{"block", "gear", 11}, pair{"file", "cad_part", 12}, pair{"hammer", "torus", 13}}) {
-    const row r = compare(p.probe, p.fixed, p.seed);
-    const auto um = [](const std::vector<double>& v, double share) { return percentile(v, share) * 1e6; };
-    std::printf("  %-8s on %-8s %5d %8d %10.1f %7.1f %7.1f %6.2f %9.2f %7.2f %7.2f %9.1f\n", p.probe, p.fixed, r.poses,
-                r.contacts, um(r.errors_m, 0.5), um(r.errors_m, 0.95), um(r.errors_m, 1.0), r.worst_share,
-                um(r.on_grid_m, 0.5), um(r.on_grid_m, 0.95), um(r.on_grid_m, 1.0), um(r.untextured_m, 0.5));
+    const original_and_bake a = load(p.probe);
+    const original_and_bake b = load(p.fixed);
+    ASSERT_TRUE(a.model && b.model);
+    const oracle::comparison r = oracle::compare_with_originals(a, b, poses_per_pair, p.seed);
+    oracle::print_row(a, b, r);
     poses += r.poses;
     EXPECT_EQ(r.beyond, 0) << p.probe << " on " << p.fixed << " (seed " << p.seed << ")";
+    EXPECT_EQ(r.disagreed, 0) << p.probe << " on " << p.fixed;
     EXPECT_LE(percentile(r.on_grid_m, 0.5), r.rms_error_m) << "half the contacts are as good as the bakes' mean error";
     EXPECT_GT(percentile(r.untextured_m, 0.5), 5.0 * percentile(r.on_grid_m, 0.5)) << "a lost texture would not show";
   }
@@ -239,8 +83,8 @@ TEST(brute_force_models, a_single_contact_of_the_shared_potential_is_as_deep_as_
   std::printf("  %-20s %9s %14s %9s %9s %7s\n", "pair", "contacts", "error um: p50", "p95", "max", "share");
   int contacts = 0;
   for (const pair& which : {pair{"block", "gear", 21}, pair{"file", "cad_part", 22}, pair{"hammer", "torus", 23}}) {
-    const loaded_body a = load(which.probe);
-    const loaded_body b = load(which.fixed);
+    const original_and_bake a = load(which.probe);
+    const original_and_bake b = load(which.fixed);
     ASSERT_TRUE(a.model && b.model);
     auto made = make_renderer({a.model, {b.model}});
     ASSERT_TRUE(made) << made.error().message;
@@ -253,7 +97,7 @@ TEST(brute_force_models, a_single_contact_of_the_shared_potential_is_as_deep_as_
     for (int attempt = 0; errors_m.size() < 25 && attempt < 150; ++attempt) {
       pose T_wa;
       tick t;
-      if (!touching_pose(*made, rng, T_wa) || made->step({T_wa, fixed}, t) != status::ok) continue;
+      if (!oracle::touching_pose(*made, rng, T_wa) || made->step({T_wa, fixed}, t) != status::ok) continue;
       if (t.contacts.size() != 1) continue;
       contact_window window = t.contacts[0].window;
       window.half_size_m = half_window_m;

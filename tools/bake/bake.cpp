@@ -15,10 +15,12 @@
 #include "bake/pieces.hpp"
 #include "bake/project.hpp"
 #include "bake/relief_fit.hpp"
+#include "bake/self_crossing.hpp"
 #include "bake/simplify.hpp"
 #include "bake/stage_monitor.hpp"
 #include "bake/stitch.hpp"
 #include "bake/triangle_bvh.hpp"
+#include "bake/winding.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -66,6 +68,10 @@ result<simplified_mesh> coarse_of(const checked_mesh& full, const triangle_bvh& 
   if (!given) return given.error();
   simplified_mesh out{std::move(given->mesh), {}};
   if (given->flipped) out.note = "the coarse mesh was inside-out and has been turned";
+  if (given->turned_triangles > 0) {
+    const std::string turned = "of the coarse mesh " + winding_remark(given->turned_triangles);
+    out.note = out.note.empty() ? turned : out.note + "; " + turned;
+  }
   return out;
 }
 
@@ -112,9 +118,13 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (const auto sound = check_options(options); !sound) return sound.error();
   const auto full = check(full_mesh);
   if (!full) return full.error();
+  if (full->turned_triangles > 0) remark(options, winding_remark(full->turned_triangles));
   if (full->flipped) remark(options, "the mesh was inside-out and has been turned");
   const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles);
   const double diagonal = bounds_of(full->mesh.positions).diagonal();
+  const auto crossings = find_self_crossings(full->mesh, full_tree, threads, monitor);
+  if (!crossings) return cancelled();
+  if (crossings->pairs > 0) remark(options, crossing_remark(*crossings));
 
   if (!monitor.begin("simplify")) return cancelled();
   const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);

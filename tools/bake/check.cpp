@@ -8,6 +8,7 @@
 
 #include "bake/geometry.hpp"
 #include "bake/halfedges.hpp"
+#include "bake/winding.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -130,7 +131,7 @@ std::optional<error> check_connectivity(const triangle_mesh& mesh, const connect
     return bad(what,
                "has " + counted(net.misoriented_edges.count, "edge", "edges") +
                    " whose triangles wind in opposite senses, " + at_edge(net.misoriented_edges),
-               "make the winding consistent");
+               "it has only one side, as a Klein bottle has; cut it open or remove faces");
   if (net.non_manifold_vertices.count > 0)
     return bad(what,
                "has " + counted(net.non_manifold_vertices.count, "vertex", "vertices") +
@@ -207,7 +208,13 @@ result<checked_mesh> check(const triangle_mesh& mesh, std::string_view what) {
   out.mesh = compact(mesh);
   if (auto fault = check_size(out.mesh, what)) return *fault;
   if (auto fault = check_areas(out.mesh, what)) return *fault;
-  const connectivity net = connect(out.mesh.triangles, out.mesh.positions.size());
+  connectivity net = connect(out.mesh.triangles, out.mesh.positions.size());
+  if (net.misoriented_edges.count > 0 && net.open_edges.count + net.non_manifold_edges.count == 0) {
+    if (const auto turned = make_winding_consistent(out.mesh.triangles)) {
+      out.turned_triangles = *turned;
+      net = connect(out.mesh.triangles, out.mesh.positions.size());
+    }
+  }
   if (auto fault = check_connectivity(out.mesh, net, what)) return *fault;
   out.components = net.components;
   out.euler = net.euler;

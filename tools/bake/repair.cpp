@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/geometry.hpp"
 #include "bake/halfedges.hpp"
+#include "bake/winding.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -19,7 +21,8 @@ std::uint32_t next_along_border(std::uint32_t h, const std::vector<std::uint32_t
 }
 
 // Vertices of every hole, in the order in which the triangles around it run along its border.
-std::vector<std::vector<std::uint32_t>> find_holes(const triangle_mesh& mesh, const connectivity& around) {
+std::vector<std::vector<std::uint32_t>> find_holes(const std::vector<index_triangle>& triangles,
+                                                   const connectivity& around) {
   std::vector<std::vector<std::uint32_t>> holes;
   std::vector<bool> seen(around.mate.size(), false);
   for (std::uint32_t start = 0; start < around.mate.size(); ++start) {
@@ -27,7 +30,7 @@ std::vector<std::vector<std::uint32_t>> find_holes(const triangle_mesh& mesh, co
     auto& hole = holes.emplace_back();
     for (std::uint32_t h = start; !seen[h]; h = next_along_border(h, around.mate)) {
       seen[h] = true;
-      hole.push_back(origin_of(mesh.triangles, h));
+      hole.push_back(origin_of(triangles, h));
     }
   }
   return holes;
@@ -99,15 +102,25 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
       return error{error_code::bad_mesh, "cannot close holes: a triangle names a vertex that the mesh does not have"};
     }
   }
-  const connectivity around = connect(mesh.triangles, mesh.positions.size());
-  if (around.non_manifold_edges.count + around.misoriented_edges.count != 0) {
-    return error{
-        error_code::bad_mesh,
-        "cannot close holes: " + std::to_string(around.non_manifold_edges.count + around.misoriented_edges.count) +
-            " edges have more than two triangles, or two that face opposite ways; mend these first"};
+  connectivity around = connect(mesh.triangles, mesh.positions.size());
+  if (around.non_manifold_edges.count != 0) {
+    return error{error_code::bad_mesh, "cannot close holes: " + std::to_string(around.non_manifold_edges.count) +
+                                           (around.non_manifold_edges.count == 1 ? " edge has" : " edges have") +
+                                           " more than two triangles; remove duplicate or inner faces first"};
+  }
+  hole_report report;
+  std::vector<index_triangle> wound = mesh.triangles;
+  if (around.misoriented_edges.count != 0) {
+    const auto turned = make_winding_consistent(wound);
+    if (!turned) {
+      return error{error_code::bad_mesh,
+                   "cannot close holes: the surface has only one side, as a Moebius band has; cut it or remove faces"};
+    }
+    report.triangles_turned = *turned;
+    around = connect(wound, mesh.positions.size());
   }
 
-  const auto holes = find_holes(mesh, around);
+  const auto holes = find_holes(wound, around);
   for (const auto& hole : holes) {
     if (hole.size() > largest_hole_edges) {
       return error{error_code::bad_mesh, "cannot close holes: one has " + std::to_string(hole.size()) +
@@ -115,7 +128,7 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
                                              "; close it in a mesh editor, where its shape can be chosen"};
     }
   }
-  hole_report report;
+  mesh.triangles = std::move(wound);
   report.holes = holes.size();
   const std::size_t before = mesh.triangles.size();
   for (const auto& hole : holes) {
@@ -125,7 +138,7 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
     report.largest_m = std::max(report.largest_m, widest_distance(mesh.positions, hole));
   }
   report.triangles_added = mesh.triangles.size() - before;
-  if (report.holes != 0) mesh.uvs.clear();
+  if (report.holes + report.triangles_turned != 0) mesh.uvs.clear();
   return report;
 }
 

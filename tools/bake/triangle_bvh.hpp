@@ -45,6 +45,30 @@ class triangle_bvh {
   [[nodiscard]] std::optional<crossing> nearest_front_crossing(const vec3& p, const vec3& d,
                                                                double range) const noexcept;
 
+  /// Calls visit(triangle) for the triangles that meet the box, and for some beside it.
+  template <class Visit>
+  void visit_box(const vec3& low, const vec3& high, const Visit& visit) const {
+    std::array<std::uint32_t, 64> stack;  // the tree is balanced: its depth is the logarithm of the triangle count
+    std::size_t depth = 0;
+    stack[depth++] = 0;
+    while (depth > 0) {
+      const std::uint32_t at = stack[--depth];
+      const node& n = nodes_[at];
+      bool apart = false;
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        apart = apart || static_cast<double>(n.low[axis]) > high[k] || static_cast<double>(n.high[axis]) < low[k];
+      }
+      if (apart) continue;
+      if (n.count == 0) {
+        stack[depth++] = n.right_or_first;
+        stack[depth++] = at + 1;
+        continue;
+      }
+      for (std::uint32_t i = n.right_or_first; i < n.right_or_first + n.count; ++i) visit(triangle_[i]);
+    }
+  }
+
  private:
   // Children of an inner node: the next node in memory, and `right`. A leaf holds triangles [first, first + count).
   struct node {

@@ -161,11 +161,16 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!full) return full.error();
   if (const result<void> ok = check_size(options, *full); !ok) return ok.error();
   scale_mesh(*full, metres_per_unit(options));
+  std::vector<std::string> remarks;
   bake::hole_report holes;
   if (options.close_holes) {
     const result<bake::hole_report> closed = bake::close_holes(*full);
     if (!closed) return closed.error();
     holes = *closed;
+    if (holes.triangles_turned > 0) {
+      remarks.push_back("before its holes were closed, " + std::to_string(holes.triangles_turned) +
+                        " triangles that were wound against their neighbours have been turned");
+    }
   }
 
   bake::bake_options settings;
@@ -175,7 +180,6 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.pieces = options.pieces;
   settings.threads = options.threads;
   settings.progress = enter;
-  std::vector<std::string> remarks;
   settings.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
   if (!options.coarse.empty()) {
     result<triangle_mesh> coarse = io::load_mesh(options.coarse);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <tiny_gltf.h>
@@ -23,8 +24,15 @@ namespace {
 using value = tinygltf::Value;
 using object = tinygltf::Value::Object;
 
-/// The model that the file will hold: positions and texture coordinates as float32.
+/// Names come from file names, which may be any bytes; JSON holds UTF-8. What is none becomes U+FFFD.
+std::string as_utf8(const std::string& name) {
+  using nlohmann::json;
+  return json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
+}
+
+/// The model that the file will hold: positions and texture coordinates as float32, its name as UTF-8.
 textured_model as_in_file(textured_model model) {
+  model.name = as_utf8(model.name);
   for (vec3& p : model.mesh.positions) p = round_to_float32(p);
   for (coarse_triangle& t : model.mesh.triangles) {
     for (vec2& uv : t.uv) uv = round_to_float32(uv);

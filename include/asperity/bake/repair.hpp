@@ -14,14 +14,15 @@ inline constexpr std::size_t largest_hole_edges = 500;
 struct hole_report {
   std::size_t holes = 0;
   std::size_t triangles_added = 0;
-  double area_added_m2 = 0.0;  ///< surface that was made up
-  double largest_m = 0.0;      ///< longest distance across one hole
+  double area_added_m2 = 0.0;        ///< surface that was made up
+  double largest_m = 0.0;            ///< longest distance across one hole
+  std::size_t triangles_turned = 0;  ///< that were wound against their neighbours: a border can be followed only then
 };
 
 /// Closes every hole with the triangulation of least area over the hole's own vertices; no vertex is added or moved.
 /// Texture coordinates are dropped where a hole was closed: the new triangles have none.
 /// @return bad_mesh where a hole has more than largest_hole_edges edges, or where edges are shared by more than two
-///         triangles or run the same way in both (a hole has no border there that could be followed)
+///         triangles (a hole has no border there that could be followed), or where a surface has only one side
 /// @source Barequet and Sharir 1995 (least-area triangulation of a hole by dynamic programming)
 [[nodiscard]] result<hole_report> close_holes(triangle_mesh& mesh);
 

@@ -1,13 +1,24 @@
 #include "bake/check.hpp"
 
+#include <array>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
+#include <random>
 #include <string>
+#include <utility>
 
 #include "shapes.hpp"
 
 namespace asperity::bake {
 namespace {
+
+double enclosed_volume(const triangle_mesh& mesh) {
+  double six = 0.0;
+  for (const auto& t : mesh.triangles)
+    six += glm::dot(mesh.positions[t[0]], glm::cross(mesh.positions[t[1]], mesh.positions[t[2]]));
+  return six / 6.0;
+}
 
 void expect_fault(const triangle_mesh& mesh, std::initializer_list<std::string> words) {
   const auto r = check(mesh);
@@ -77,10 +88,61 @@ TEST(Check, FindsVerticesWhereSurfacesTouch) {
   expect_fault(mesh, {"1 vertex where surfaces touch", "vertex 0"});
 }
 
-TEST(Check, FindsMixedWinding) {
-  triangle_mesh mesh = shapes::box({0.1, 0.1, 0.1}, {1, 1, 1});
-  std::swap(mesh.triangles[4][0], mesh.triangles[4][1]);
-  expect_fault(mesh, {"3 edges", "winding"});
+TEST(Check, TurnsTrianglesThatWindAgainstTheirNeighbours) {
+  const triangle_mesh sound = shapes::box({0.1, 0.1, 0.1}, {3, 3, 3});
+  std::mt19937_64 rng(5);
+  for (const std::size_t every : std::array<std::size_t, 3>{108, 7, 3}) {  // one triangle, some, nearly half
+    triangle_mesh mesh = sound;
+    std::size_t turned = 0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (rng() % every != 0 && (every != 108 || t != 4)) continue;
+      std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+      ++turned;
+    }
+    ASSERT_LT(2 * turned, mesh.triangles.size());
+    const auto r = check(mesh);
+    ASSERT_TRUE(r) << r.error().message;
+    EXPECT_EQ(r->turned_triangles, turned);
+    EXPECT_FALSE(r->flipped);
+    EXPECT_NEAR(enclosed_volume(r->mesh), 0.001, 1e-12);
+    const auto again = check(r->mesh);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->turned_triangles, 0U);
+  }
+}
+
+// Where most of a surface is inside-out, most of it decides, and the whole is turned afterwards.
+TEST(Check, MixedWindingThatIsMostlyInsideOutComesOutRight) {
+  triangle_mesh mesh = shapes::reversed(shapes::box({0.1, 0.1, 0.1}, {2, 2, 2}));
+  for (const std::size_t t : std::array<std::size_t, 4>{0, 9, 10, 30})
+    std::swap(mesh.triangles[t][0], mesh.triangles[t][1]);
+  const auto r = check(mesh);
+  ASSERT_TRUE(r) << r.error().message;
+  EXPECT_EQ(r->turned_triangles, 4U);
+  EXPECT_TRUE(r->flipped);
+  EXPECT_NEAR(enclosed_volume(r->mesh), 0.001, 1e-12);
+}
+
+TEST(Check, RefusesASurfaceWithOneSide) {
+  // A Klein bottle: a grid whose one end is joined to the other turned over.
+  constexpr std::uint32_t around = 12, along = 16;
+  triangle_mesh mesh;
+  for (std::uint32_t i = 0; i < along; ++i)
+    for (std::uint32_t j = 0; j < around; ++j) {
+      const double u = 2 * std::numbers::pi * i / along, v = 2 * std::numbers::pi * j / around;
+      const double r = 0.1 + 0.02 * (std::cos(u / 2) * std::sin(v) - std::sin(u / 2) * std::sin(2 * v));
+      mesh.positions.emplace_back(r * std::cos(u), r * std::sin(u),
+                                  0.02 * (std::sin(u / 2) * std::sin(v) + std::cos(u / 2) * std::sin(2 * v)));
+    }
+  const auto at = [&](std::uint32_t i, std::uint32_t j) {
+    return i < along ? i * around + j % around : (around - j % around) % around;
+  };
+  for (std::uint32_t i = 0; i < along; ++i)
+    for (std::uint32_t j = 0; j < around; ++j) {
+      mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      mesh.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  expect_fault(mesh, {"12 edges", "opposite senses", "only one side"});
 }
 
 TEST(Check, TurnsAMeshThatIsInsideOut) {

@@ -60,6 +60,30 @@ TEST(close_holes, closes_both_ends_of_a_tube_with_its_lids) {
   EXPECT_NEAR(report->largest_m, 2.0, 1e-12);
 }
 
+TEST(close_holes, turns_triangles_that_wind_against_their_neighbours_first) {
+  triangle_mesh tube = open_tube(40);
+  for (const std::size_t t : std::array<std::size_t, 3>{3, 4, 31})
+    std::swap(tube.triangles[t][1], tube.triangles[t][2]);
+  const auto report = bake::close_holes(tube);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->triangles_turned, 3U);
+  EXPECT_EQ(report->holes, 2U);
+  EXPECT_TRUE(is_closed_and_oriented(tube));
+}
+
+TEST(close_holes, refuses_a_moebius_band_and_changes_nothing) {
+  triangle_mesh band = open_tube(15);
+  for (auto& t : band.triangles) {  // the last column meets the first with top and bottom exchanged
+    if (&t < &band.triangles[28]) continue;
+    for (auto& v : t) v = v < 2 ? 1 - v : v;
+  }
+  const triangle_mesh before = band;
+  const auto report = bake::close_holes(band);
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("only one side"), std::string::npos) << report.error().message;
+  EXPECT_EQ(band.triangles, before.triangles);
+}
+
 TEST(close_holes, leaves_a_closed_mesh_as_it_is) {
   triangle_mesh m = open_tube(8);
   ASSERT_TRUE(bake::close_holes(m));

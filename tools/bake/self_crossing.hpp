@@ -1,0 +1,28 @@
+// Does a surface pass through itself?
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "asperity/model/triangle_mesh.hpp"
+#include "bake/stage_monitor.hpp"
+#include "bake/triangle_bvh.hpp"
+
+namespace asperity::bake {
+
+struct self_crossings {
+  std::size_t pairs = 0;  ///< of triangles
+  vec3 first{0.0};        ///< middle of the first triangle of the first pair, m
+};
+
+/// Pairs of triangles of which an edge of one goes through the inside of the other. Neighbours along an edge do not
+/// count, nor does what merely touches or lies in one plane. The count does not depend on the number of threads.
+/// @return nothing where the bake was cancelled
+[[nodiscard]] std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, const triangle_bvh& tree,
+                                                                unsigned threads, stage_monitor& monitor);
+
+/// The sentence with which a report tells of them. @pre found.pairs > 0
+[[nodiscard]] std::string crossing_remark(const self_crossings& found);
+
+}  // namespace asperity::bake
