@@ -24,7 +24,8 @@ struct inspect_command {
   std::string picture;
   std::string original;
   double scale = 1.0;
-  std::string up = "z";
+  std::string up = "auto";
+  double turn_deg = 0.0;
 };
 
 result<output_file> open_picture(const inspect_command& options) {
@@ -44,7 +45,9 @@ result<json> draw(const inspect_command& options, const common_options& common, 
   picture::picture_options settings;
   settings.up = options.up == "x"   ? picture::up_axis::x
                 : options.up == "y" ? picture::up_axis::y
-                                    : picture::up_axis::z;
+                : options.up == "z" ? picture::up_axis::z
+                                    : picture::up_axis::automatic;
+  settings.turn_deg = options.turn_deg;
   settings.progress = [&](std::string_view stage, double done) {
     progress.show(stage, done);
     return !interrupted();
@@ -80,6 +83,7 @@ result<answer> inspect(const inspect_command& options, const common_options& com
   if (drawing) {
     const result<json> shown = draw(options, common, *model, *drawing);
     if (!shown) return shown.error();
+    if (const result<void> kept = drawing->commit(); !kept) return kept.error();
     out.document["picture"] = {{"file", options.picture}};
     out.document["picture"].update(*shown);
     out.text += row("picture", options.picture);
@@ -104,8 +108,13 @@ void add_inspect(command_line& line) {
       ->check(positive_number_error, "NUMBER > 0")
       ->needs(original)
       ->capture_default_str();
-  sub.add_option("--up", o->up, "With --picture: axis of the body that points up, x, y or z")
-      ->check(CLI::IsMember({"x", "y", "z"}))
+  sub.add_option("--up", o->up,
+                 "With --picture: axis of the body that points up, x, y or z; auto takes z, and lays down what is tall")
+      ->check(CLI::IsMember({"auto", "x", "y", "z"}))
+      ->needs(drawn)
+      ->capture_default_str();
+  sub.add_option("--turn", o->turn_deg, "With --picture: turn the model about that axis, degrees")
+      ->check(CLI::Range(-360.0, 360.0))
       ->needs(drawn)
       ->capture_default_str();
 }

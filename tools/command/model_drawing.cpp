@@ -6,7 +6,6 @@ result<json> write_picture(const textured_model& model, const picture::picture_o
   const result<picture::model_picture> drawn = picture::draw_model(model, options);
   if (!drawn) return drawn.error();
   if (const result<void> written = to.write(drawn->png); !written) return written.error();
-  if (const result<void> kept = to.commit(); !kept) return kept.error();
   const picture::shown_values& v = drawn->values;
   return json{{"shows", v.is_distance ? "distance to the original" : "height above the coarse surface"},
               {"colours_from", v.low},

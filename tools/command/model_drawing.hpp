@@ -8,7 +8,7 @@
 
 namespace asperity::command {
 
-/// Draws a model into an open file and commits it. Progress and interruption are told through the options.
+/// Draws a model into an open file, which the caller commits. Progress and interruption are told through the options.
 /// @return what the third panel shows, SI, for the document | invalid_argument | cancelled | io_failed
 [[nodiscard]] result<json> write_picture(const textured_model& model, const picture::picture_options& options,
                                          output_file& to);

@@ -59,21 +59,24 @@ texel_map map_texels(const textured_model& model) {
   return map;
 }
 
-texel_window telling_window(const texel_map& map, std::size_t side) {
+texel_window telling_window(const texel_map& map, std::size_t side, const value_range& range) {
   texel_window best{0, 0, std::min(side, map.width), std::min(side, map.height)};
   const std::size_t stride = std::max<std::size_t>(1, side / 3);
   double best_score = -1.0;
   for (std::size_t top = 0; top + best.height <= map.height; top += stride) {
     for (std::size_t left = 0; left + best.width <= map.width; left += stride) {
       std::array<double, 3> share{};
+      double relief = 0.0;
       for (std::size_t y = top; y < top + best.height; ++y) {
         for (std::size_t x = left; x < left + best.width; ++x) {
           share[static_cast<std::size_t>(map.use[y * map.width + x])] += 1.0;
+          relief += std::min(1.0, std::fabs(static_cast<double>(map.heights[y * map.width + x])) / range.high);
         }
       }
-      for (double& s : share) s /= static_cast<double>(best.width * best.height);
+      const auto all = static_cast<double>(best.width * best.height);
+      for (double& s : share) s /= all;
       // Charts are what it is about: half of the window is enough for them, a fifth for each of the others.
-      const double score = std::min(share[2], 0.5) + std::min(share[1], 0.2) + std::min(share[0], 0.2);
+      const double score = std::min(share[2], 0.5) + std::min(share[1], 0.2) + std::min(share[0], 0.2) + relief / all;
       if (score <= best_score) continue;
       best_score = score;
       best.left = left;
@@ -85,9 +88,8 @@ texel_window telling_window(const texel_map& map, std::size_t side) {
 
 pixmap draw_texels(const texel_map& map, const texel_window& window, const value_range& range,
                    const colour_scale& scale, std::size_t width, std::size_t height) {
-  const double texels_per_pixel =
-      std::max(static_cast<double>(window.width) / static_cast<double>(width),
-               static_cast<double>(window.height) / static_cast<double>(height));
+  const double texels_per_pixel = std::max(static_cast<double>(window.width) / static_cast<double>(width),
+                                           static_cast<double>(window.height) / static_cast<double>(height));
   const auto fineness = static_cast<std::size_t>(std::clamp(std::ceil(2.0 * texels_per_pixel), 3.0, 32.0));
   const float share = 1.0F / static_cast<float>(fineness * fineness);
   const auto colour_of = [&](std::size_t x, std::size_t y) {

@@ -18,7 +18,7 @@ enum class texel_use : std::uint8_t {
   chart,
 };
 
-inline constexpr colour unused_texel{0.78F, 0.78F, 0.77F};
+inline constexpr colour unused_texel{0.50F, 0.50F, 0.49F};
 inline constexpr colour gutter_texel{0.055F, 0.060F, 0.075F};
 
 /// Every texel of a haptic texture, row-major like the texture.
@@ -41,8 +41,9 @@ struct texel_window {
   std::size_t height = 0;
 };
 
-/// The square of this side (or less, where the texture is smaller) that shows most of all three uses.
-[[nodiscard]] texel_window telling_window(const texel_map& map, std::size_t side);
+/// The square of this side (or less, where the texture is smaller) that shows most of all three uses, and relief in
+/// many colours of the range.
+[[nodiscard]] texel_window telling_window(const texel_map& map, std::size_t side, const value_range& range);
 
 /// The window as an image, first texel at the upper left: heights in colours, gutter and unused texels in greys.
 [[nodiscard]] pixmap draw_texels(const texel_map& map, const texel_window& window, const value_range& range,

@@ -38,8 +38,8 @@ struct screen_point {
   return (p[1].x - p[0].x) * (p[2].y - p[0].y) - (p[1].y - p[0].y) * (p[2].x - p[0].x);
 }
 
-/// Draws with 3 x 3 samples per pixel. What a triangle covers is decided in whole numbers, so two triangles with a common
-/// edge leave no sample between them out, and the same triangles give the same pixels.
+/// Draws with 3 x 3 samples per pixel. What a triangle covers is decided in whole numbers, so two triangles with a
+/// common edge leave no sample between them out, and the same triangles give the same pixels.
 class canvas {
  public:
   /// Samples along each side of a pixel.

@@ -55,7 +55,7 @@ colour_scale::colour_scale(const Make& make) noexcept {
 const colour_scale& colour_scale::from_zero() noexcept {
   static const colour_scale scale([](double value) {
     constexpr std::array<lightness_chroma_hue, 5> points{
-        {{0.36, 0.11, 268.0}, {0.50, 0.15, 315.0}, {0.64, 0.16, 15.0}, {0.78, 0.14, 62.0}, {0.92, 0.12, 100.0}}};
+        {{0.42, 0.13, 266.0}, {0.54, 0.16, 312.0}, {0.66, 0.17, 12.0}, {0.78, 0.14, 62.0}, {0.92, 0.12, 100.0}}};
     return between(points, value);
   });
   return scale;
@@ -64,7 +64,7 @@ const colour_scale& colour_scale::from_zero() noexcept {
 const colour_scale& colour_scale::about_zero() noexcept {
   static const colour_scale scale([](double value) {
     constexpr std::array<lightness_chroma_hue, 5> points{
-        {{0.42, 0.13, 258.0}, {0.66, 0.10, 248.0}, {0.93, 0.0, 250.0}, {0.68, 0.13, 55.0}, {0.45, 0.12, 42.0}}};
+        {{0.42, 0.13, 258.0}, {0.66, 0.10, 248.0}, {0.965, 0.0, 250.0}, {0.68, 0.13, 55.0}, {0.45, 0.12, 42.0}}};
     return between(points, value);
   });
   return scale;

@@ -93,7 +93,7 @@ result<std::vector<float>> distances(const fine_surface& from, const bake::trian
       out[i] = static_cast<float>(original.closest(vec3(from.points[i])).distance_m);
     }
   };
-  if (!bake::parallel_blocks(out.size(), bake::resolve_threads(threads), monitor, 0.0, 1.0, measure)) {
+  if (!bake::parallel_blocks(out.size(), bake::resolve_threads(threads), monitor, 0.1, 0.6, measure)) {
     return error{error_code::cancelled, "interrupted: no picture was written"};
   }
   return out;

@@ -23,13 +23,14 @@ constexpr std::size_t page_width = 1600, page_height = 1236;
 constexpr std::size_t margin = 28, gap = 20, header = 104;
 constexpr std::size_t panel_width = (page_width - 2 * margin - gap) / 2;
 constexpr std::size_t panel_height = (page_height - header - margin - gap) / 2;
-constexpr double inset = 24.0, title_height = 74.0, foot_height = 64.0;
+constexpr double inset = 24.0, title_height = 82.0, foot_height = 64.0;
 
 // A length with the letter for micro, which a page can show and a terminal may not.
 std::string length(double metres) {
   std::string words = command::length_text(metres);
   const std::size_t micro = words.find(" um");
   if (micro != std::string::npos) words.replace(micro, 3, " \u00b5m");
+  if (words.front() == '-') words.replace(0, 1, "\u2212");
   return words;
 }
 
@@ -57,16 +58,18 @@ std::optional<error> fault_of(const textured_model& model, const picture_options
   if (options.original->triangles.empty()) {
     return error{error_code::invalid_argument, name + " has no triangles: give the mesh that the model was baked from"};
   }
+  for (const vec3& p : options.original->positions) {
+    if (!std::isfinite(p.x + p.y + p.z)) {
+      return error{error_code::invalid_argument, name + " has coordinates that are not finite: mend the mesh"};
+    }
+  }
   const bounds box = bake::bounds_of(options.original->positions);
   const double full = box.diagonal();
   const double coarse = model.box.diagonal();
-  if (!std::isfinite(full)) {
-    return error{error_code::invalid_argument, name + " has coordinates that are not finite: mend the mesh"};
-  }
   if (!(full > 0.8 * coarse && full < 1.25 * coarse)) {
     return error{error_code::invalid_argument,
-                 name + " is of another size than the model (diagonal " + command::length_text(full) + ", the model's " +
-                     command::length_text(coarse) +
+                 name + " is of another size than the model (diagonal " + command::length_text(full) +
+                     ", the model's " + command::length_text(coarse) +
                      "): give the mesh that the model was baked from, and the --scale of that bake"};
   }
   const double apart = std::max(glm::length(box.low - model.box.low), glm::length(box.high - model.box.high));
@@ -78,8 +81,8 @@ std::optional<error> fault_of(const textured_model& model, const picture_options
   return std::nullopt;
 }
 
-view look_at(const textured_model& model, const fine_surface* surface, up_axis up) {
-  extent covered(look_from_above(model.box.high - model.box.low, up));
+view look_at(const textured_model& model, const fine_surface* surface, const picture_options& options) {
+  extent covered(look_from_above(model.box.high - model.box.low, options.up, options.turn_deg));
   for (const vec3& p : model.mesh.positions) covered.add(p);
   if (surface != nullptr) {
     for (const glm::vec3& p : surface->points) covered.add(vec3(p));
@@ -105,7 +108,7 @@ shown_values describe(const std::vector<float>& values, const std::vector<float>
   out.rms = area > 0.0 ? std::sqrt(squares / area) : 0.0;
   // Below a hundred-thousandth of the model there is only the rounding of float32, and a few far values shall not take
   // the colours from all the others.
-  out.high = round_up(std::max(quantile(sizes, areas, 0.995), 1e-5 * diagonal));
+  out.high = round_up(std::max(quantile(sizes, areas, 0.98), 1e-5 * diagonal));
   out.low = is_distance ? 0.0 : -out.high;
   return out;
 }
@@ -141,8 +144,10 @@ class page {
 
   void coarse_panel(const view& from) {
     begin(0, draw_coarse(model_, from, panel_width, panel_height), "Coarse mesh",
-          count(model_.mesh.triangles.size()) + " triangles in " + count(model_.pieces.size()) +
-              " convex pieces, neighbours in different colours");
+          count(model_.mesh.triangles.size()) + " triangles in " +
+              (model_.pieces.size() == 1
+                   ? "one convex piece"
+                   : count(model_.pieces.size()) + " convex pieces, neighbours in different colours"));
     scale_line(from);
   }
 
@@ -159,10 +164,9 @@ class page {
 
   void value_panel(const fine_surface& surface, const std::vector<float>& values, const shown_values& shown,
                    const view& from) {
-    const std::string numbers = "RMS " + length(shown.rms) + ", largest " +
-                                length(std::max(std::fabs(shown.least), std::fabs(shown.largest)));
-    begin(2,
-          draw_values(surface, values, {shown.low, shown.high}, scale_of(shown), from, panel_width, panel_height),
+    const std::string numbers =
+        "RMS " + length(shown.rms) + ", largest " + length(std::max(std::fabs(shown.least), std::fabs(shown.largest)));
+    begin(2, draw_values(surface, values, {shown.low, shown.high}, scale_of(shown), from, panel_width, panel_height),
           shown.is_distance ? "Distance to the original" : "Height above the coarse surface",
           shown.is_distance ? command::one_line(options_.original_name) + ": " + numbers
                             : numbers + "; no original was given to compare with");
@@ -196,7 +200,7 @@ class page {
     // A part of it, large enough to see single texels.
     const double zoom_x = std::floor(x + side + 28.0);
     const double zoom_side = std::floor(left_ + panel_width - inset - zoom_x);
-    const texel_window window = telling_window(texels, 40);
+    const texel_window window = telling_window(texels, 40, range);
     const double pixels_per_texel = static_cast<double>(width) / static_cast<double>(texels.width);
     const auto drawn = static_cast<std::size_t>(zoom_side);
     sheet_.place(draw_texels(texels, window, range, scale, drawn, drawn), at(zoom_x), at(y));
@@ -212,8 +216,8 @@ class page {
       sheet_.fill(zoom_x, line - 13.0, 22.0, 15.0, with);
       sheet_.text(zoom_x + 30.0, line, words, 15.0);
     }
-    sheet_.text(zoom_x, line + 46.0, "height above the coarse surface", 15.0, sheet::weight::normal,
-                sheet::anchor::start, zoom_side);
+    sheet_.text(zoom_x, line + 46.0, "height above coarse mesh", 15.0, sheet::weight::normal, sheet::anchor::start,
+                zoom_side);
     sheet_.colour_bar(zoom_x, line + 56.0, zoom_side, scale, marks_of(heights));
   }
 
@@ -262,11 +266,11 @@ result<model_picture> draw_model(const textured_model& model, const picture_opti
     if (std::optional<error> fault = fault_of(model, options)) return *std::move(fault);
   }
   bake::stage_monitor monitor(options.progress);
-  monitor.begin("draw");
-  // Half a pixel between points is as fine as a reader can see.
-  const fine_surface surface =
-      sample_fine_surface(model, 0.5 / look_at(model, nullptr, options.up).pixels_per_m);
-  const view from = look_at(model, &surface, options.up);
+  monitor.begin("picture");
+  // No finer than the samples of the canvas.
+  const double least_step_m = 1.0 / (canvas::fineness * look_at(model, nullptr, options).pixels_per_m);
+  const fine_surface surface = sample_fine_surface(model, least_step_m);
+  const view from = look_at(model, &surface, options);
   const double diagonal = model.box.diagonal();
   const shown_values heights = describe(surface.heights, surface.areas, false, diagonal);
 
@@ -274,7 +278,6 @@ result<model_picture> draw_model(const textured_model& model, const picture_opti
   std::vector<float> apart;
   if (options.original != nullptr) {
     const bake::triangle_bvh tree(options.original->positions, options.original->triangles);
-    monitor.begin("compare");
     result<std::vector<float>> measured = distances(surface, tree, options.threads, monitor);
     if (!measured) return measured.error();
     apart = std::move(*measured);
@@ -284,13 +287,12 @@ result<model_picture> draw_model(const textured_model& model, const picture_opti
   page to(model, options);
   const texel_map texels = map_texels(model);
   to.write_header();
-  monitor.begin("draw");
   to.coarse_panel(from);
-  monitor.at(0.25);
+  monitor.at(0.7);
   to.fine_panel(surface, texels, from);
-  monitor.at(0.5);
+  monitor.at(0.8);
   to.value_panel(surface, options.original != nullptr ? apart : surface.heights, shown, from);
-  monitor.at(0.75);
+  monitor.at(0.9);
   to.texture_panel(texels, heights);
   if (monitor.cancelled()) return error{error_code::cancelled, "interrupted: no picture was written"};
   result<std::string> png = to.png();

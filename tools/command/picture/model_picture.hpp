@@ -15,8 +15,9 @@ namespace asperity::picture {
 struct picture_options {
   const triangle_mesh* original = nullptr;  ///< body frame, m; where given, the third panel shows the distance to it
   std::string original_name;                ///< for the page and for messages
-  up_axis up = up_axis::z;
-  unsigned threads = 0;  ///< 0 for all; the picture does not depend on it
+  up_axis up = up_axis::automatic;
+  double turn_deg = 0.0;  ///< the model is turned so far about the upward axis, counter-clockwise from above
+  unsigned threads = 0;   ///< 0 for all; the picture does not depend on it
   std::function<bool(std::string_view stage, double done)> progress;  ///< answers false to stop
 };
 
@@ -25,9 +26,9 @@ struct shown_values {
   bool is_distance = false;  ///< to the original; else the height over the coarse surface
   double low = 0.0;          ///< ends of the colour bar; values beyond take the colour of the end
   double high = 0.0;
-  double least = 0.0;        ///< of the points that were drawn
+  double least = 0.0;  ///< of the points that were drawn
   double largest = 0.0;
-  double rms = 0.0;          ///< over the area
+  double rms = 0.0;  ///< over the area
 };
 
 struct model_picture {

@@ -90,7 +90,8 @@ void sheet::frame(double left, double top, double width, double height, double l
 void sheet::colour_bar(double left, double top, double width, const colour_scale& scale,
                        const std::vector<bar_mark>& marks) {
   constexpr double height = 12.0;
-  for (double x = 0.0; x < width; ++x) fill(left + x, top, std::min(1.0, width - x), height, scale.at((x + 0.5) / width));
+  for (double x = 0.0; x < width; ++x)
+    fill(left + x, top, std::min(1.0, width - x), height, scale.at((x + 0.5) / width));
   for (const bar_mark& m : marks) {
     const double x = left + m.share * width;
     fill(x - 0.5, top + height, 1.0, 4.0, words_colour);

@@ -33,7 +33,8 @@ struct value_range {
 
 /// The textured surface in the colours of one value per point, weakly shaded: brightness scales a colour and does not
 /// bend it.
-[[nodiscard]] pixmap draw_values(const fine_surface& surface, const std::vector<float>& values, const value_range& range,
-                                 const colour_scale& scale, const view& from, std::size_t width, std::size_t height);
+[[nodiscard]] pixmap draw_values(const fine_surface& surface, const std::vector<float>& values,
+                                 const value_range& range, const colour_scale& scale, const view& from,
+                                 std::size_t width, std::size_t height);
 
 }  // namespace asperity::picture

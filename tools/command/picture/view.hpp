@@ -13,7 +13,12 @@
 namespace asperity::picture {
 
 /// Which axis of the body points up in the picture.
-enum class up_axis { x, y, z };
+enum class up_axis {
+  automatic,  ///< z; but what is far taller than it is wide lies down, its shortest axis upwards
+  x,
+  y,
+  z
+};
 
 /// Parallel projection, so that sizes can be compared all over the picture. Axes of the eye in the body frame, unit
 /// vectors.
@@ -37,12 +42,20 @@ struct view {
   }
 };
 
-/// From above and from the side, the longer of the two level axes of the model running more across than away.
-[[nodiscard]] inline view look_from_above(const vec3& size, up_axis up) noexcept {
+/// 0, 1 or 2 for x, y or z. Size: edges of the model's box.
+[[nodiscard]] inline int number_of(up_axis up, const vec3& size) noexcept {
+  if (up != up_axis::automatic) return up == up_axis::x ? 0 : up == up_axis::y ? 1 : 2;
+  if (size.z < 1.6 * std::max(size.x, size.y)) return 2;
+  return size.x < size.y ? 0 : 1;
+}
+
+/// From above and from the side, the longer of the two level axes of the model running more across than away; then the
+/// model is turned about the upward axis, counter-clockwise from above.
+[[nodiscard]] inline view look_from_above(const vec3& size, up_axis up, double turn_deg = 0.0) noexcept {
   constexpr double degree = 0.017453292519943295;
-  constexpr double azimuth = 34.0 * degree;
+  const double azimuth = (34.0 - turn_deg) * degree;
   constexpr double elevation = 30.0 * degree;
-  const int u = up == up_axis::x ? 0 : up == up_axis::y ? 1 : 2;
+  const int u = number_of(up, size);
   vec3 vertical(0.0);
   vec3 across(0.0);
   vertical[u] = 1.0;
@@ -89,16 +102,17 @@ class extent {
   vec3 high_{-std::numeric_limits<double>::infinity()};
 };
 
-/// How bright a matt surface of this unit normal (axes of the eye) is: a soft light from the upper left, a weak one from
-/// the right, a sky above a darker ground. About 1 where it faces the soft light.
+/// How bright a matt surface of this unit normal (axes of the eye) is: a soft light from the upper left, a weak one
+/// from the right, a sky above a darker ground. About 1 where it faces the soft light.
 [[nodiscard]] inline float brightness(vec3 normal) noexcept {
   if (normal.z < 0.0) normal = -normal;  // the inside of a crack
-  const vec3 key = vec3(-0.50, 0.62, 0.60) / std::sqrt(0.25 + 0.3844 + 0.36);
-  const vec3 fill = vec3(0.80, 0.05, 0.60) / std::sqrt(0.64 + 0.0025 + 0.36);
-  const double direct = std::max(0.0, (glm::dot(normal, key) + 0.15) / 1.15);
+  // Low over a level surface, so that relief throws light and shade.
+  const vec3 key = glm::normalize(vec3(-0.66, 0.52, 0.40));
+  const vec3 fill = glm::normalize(vec3(0.80, 0.05, 0.60));
+  const double direct = std::max(0.0, (glm::dot(normal, key) + 0.08) / 1.08);
   const double side = std::max(0.0, glm::dot(normal, fill));
   const double sky = 0.5 + 0.5 * normal.y;
-  return static_cast<float>(0.10 + 0.72 * direct + 0.10 * side + 0.14 * sky);
+  return static_cast<float>(0.07 + 0.92 * direct + 0.13 * side + 0.12 * sky);
 }
 
 }  // namespace asperity::picture
