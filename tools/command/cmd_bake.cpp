@@ -13,6 +13,7 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "cli.hpp"
 #include "interrupt.hpp"
+#include "model_drawing.hpp"
 #include "model_report.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
@@ -28,6 +29,7 @@ struct bake_command {
   std::string full;
   std::string coarse;
   std::string out;
+  std::string picture;
   std::string name;
   std::size_t triangles = 600;
   std::uint32_t texture = 1024;
@@ -111,6 +113,10 @@ result<void> check_paths(const bake_command& options) {
                    "-o " + options.out + " would replace the mesh that is being baked: give another name"};
     }
   }
+  if (!options.picture.empty() &&
+      fs::weakly_canonical(options.picture, ignored) == fs::weakly_canonical(options.out, ignored)) {
+    return error{error_code::invalid_argument, "--picture and -o name the same file: give two names"};
+  }
   return check_writable(options.out);
 }
 
@@ -148,6 +154,12 @@ answer report(const bake_command& options, const textured_model& model, const ba
 result<answer> run_bake(const bake_command& options, const common_options& common) {
   if (const result<void> ok = check_paths(options); !ok) return ok.error();
 
+  std::optional<output_file> drawing;
+  if (!options.picture.empty()) {
+    result<output_file> opened = output_file::create(options.picture);
+    if (!opened) return opened.error();
+    drawing.emplace(std::move(*opened));
+  }
   progress_line progress(common.quiet);
   stage_clock clock;
   const auto enter = [&](std::string_view stage, double done) {
@@ -190,10 +202,27 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   const result<textured_model> model = bake::bake(*full, settings);
   if (!model) return model.error();
 
+  json picture;
+  if (drawing) {
+    picture::picture_options page;
+    page.original = &*full;
+    page.original_name = fs::path(options.full).filename().string();
+    page.threads = options.threads;
+    page.progress = enter;
+    result<json> drawn = write_picture(*model, page, *drawing);
+    if (!drawn) return drawn.error();
+    picture = {{"file", options.picture}};
+    picture.update(*drawn);
+  }
   if (!enter("write", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
   if (const result<void> saved = io::save_textured_model(*model, options.out); !saved) return saved.error();
+  if (drawing) {
+    if (const result<void> kept = drawing->commit(); !kept) return kept.error();
+  }
   clock.leave();
-  return report(options, *model, holes, clock, std::move(remarks));
+  answer out = report(options, *model, holes, clock, std::move(remarks));
+  if (drawing) out.document["picture"] = std::move(picture);
+  return out;
 }
 
 }  // namespace
@@ -222,6 +251,8 @@ void add_bake(command_line& line) {
   sub.add_option("--pieces", o->pieces, "Convex pieces to aim for; by default as many as the usual tolerances make")
       ->check(CLI::Range(1, 1000000));
   sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
+  sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
+      ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
   sub.add_option("--threads", o->threads, "Threads to use; 0 takes all. The result does not depend on it")
       ->check(CLI::Range(0, 1024))
