@@ -208,9 +208,9 @@ class exact_depth {
     p.depth_m = p.soft_depth_m = found.deepest.depth_m;
     p.samples = sampled.samples;
     p.area_m2 = sampled.samples * grid.cell_m2();
-    // As for the grids: only a border that is clearly deeper hides something.
-    const double inside = window.half_size_m - grid.pitch_m;
-    const bool at_border = std::fabs(found.deepest.uv.x) > inside || std::fabs(found.deepest.uv.y) > inside;
+    // As for the grids, a border counts only where it is clearly deeper than the inside.
+    const double border = window.half_size_m * (1.0 - 1e-3);
+    const bool at_border = std::fabs(found.deepest.uv.x) > border || std::fabs(found.deepest.uv.y) > border;
     if (at_border && (sampled.inner_samples == 0 || p.depth_m > sampled.inner_depth_m + 0.1 * tau_m_[c.body])) {
       p.flags |= depth_flag::window_too_small;
     }
