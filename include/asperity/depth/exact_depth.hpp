@@ -70,9 +70,9 @@ struct depth_bracket {
 /// - parallax_mode::paper_lookup: h(u, v) is the height of the fine point that the texture holds for the coarse point
 ///   over (u, v). No sample of cpu_depth is deeper than upper_m.
 /// - parallax_mode::exact: h is the height of the fine surface over (u, v), A's highest and B's lowest where there are
-///   several. A chart goes on for one texel beyond its triangle, but not across an edge where the patch ends. No sample
-///   of cpu_depth is deeper than upper_m, but for samples where the fine surface folds over or ends, and the paper's
-///   lookup stands in: those are not points of the surface over their line, and do not count here.
+///   several. A chart goes on for one texel beyond its triangle, but not across the lines of the patch's last edges. No
+///   sample of cpu_depth is deeper than upper_m, but for samples where the fine surface folds over or ends, and the
+///   paper's lookup stands in: those are not points of the surface over their line, and do not count here.
 ///
 /// depth_m and soft_depth_m are the depth along the deepest line that was read, witness_w A's fine point on it, the
 /// gradient that of the depth along this line (the probe moves, the line stays). Curvature is zero. At a crest of the

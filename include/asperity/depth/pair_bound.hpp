@@ -39,7 +39,7 @@ class window_polygon {
   }
 
  private:
-  static constexpr std::size_t capacity = 4 + 2 * 10;
+  static constexpr std::size_t capacity = 4 + 2 * window_piece::most_sides;
   std::array<vec2, capacity> corner_{};
   std::size_t count_ = 0;
 };

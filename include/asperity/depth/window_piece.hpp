@@ -20,7 +20,7 @@ struct half_plane {
 ///
 /// The surface over coarse triangle t is the textured one at the texel positions of t's chart. With the exact parallax
 /// a point lies over its own (u, v), and the chart goes on for `gutter` texels beyond the triangle, as it does for the
-/// sampling backends; but where the patch ends at an edge, not across that edge's line in the window. Parts that turn
+/// sampling backends; but where the patch ends, not across the lines of its last edges in the window. Parts that turn
 /// their other side to the window do not count. With the paper's lookup a point lies over its coarse point.
 struct searched_body {
   const body_view& view;
@@ -38,16 +38,44 @@ struct searched_body {
   [[nodiscard]] const texel_triangle& chart(std::uint32_t slot) const noexcept {
     return view.index.texels[triangle(slot).triangle];
   }
-  /// True where the patch ends at the edge opposite to a corner.
-  [[nodiscard]] bool open(std::uint32_t slot, std::size_t corner) const noexcept {
-    return view.patch.find(view.index.neighbour[triangle(slot).triangle][(corner + 1) % 3]) == nullptr;
-  }
   /// Barycentric coordinate of the coarse triangle over the window.
   [[nodiscard]] half_plane coarse_side(std::uint32_t slot, std::size_t corner) const noexcept {
     const projected_triangle& t = triangle(slot);
     const vec3& w = chart(slot).weight[corner];
     return {w.y * t.texel_x.per_u + w.z * t.texel_y.per_u, w.y * t.texel_x.per_v + w.z * t.texel_y.per_v,
             w.x + w.y * t.texel_x.at_centre + w.z * t.texel_y.at_centre};
+  }
+
+  /// Calls use(side) for every line across the window at which the surface of a triangle ends: its own edges where the
+  /// patch ends, and those of its neighbours, into whose charts its own may go on, unless they cut into itself.
+  template <class Use>
+  void for_each_border(std::uint32_t slot, Use use) const noexcept {
+    if (!over_itself()) return;
+    const auto side = [&](std::uint32_t of, std::size_t corner) {
+      half_plane s = coarse_side(of, corner);
+      s.c += rounding_texels / chart(of).altitude[corner];
+      return s;
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      const projected_triangle* next = beyond(slot, k);
+      if (next == nullptr) {
+        use(side(slot, k));
+        continue;
+      }
+      const auto other = static_cast<std::uint32_t>(next - view.patch.triangles().data());
+      for (std::size_t m = 0; m < 3; ++m) {
+        if (beyond(other, m) != nullptr) continue;
+        const half_plane s = side(other, m);
+        const auto& c = triangle(slot).corner;
+        if (s.at(vec2(c[0])) >= 0.0 && s.at(vec2(c[1])) >= 0.0 && s.at(vec2(c[2])) >= 0.0) use(s);
+      }
+    }
+  }
+
+ private:
+  /// The triangle across the edge opposite to a corner; null where the patch ends there.
+  [[nodiscard]] const projected_triangle* beyond(std::uint32_t slot, std::size_t corner) const noexcept {
+    return view.patch.find(view.index.neighbour[triangle(slot).triangle][(corner + 1) % 3]);
   }
 };
 
@@ -60,6 +88,8 @@ struct searched_body {
 /// way from the square's middle, each of its points is centre + along_x w.x + along_y w.y + an error; the error of
 /// component i is at most spare[i]. Window coordinates, metres.
 struct window_piece {
+  static constexpr std::size_t most_sides = 4 + 3 + 9;  ///< of the square, the chart, the patch's border
+
   vec3 centre, along_x, along_y;
   vec3 spare;
   vec3 low, high;            ///< box about all its points
@@ -67,7 +97,7 @@ struct window_piece {
   vec2 slope{0.0};           ///< of its plane over the window
   double above_plane = 0.0;  ///< largest distance of a point from the plane, along the height
   mat3 to_texels{0.0};       ///< upper left 2 x 2: texel position from the square's middle by (u, v) from the centre
-  std::array<half_plane, 10> side{};
+  std::array<half_plane, most_sides> side{};
   std::uint32_t sides = 0;
 
   /// Height of its plane over (u, v).
@@ -140,17 +170,13 @@ struct window_piece {
   }
 
   out.sides = 0;
-  if (body.over_itself()) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!body.open(slot, k)) continue;
-      half_plane s = body.coarse_side(slot, k);
-      s.c += searched_body::rounding_texels / chart.altitude[k];
-      const double middle_of_box = s.at(vec2(out.centre)),
-                   over_box = std::fabs(s.a) * reach.x + std::fabs(s.b) * reach.y;
-      if (middle_of_box + over_box < 0.0) return false;
-      if (middle_of_box - over_box < 0.0) out.side[out.sides++] = s;
-    }
-  }
+  bool outside = false;
+  body.for_each_border(slot, [&](const half_plane& s) {
+    const double at_middle = s.at(vec2(out.centre)), over_box = std::fabs(s.a) * reach.x + std::fabs(s.b) * reach.y;
+    outside = outside || at_middle + over_box < 0.0;
+    if (at_middle - over_box < 0.0) out.side[out.sides++] = s;
+  });
+  if (outside) return false;
 
   const double x_length = std::fabs(out.along_x.x) + std::fabs(out.along_x.y);
   const double y_length = std::fabs(out.along_y.x) + std::fabs(out.along_y.y);
@@ -193,11 +219,12 @@ struct surface_hit {
   const auto inside = [&](const vec2& z) {
     const vec3 bary = chart.barycentric(z);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double slack = searched_body::rounding_texels / chart.altitude[k];
-      if (bary[static_cast<int>(k)] < -body.gutter() / chart.altitude[k] - slack) return false;
-      if (body.over_itself() && body.open(slot, k) && body.coarse_side(slot, k).at(uv) < -slack) return false;
+      const double reach = (body.gutter() + searched_body::rounding_texels) / chart.altitude[k];
+      if (bary[static_cast<int>(k)] < -reach) return false;
     }
-    return true;
+    bool within = true;
+    body.for_each_border(slot, [&](const half_plane& s) { within = within && s.at(uv) >= 0.0; });
+    return within;
   };
   if (!body.over_itself()) {
     const vec2 z(t.texel_x(uv.x, uv.y), t.texel_y(uv.x, uv.y));
