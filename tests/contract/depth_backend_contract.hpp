@@ -7,13 +7,19 @@
 //       static constexpr double gradient_tolerance = ...;     // angular parts as at a lever arm of 10 mm
 //       static constexpr bool repeatable = true;              // same inputs, same bits
 //     };
+//
 //     INSTANTIATE_TYPED_TEST_SUITE_P(MyDepth, DepthBackendContract, my_factory);
+//
+// A backend without a soft maximum adds `static constexpr bool soft_maximum = false;`. Its soft depth is the depth, it
+// tells no curvature, and it is compared with the central differences alone. One that does not sample a grid of the
+// default size adds `static depth_settings reference(gradient_scheme)`: what the CPU backend needs to come near it.
 #pragma once
 
 #include <array>
 #include <cstring>
 #include <gtest/gtest.h>
 #include <random>
+#include <span>
 
 #include "asperity/depth/cpu_depth.hpp"
 #include "support/height_models.hpp"
@@ -24,7 +30,21 @@ template <class Factory>
 class DepthBackendContract : public ::testing::Test {
  public:
   static_assert(depth_backend<typename Factory::backend>);
-  static constexpr std::array schemes{gradient_scheme::soft_max, gradient_scheme::central_difference};
+  static constexpr bool soft_maximum() {
+    if constexpr (requires { Factory::soft_maximum; }) return Factory::soft_maximum;
+    return true;
+  }
+  static std::span<const gradient_scheme> schemes() {
+    static constexpr std::array all{gradient_scheme::central_difference, gradient_scheme::soft_max};
+    return std::span(all).first(soft_maximum() ? 2 : 1);
+  }
+
+  static depth_settings reference_settings(gradient_scheme scheme) {
+    if constexpr (requires { Factory::reference(scheme); }) return Factory::reference(scheme);
+    depth_settings settings;
+    settings.gradient = scheme;
+    return settings;
+  }
 
   /// Textured probe (0) and two textured fixed bodies.
   static scene textured_scene() {
@@ -92,7 +112,7 @@ TYPED_TEST_SUITE_P(DepthBackendContract);
 TYPED_TEST_P(DepthBackendContract, NoContactIsNoWork) {
   const scene s = this->flat_scene();
   const pose T_wb;
-  for (const gradient_scheme g : this->schemes) {
+  for (const gradient_scheme g : this->schemes()) {
     auto backend = TypeParam::make(s, g);
     const contact_set none;
     EXPECT_EQ(backend.measure({{}, std::span(&T_wb, 1)}, none, {}), status::ok);
@@ -102,7 +122,7 @@ TYPED_TEST_P(DepthBackendContract, NoContactIsNoWork) {
 TYPED_TEST_P(DepthBackendContract, FlatFacesOverlapByWhatTheyOverlap) {
   const scene s = this->flat_scene();
   const contact_window w = test_support::window_downwards(4e-3);
-  for (const gradient_scheme g : this->schemes) {
+  for (const gradient_scheme g : this->schemes()) {
     auto backend = TypeParam::make(s, g);
     for (const double depth : {3e-4, 1e-6, -2e-4}) {
       const penetration p = test_support::measure_whole(backend, s, w, {test_support::face_down(), {0.0, 0.0, -depth}});
@@ -118,7 +138,7 @@ TYPED_TEST_P(DepthBackendContract, FlatFacesOverlapByWhatTheyOverlap) {
 
 TYPED_TEST_P(DepthBackendContract, WithoutACommonSampleEverythingIsZero) {
   const scene s = this->flat_scene();
-  for (const gradient_scheme g : this->schemes) {
+  for (const gradient_scheme g : this->schemes()) {
     auto backend = TypeParam::make(s, g);
     const contact_window w = test_support::window_downwards(4e-3);
     this->expect_zero(test_support::measure_whole(backend, s, w, {test_support::face_down(), {0.05, 0.0, -1e-4}}));
@@ -142,11 +162,9 @@ TYPED_TEST_P(DepthBackendContract, AgreesWithTheCpuReference) {
   std::mt19937_64 bits(21);
   const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
   double worst_depth = 0.0, worst_gradient = 0.0;
-  for (const gradient_scheme g : this->schemes) {
+  for (const gradient_scheme g : this->schemes()) {
     auto backend = TypeParam::make(s, g);
-    depth_settings settings;
-    settings.gradient = g;
-    cpu_depth reference(s, settings);
+    cpu_depth reference(s, this->reference_settings(g));
     for (int i = 0; i < 6; ++i) {
       const pose T{exp_rotation(vec3{0.05 * uniform(), 0.05 * uniform(), uniform()}) * test_support::face_down(),
                    {1e-3 * uniform(), 1e-3 * uniform(), 1e-4 * uniform()}};
@@ -169,7 +187,7 @@ TYPED_TEST_P(DepthBackendContract, ABatchIsTheSumOfItsContacts) {
   const contact_set all = this->contacts_of(s, w);
   const std::array<pose, 2> T_wb{pose{}, pose{quat(1, 0, 0, 0), vec3(-0.05, 0.0, -1e-4)}};
   const scene_pose at{{test_support::face_down(), {1e-4, 2e-4, 0.0}}, T_wb};
-  for (const gradient_scheme g : this->schemes) {
+  for (const gradient_scheme g : this->schemes()) {
     auto backend = TypeParam::make(s, g);
     std::array<penetration, 2> together;
     ASSERT_EQ(backend.measure(at, all, together), status::ok);
@@ -200,7 +218,7 @@ TYPED_TEST_P(DepthBackendContract, MovingEverythingTogetherChangesNothing) {
   turned.u_w = M.rotation * w.u_w;
   turned.v_w = M.rotation * w.v_w;
   turned.n_ab_w = M.rotation * w.n_ab_w;
-  for (const gradient_scheme g : this->schemes) {
+  for (const gradient_scheme g : this->schemes()) {
     auto backend = TypeParam::make(s, g);
     const std::array<pose, 2> here{}, there{M, M};
     std::array<penetration, 2> p, q;
@@ -215,8 +233,13 @@ TYPED_TEST_P(DepthBackendContract, MovingEverythingTogetherChangesNothing) {
 
 TYPED_TEST_P(DepthBackendContract, CurvatureIsSymmetricAndPositiveSemidefinite) {
   const scene s = this->textured_scene();
-  auto backend = TypeParam::make(s, gradient_scheme::soft_max);
+  auto backend = TypeParam::make(s, this->schemes().back());
   const penetration p = measure_whole_of_two(backend, s);
+  if (!this->soft_maximum()) {
+    EXPECT_EQ(p.soft_depth_m, p.depth_m);
+    EXPECT_EQ(test_support::largest_entry({.curvature = p.curvature}), 0.0);
+    return;
+  }
   std::mt19937_64 bits(4);
   const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
   double trace = 0.0;
@@ -234,7 +257,7 @@ TYPED_TEST_P(DepthBackendContract, CurvatureIsSymmetricAndPositiveSemidefinite) 
 TYPED_TEST_P(DepthBackendContract, TheSameInputsGiveTheSameBits) {
   if (!TypeParam::repeatable) GTEST_SKIP() << "the backend does not promise repeatable bits";
   const scene s = this->textured_scene();
-  for (const gradient_scheme g : this->schemes) {
+  for (const gradient_scheme g : this->schemes()) {
     auto backend = TypeParam::make(s, g), other = TypeParam::make(s, g);
     const penetration first = measure_whole_of_two(backend, s);
     static_cast<void>(measure_whole_of_two(backend, s, 3e-4));  // another pose in between leaves nothing behind
@@ -249,7 +272,7 @@ TYPED_TEST_P(DepthBackendContract, TheSameInputsGiveTheSameBits) {
 
 TYPED_TEST_P(DepthBackendContract, SizesThatDoNotFitAreRefused) {
   const scene s = this->flat_scene();
-  auto backend = TypeParam::make(s, gradient_scheme::soft_max);
+  auto backend = TypeParam::make(s, this->schemes().back());
   const contact_set contacts = test_support::whole_contact(s, test_support::window_downwards(4e-3));
   const pose T_wb;
   EXPECT_NE(backend.measure({{}, std::span(&T_wb, 1)}, contacts, {}), status::ok);

@@ -14,6 +14,7 @@ enum class depth_flag : std::uint8_t {
   window_too_small = 2,  ///< the deepest sample lies on the window's border
   saturated = 4,         ///< the depth left the range that the backend can express
   bad_texel = 8,         ///< a NaN texel was met and its samples were left out
+  unresolved = 16,       ///< a search stopped at its limit: the largest depth may be larger than what it found
 };
 
 [[nodiscard]] constexpr depth_flag operator|(depth_flag a, depth_flag b) noexcept {
