@@ -44,6 +44,7 @@ class decomposition {
     tolerance_ = limits.tolerance * diagonal_;
     bridged_air_ = limits.bridged_air * diagonal_;
     flat_ = limits.flat * diagonal_;
+    most_triangles_ = limits.triangles != 0 ? limits.triangles : mesh.triangles.size();
     lattice_ = to_lattice(mesh.positions, box);
     for (const index_triangle& t : mesh.triangles) planes_.emplace_back(bake::corners(mesh.positions, t));
   }
@@ -110,6 +111,7 @@ class decomposition {
       for (std::uint32_t k = 0; k < 3; ++k) {
         const std::uint32_t mate = net_.mate[3 * p.triangles[i] + k];
         const std::uint32_t t = mate / 3;
+        if (p.triangles.size() >= most_triangles_) return p;
         if (owner_[t] != no_halfedge || std::find(refused.begin(), refused.end(), t) != refused.end()) continue;
         if (try_add(p, t, number))
           take(t);
@@ -254,6 +256,7 @@ class decomposition {
   double tolerance_ = 0.0;
   double bridged_air_ = 0.0;
   double flat_ = 0.0;
+  std::size_t most_triangles_ = 0;
 };
 
 }  // namespace
@@ -264,34 +267,6 @@ result<std::vector<convex_piece>> decompose(const triangle_mesh& mesh, const pie
   auto pieces = work.run(monitor);
   if (!pieces) return error{error_code::cancelled, "the bake was cancelled"};
   return std::move(*pieces);
-}
-
-result<std::vector<convex_piece>> decompose_into(const triangle_mesh& mesh, std::size_t count, stage_monitor& monitor) {
-  constexpr int most_tries = 8;
-  double tight = -6.0;  // powers of two
-  double loose = 4.0;
-  const auto away = [count](std::size_t n) {
-    return std::abs(std::log(static_cast<double>(n) / static_cast<double>(count)));
-  };
-  std::optional<std::vector<convex_piece>> best;
-  double best_power = 0.0;
-  double power = 0.0;
-  for (int i = 0; i < most_tries; ++i) {
-    piece_limits limits;
-    limits.tolerance *= std::exp2(power);
-    limits.bridged_air *= std::exp2(power);
-    auto pieces = decompose(mesh, limits, monitor);
-    if (!pieces) return pieces.error();
-    const std::size_t n = pieces->size();
-    if (!best || away(n) < away(best->size()) || (n == best->size() && power < best_power)) {
-      best = std::move(*pieces);
-      best_power = power;
-    }
-    if (n == count) break;
-    (n > count ? tight : loose) = power;
-    power = 0.5 * (tight + loose);
-  }
-  return std::move(*best);
 }
 
 }  // namespace asperity::bake

@@ -18,7 +18,7 @@ struct bake_options {
   std::size_t triangles = 600;          ///< coarse triangles to aim for; ignored where `coarse` is given
   std::optional<triangle_mesh> coarse;  ///< a coarse mesh to use instead of simplifying
   std::uint32_t texture_size = 1024;    ///< texels per side
-  /// Convex pieces to aim for, by tolerances looser or tighter than usual; what that costs is in the report.
+  /// Convex pieces to aim for, by smaller pieces or looser tolerances than usual; what that costs is in the report.
   std::optional<std::size_t> pieces;
   unsigned threads = 0;  ///< 0: as many as the machine has; the result does not depend on it
   /// Told of every stage and its share done, 0 to 1; returning false cancels the bake.

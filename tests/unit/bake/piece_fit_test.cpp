@@ -1,5 +1,6 @@
 #include "bake/piece_fit.hpp"
 
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include "bake/collapse.hpp"
@@ -46,11 +47,16 @@ TEST(PieceFit, OfAHullOverANotchIsTheNotch) {
   EXPECT_NEAR(fit->bridged_air_max_m, depth, 1e-4);
 }
 
-TEST(PieceFit, OfADecompositionKeepsItsLimits) {
+triangle_mesh coarse_torus(std::size_t triangles) {
   stage_monitor monitor;
   shapes::wavy_torus torus;
   torus.amplitude_m = 0.0;
-  const triangle_mesh coarse = *collapse_edges(torus.mesh(80, 40), 400, monitor);
+  return *collapse_edges(torus.mesh(80, 40), triangles, monitor);
+}
+
+TEST(PieceFit, OfADecompositionKeepsItsLimits) {
+  stage_monitor monitor;
+  const triangle_mesh coarse = coarse_torus(300);
   const double diagonal = bounds_of(coarse.positions).diagonal();
   const auto pieces = *decompose(coarse, piece_limits{}, monitor);
   const auto fit = measure_fit(coarse, pieces, 0.002 * diagonal, monitor);
@@ -60,13 +66,11 @@ TEST(PieceFit, OfADecompositionKeepsItsLimits) {
   EXPECT_LT(fit->bridged_air_max_m, 4.2e-3 * diagonal);
 }
 
-TEST(Pieces, AsManyAsAskedForWithinATenth) {
+TEST(Pieces, AreAsManyAsAskedForWithinATenth) {
   stage_monitor monitor;
-  shapes::wavy_torus torus;
-  torus.amplitude_m = 0.0;
-  const triangle_mesh coarse = *collapse_edges(torus.mesh(80, 40), 400, monitor);
+  const triangle_mesh coarse = coarse_torus(120);
   const std::size_t usual = decompose(coarse, piece_limits{}, monitor)->size();
-  for (const std::size_t count : {usual / 2, 2 * usual}) {
+  for (const std::size_t count : {usual + usual / 4, usual + usual / 2}) {
     const auto pieces = decompose_into(coarse, count, monitor);
     ASSERT_TRUE(pieces);
     EXPECT_NEAR(static_cast<double>(pieces->size()), static_cast<double>(count), 0.1 * static_cast<double>(count));
@@ -75,6 +79,20 @@ TEST(Pieces, AsManyAsAskedForWithinATenth) {
       for (const std::uint32_t t : p.triangles) ++seen[t];
     for (const int n : seen) EXPECT_EQ(n, 1);
   }
+}
+
+TEST(Pieces, AreFewerAtTheCostOfTheirFit) {
+  stage_monitor monitor;
+  const triangle_mesh coarse = shapes::box({0.04, 0.04, 0.02}, {6, 6, 1}, [](vec3 p) {
+    const bool ripple = p.z > 0.0 && std::abs(p.x) < 0.019 && std::abs(p.y) < 0.019;
+    return ripple ? p - vec3(0.0, 0.0, std::lround(p.x / (0.04 / 6)) % 2 == 0 ? 2e-5 : 0.0) : p;
+  });
+  const auto usual = decompose(coarse, piece_limits{}, monitor);
+  const auto fewer = decompose_into(coarse, 1, monitor);
+  ASSERT_TRUE(usual && fewer);
+  EXPECT_LT(fewer->size(), usual->size());
+  EXPECT_GT(measure_fit(coarse, *fewer, 0.001, monitor)->surface_to_hull_max_m,
+            measure_fit(coarse, *usual, 0.001, monitor)->surface_to_hull_max_m);
 }
 
 TEST(Pieces, AConvexBodyIsOneHoweverManyAreAskedFor) {
