@@ -1,5 +1,6 @@
 // Outputs that cannot be written: found early, one sentence, nothing left behind.
 #include <unistd.h>
+#include <utility>
 
 #include "command_process.hpp"
 
@@ -39,6 +40,38 @@ TEST_F(output, folder_in_the_place_of_the_file) {
   std::filesystem::create_directory(path("session.csv"));
   expect_failure(bake_to(path("model.glb")), 1, "io_failed");
   expect_failure(run_with("--record", path("session.csv")), 1, "io_failed");
+}
+
+TEST_F(output, folder_that_may_only_be_read) {
+  // No right stops root, and nothing makes a file in /proc.
+  std::string folder = "/proc";
+  if (geteuid() != 0) {
+    folder = path("read-only");
+    std::filesystem::create_directory(folder);
+    std::filesystem::permissions(folder, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  }
+  const std::string message = expect_failure(bake_to(folder + "/model.glb"), 1, "io_failed");
+  EXPECT_NE(message.find(folder + "/model.glb"), std::string::npos) << message;
+  EXPECT_NE(message.find("writable folder"), std::string::npos) << message;
+}
+
+// File names are bytes. The model is called after its mesh, as far as that is UTF-8.
+TEST_F(output, names_of_any_letters) {
+  const std::vector<std::pair<std::string, std::string>> names{
+      {"a mesh with spaces", "a mesh with spaces"},
+      {"\xc3\xbc\xe6\x9f\x90 'quoted' \"twice\"", "\xc3\xbc\xe6\x9f\x90 'quoted' \"twice\""},
+      {"-begins-with-a-dash", "-begins-with-a-dash"},
+      {"latin \xe9", "latin \xef\xbf\xbd"},
+      {"two\nlines", "two\nlines"},
+  };
+  for (const auto& [name, kept] : names) {
+    std::filesystem::copy_file(block("block.ply"), path(name + ".ply"));
+    const arguments bake{"bake", path(name + ".ply"), "--coarse", block("block_coarse.ply"), "--texture", "64",
+                         "-o",   path(name + ".glb")};
+    static_cast<void>(expect_document(bake, "asperity.bake/1"));
+    const json inspected = expect_document({"inspect", path(name + ".glb")}, "asperity.inspect/1");
+    EXPECT_EQ(inspected.at("name"), kept);
+  }
 }
 
 TEST_F(output, unwritable_place_is_found_before_the_input_is_read) {

@@ -69,7 +69,7 @@ async function look() {
 }
 
 const expected = JSON.parse(await readFile(inspected));
-const found = await look();
+const found = await look().catch((e) => ({failure: e.message}));
 if (found.failure) {
   console.log(`three.js FAILED: ${found.failure}`);
   exit(1);
