@@ -73,6 +73,32 @@ TEST_F(documents, bake_and_inspect_tell_the_same) {
   EXPECT_EQ(seen["warnings"], json::array());
 }
 
+TEST_F(documents, pictures) {
+  const std::initializer_list<const char*> keys{"file",  "shows",   "colours_from", "colours_to",
+                                                "least", "largest", "rms"};
+  const json baked = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
+                                      "128", "-o", path("brick.glb"), "--picture", path("baked.png")},
+                                     "asperity.bake/1");
+  expect_keys(baked["picture"], keys);
+  EXPECT_EQ(baked["picture"]["shows"], "distance to the original");
+  EXPECT_LE(baked["picture"]["rms"], baked["bake"]["max_error"]);
+  EXPECT_GT(baked["picture"]["rms"], 0.0);
+  // The same picture afterwards, from the files.
+  const json seen = expect_document({"inspect", path("brick.glb"), "--original", block("block.ply"), "--picture",
+                                     path("inspected.png"), "--up", "z", "--turn", "0", "--scale", "1"},
+                                    "asperity.inspect/1");
+  expect_keys(seen["picture"], keys);
+  EXPECT_NEAR(seen["picture"]["rms"], baked["picture"]["rms"], 1e-8);
+  const json alone =
+      expect_document({"inspect", path("brick.glb"), "--picture", path("alone.png")}, "asperity.inspect/1");
+  EXPECT_EQ(alone["picture"]["shows"], "height above the coarse surface");
+  EXPECT_NEAR(alone["picture"]["largest"], 0.5e-3, 0.05e-3);  // the block's ridges
+  EXPECT_NEAR(alone["picture"]["least"], -0.5e-3, 0.05e-3);
+  EXPECT_EQ(run({"inspect", path("brick.glb"), "--picture", path("again.png")}).exit_status, 0);
+  EXPECT_EQ(read("again.png"), read("alone.png"));
+  EXPECT_NE(read("inspected.png"), read("alone.png"));
+}
+
 TEST_F(documents, scale_changes_units_and_inspect_warns) {
   const json baked = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
                                       "64", "--scale", "1000", "-o", path("huge.glb")},

@@ -18,6 +18,9 @@ class output : public command_test {
   [[nodiscard]] static arguments run_with(const char* option, const std::string& out) {
     return {"run", "--probe", block("block.glb"), "--fixed", block("block.glb"), "--seconds", "0.05", option, out};
   }
+  [[nodiscard]] static arguments draw_to(const std::string& out) {
+    return {"inspect", block("block.glb"), "--original", block("block.ply"), "--picture", out};
+  }
 };
 
 TEST_F(output, folder_that_is_not_there) {
@@ -25,12 +28,18 @@ TEST_F(output, folder_that_is_not_there) {
             std::string::npos);
   expect_failure(run_with("--record", path("absent/session.csv")), 1, "io_failed");
   expect_failure(run_with("--plot", path("absent/plot.png")), 1, "io_failed");
+  EXPECT_NE(expect_failure(draw_to(path("absent/model.png")), 1, "io_failed").find("absent/model.png"),
+            std::string::npos);
+  arguments bake_and_draw = bake_to(path("model.glb"));
+  bake_and_draw.insert(bake_and_draw.end(), {"--picture", path("absent/model.png")});
+  expect_failure(bake_and_draw, 1, "io_failed");
 }
 
 TEST_F(output, parent_that_is_a_file) {
   expect_failure(bake_to(path("file/model.glb")), 1, "io_failed");
   expect_failure(run_with("--record", path("file/session.csv")), 1, "io_failed");
   expect_failure(run_with("--plot", path("file/plot.svg")), 1, "io_failed");
+  expect_failure(draw_to(path("file/model.png")), 1, "io_failed");
   expect_failure({"models", "--only", "block", "-o", path("file/models")}, 1, "io_failed");
   expect_failure({"models", "--only", "block", "-o", path("file")}, 1, "io_failed");
 }
@@ -38,8 +47,10 @@ TEST_F(output, parent_that_is_a_file) {
 TEST_F(output, folder_in_the_place_of_the_file) {
   std::filesystem::create_directory(path("model.glb"));
   std::filesystem::create_directory(path("session.csv"));
+  std::filesystem::create_directory(path("model.png"));
   expect_failure(bake_to(path("model.glb")), 1, "io_failed");
   expect_failure(run_with("--record", path("session.csv")), 1, "io_failed");
+  expect_failure(draw_to(path("model.png")), 1, "io_failed");
 }
 
 TEST_F(output, folder_that_may_only_be_read) {
@@ -86,6 +97,7 @@ TEST_F(output, full_disk) {
   std::filesystem::create_symlink("/dev/full", path("plot.png"));
   expect_failure(run_with("--record", path("session.csv")), 1, "io_failed");
   expect_failure(run_with("--plot", path("plot.png")), 1, "io_failed");
+  expect_failure(draw_to(path("plot.png")), 1, "io_failed");
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
@@ -95,6 +107,7 @@ TEST_F(output, disk_that_fills_up_while_writing) {
   expect_failure(bake_to(path("model.glb")), 1, "io_failed", options);
   expect_failure(run_with("--record", path("session.csv")), 1, "io_failed", options);
   expect_failure(run_with("--plot", path("plot.png")), 1, "io_failed", options);
+  expect_failure(draw_to(path("model.png")), 1, "io_failed", options);
   expect_failure({"models", "--only", "block", "-o", path("")}, 1, "io_failed", options);
 }
 
@@ -111,6 +124,41 @@ TEST_F(output, mesh_that_would_replace_itself) {
   const std::string before = read("mesh.glb");
   expect_failure({"bake", path("mesh.glb"), "-o", path("mesh.glb")}, 1, "invalid_argument");
   EXPECT_EQ(read("mesh.glb"), before);
+}
+
+TEST_F(output, picture_that_would_replace_what_is_read) {
+  std::filesystem::copy_file(block("block.glb"), path("model.glb"));
+  std::filesystem::create_symlink(path("model.glb"), path("model.png"));
+  const std::string before = read("model.glb");
+  expect_failure({"inspect", path("model.glb"), "--picture", path("model.png")}, 1, "invalid_argument");
+  std::filesystem::copy_file(block("block.ply"), path("mesh.ply"));
+  std::filesystem::create_symlink(path("mesh.ply"), path("mesh.png"));
+  expect_failure({"inspect", path("model.glb"), "--original", path("mesh.ply"), "--picture", path("mesh.png")}, 1,
+                 "invalid_argument");
+  expect_failure({"bake", path("mesh.ply"), "-o", path("new.glb"), "--picture", path("mesh.png")}, 1,
+                 "invalid_argument");
+  write("new.glb", "an older model");
+  std::filesystem::create_symlink(path("new.glb"), path("new.png"));
+  expect_failure({"bake", path("mesh.ply"), "-o", path("new.glb"), "--picture", path("new.png")}, 1,
+                 "invalid_argument");
+  EXPECT_EQ(read("model.glb"), before);
+}
+
+TEST_F(output, failed_picture_keeps_the_old_one) {
+  write("model.png", "an older picture");
+  write("broken.ply", "ply\n");
+  const auto compare_to = [&](const std::string& original) {
+    return arguments{"inspect", block("block.glb"), "--picture", path("model.png"), "--original", original};
+  };
+  EXPECT_NE(expect_failure(compare_to(path("absent.ply")), 1, "io_failed").find("absent.ply"), std::string::npos);
+  EXPECT_NE(expect_failure(compare_to(path("broken.ply")), 1, "bad_format").find("broken.ply"), std::string::npos);
+  arguments in_millimetres = compare_to(block("block.ply"));
+  in_millimetres.insert(in_millimetres.end(), {"--scale", "0.001"});
+  const std::string message = expect_failure(in_millimetres, 1, "invalid_argument");
+  EXPECT_NE(message.find("--scale"), std::string::npos) << message;
+  EXPECT_EQ(read("model.png"), "an older picture");
+  EXPECT_EQ(run(compare_to(block("block.ply"))).exit_status, 0);
+  EXPECT_EQ(read("model.png").substr(1, 3), "PNG");
 }
 
 TEST_F(output, failed_bake_keeps_the_old_model) {

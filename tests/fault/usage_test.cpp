@@ -64,6 +64,19 @@ TEST_F(usage, words_that_are_not_choices) {
   expect_failure({"bake", path("mesh.ply"), "-o", path("model.obj")}, 2, "usage");
 }
 
+TEST_F(usage, options_of_a_picture_need_a_picture) {
+  for (const arguments& alone : std::initializer_list<arguments>{{"--original", path("mesh.ply")},
+                                                                 {"--up", "y"},
+                                                                 {"--turn", "30"},
+                                                                 {"--picture", path("model.jpg")},
+                                                                 {"--picture", path("model.png"), "--scale", "0.001"},
+                                                                 {"--picture", path("model.png"), "--up", "w"}}) {
+    arguments args{"inspect", path("model.glb")};
+    args.insert(args.end(), alone.begin(), alone.end());
+    expect_failure(args, 2, "usage");
+  }
+}
+
 TEST_F(usage, options_that_exclude_each_other) {
   expect_failure({"bake", path("mesh.ply"), "-o", path("model.glb"), "--triangles", "500", "--coarse", path("low.ply")},
                  2, "usage");

@@ -112,6 +112,10 @@ result<void> check_paths(const bake_command& options) {
       return error{error_code::invalid_argument,
                    "-o " + options.out + " would replace the mesh that is being baked: give another name"};
     }
+    if (!input.empty() && !options.picture.empty() && fs::equivalent(input, options.picture, ignored)) {
+      return error{error_code::invalid_argument,
+                   "--picture " + options.picture + " would replace the mesh that is being baked: give another name"};
+    }
   }
   if (!options.picture.empty() &&
       fs::weakly_canonical(options.picture, ignored) == fs::weakly_canonical(options.out, ignored)) {
@@ -221,7 +225,10 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   }
   clock.leave();
   answer out = report(options, *model, holes, clock, std::move(remarks));
-  if (drawing) out.document["picture"] = std::move(picture);
+  if (drawing) {
+    out.document["picture"] = std::move(picture);
+    out.text += row("picture", options.picture);
+  }
   return out;
 }
 

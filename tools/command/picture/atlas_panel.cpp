@@ -76,7 +76,8 @@ texel_window telling_window(const texel_map& map, std::size_t side, const value_
       const auto all = static_cast<double>(best.width * best.height);
       for (double& s : share) s /= all;
       // Charts are what it is about: half of the window is enough for them, a fifth for each of the others.
-      const double score = std::min(share[2], 0.5) + std::min(share[1], 0.2) + std::min(share[0], 0.2) + relief / all;
+      const double score =
+          std::min(share[2], 0.5) + std::min(share[1], 0.2) + std::min(share[0], 0.2) + 0.3 * relief / all;
       if (score <= best_score) continue;
       best_score = score;
       best.left = left;

@@ -145,9 +145,8 @@ class page {
   void coarse_panel(const view& from) {
     begin(0, draw_coarse(model_, from, panel_width, panel_height), "Coarse mesh",
           count(model_.mesh.triangles.size()) + " triangles in " +
-              (model_.pieces.size() == 1
-                   ? "one convex piece"
-                   : count(model_.pieces.size()) + " convex pieces, neighbours in different colours"));
+              (model_.pieces.size() == 1 ? "one convex piece"
+                                         : count(model_.pieces.size()) + " convex pieces, told apart by colour"));
     scale_line(from);
   }
 
