@@ -3,108 +3,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
-#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "asperity/asperity.hpp"
-#include "asperity/io/mesh_file.hpp"
-#include "asperity/io/textured_model_file.hpp"
 #include "oracle/brute_force.hpp"
+#include "oracle/model_poses.hpp"
 
 namespace {
 
 using namespace asperity;
+using namespace asperity::oracle;
 
-const std::filesystem::path models_dir = ASPERITY_TEST_MODELS_DIR;
 constexpr int poses_per_pair = 70;
 constexpr int grid = 64;
 constexpr int refinement = 5;
-
-struct loaded_body {
-  triangle_mesh full;
-  model_ptr model;
-};
-
-loaded_body load(const std::string& name) {
-  auto full = io::load_mesh(models_dir / (name + ".ply"));
-  auto model = io::load_textured_model(models_dir / (name + ".glb"));
-  if (!full || !model) {
-    ADD_FAILURE() << (full ? model.error().message : full.error().message);
-    return {};
-  }
-  return {std::move(full).value(), std::make_shared<const textured_model>(std::move(model).value())};
-}
-
-double uniform(std::mt19937_64& rng, double low, double high) {
-  return low + (high - low) * static_cast<double>(rng() >> 11) * 0x1p-53;
-}
-
-vec3 random_direction(std::mt19937_64& rng) {
-  const double z = uniform(rng, -1.0, 1.0);
-  const double a = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(a), r * std::sin(a), z};
-}
-
-quat random_rotation(std::mt19937_64& rng) {
-  const double u = uniform(rng, 0.0, 1.0);
-  const double a = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double b = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double r = std::sqrt(1.0 - u);
-  const double s = std::sqrt(u);
-  return {s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b)};
-}
-
-// The bake reports how far its texels lie from the coarse surface, and how far they may be from the original.
-double reach(const loaded_body& b) { return b.model->report.max_displacement_m + b.model->report.max_error_m; }
-
-// Depth of the deepest contact; minus infinity where nothing touches.
-double deepest(const tick& t) {
-  double d = -std::numeric_limits<double>::infinity();
-  for (const penetration& p : t.depths) {
-    if (!has(p.flags, depth_flag::no_overlap)) d = std::max(d, p.depth_m);
-  }
-  return d;
-}
-
-// A seeded pose at which the probe, coming from outside along a random direction with a random orientation, overlaps by
-// some tenths of a millimetre.
-template <contact_renderer Renderer>
-bool touching_pose(Renderer& r, std::mt19937_64& rng, pose& T_wa) {
-  const textured_model& a = *r.scene().probe;
-  const textured_model& b = *r.scene().fixed.front();
-  const std::array<pose, 1> fixed{};
-  const quat rotation = random_rotation(rng);
-  const vec3 from = random_direction(rng);
-  const vec3 centre_b = 0.5 * (b.box.low + b.box.high);
-  const vec3 aside = glm::cross(from, random_direction(rng));
-  const vec3 target = centre_b + 0.3 * uniform(rng, 0.0, 1.0) * b.box.diagonal() * aside;
-  const vec3 centre_a = 0.5 * (a.box.low + a.box.high);
-  const double wanted = uniform(rng, 0.0, 0.0004);
-  const auto at = [&](double distance) { return pose{rotation, target + distance * from - rotation * centre_a}; };
-
-  tick t;
-  double outside = 0.5 * (a.box.diagonal() + b.box.diagonal()) + 0.4 * b.box.diagonal();
-  const double step = 0.02 * std::min(a.box.diagonal(), b.box.diagonal());
-  double inside = outside;
-  do {  // march in until the first overlap, so that a thin part is not jumped over
-    outside = inside;
-    inside -= step;
-    if (inside < -outside || r.step({at(inside), fixed}, t) != status::ok) return false;
-  } while (!(deepest(t) > wanted));
-  for (int i = 0; i < 12; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    if (r.step({at(middle), fixed}, t) != status::ok) return false;
-    (deepest(t) > wanted ? inside : outside) = middle;
-  }
-  T_wa = at(inside);
-  return r.step({T_wa, fixed}, t) == status::ok && deepest(t) > 0.0;
-}
 
 struct row {
   int poses = 0, contacts = 0;
@@ -115,12 +30,6 @@ struct row {
   std::vector<double> on_grid_m;     // from the originals on the same grid: what sampling has no part in
   std::vector<double> untextured_m;  // the same of the coarse surfaces alone: what a lost texture would show
 };
-
-double percentile(std::vector<double> v, double p) {
-  if (v.empty()) return 0.0;
-  std::sort(v.begin(), v.end());
-  return v[std::min(v.size() - 1, static_cast<std::size_t>(p * static_cast<double>(v.size())))];
-}
 
 triangle_mesh bare(const coarse_mesh& mesh) {
   triangle_mesh out{mesh.positions, {}, {}};
@@ -157,9 +66,9 @@ row compare(const std::string& probe_name, const std::string& fixed_name, std::u
     for (std::size_t i = 0; i < t.contacts.size(); ++i) {
       const contact& c = t.contacts[i];
       const penetration& p = t.depths[i];
-      const auto truth = oracle::measure_brute_force(
-          {&a.full, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
-          {&b.full, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)}, c.window, grid, refinement);
+      const auto truth = measure_brute_force({&a.full, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
+                                             {&b.full, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)},
+                                             c.window, grid, refinement);
       if (has(p.flags, depth_flag::no_overlap) || truth.samples == 0) {
         EXPECT_EQ(has(p.flags, depth_flag::no_overlap), truth.samples == 0) << probe_name << " pose " << out.poses;
         continue;
@@ -179,9 +88,9 @@ row compare(const std::string& probe_name, const std::string& fixed_name, std::u
         std::printf("    pose %d contact %zu: depth %.4f mm, originals %.4f mm, on the same grid %.4f mm\n", out.poses,
                     i, p.depth_m * 1e3, truth.dense.depth_m * 1e3, truth.grid.depth_m * 1e3);
       }
-      const auto untextured = oracle::measure_brute_force(
-          {&bare_a, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
-          {&bare_b, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)}, c.window, grid, 1);
+      const auto untextured =
+          measure_brute_force({&bare_a, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
+                              {&bare_b, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)}, c.window, grid, 1);
       out.errors_m.push_back(error);
       out.on_grid_m.push_back(std::fabs(p.depth_m - truth.grid.depth_m));
       out.untextured_m.push_back(std::fabs(untextured.grid.depth_m - truth.grid.depth_m));
@@ -259,8 +168,8 @@ TEST(brute_force_models, a_single_contact_of_the_shared_potential_is_as_deep_as_
       window.half_size_m = half_window_m;
       const auto patch_a = patch_near(a.model->mesh, T_wa, window.centre_w, window.n_ab_w, half_window_m);
       const auto patch_b = patch_near(b.model->mesh, {}, window.centre_w, -window.n_ab_w, half_window_m);
-      const auto truth = oracle::measure_brute_force({&a.full, &a.model->mesh, patch_a, T_wa, reach(a)},
-                                                     {&b.full, &b.model->mesh, patch_b, {}, reach(b)}, window, grid, 3);
+      const auto truth = measure_brute_force({&a.full, &a.model->mesh, patch_a, T_wa, reach(a)},
+                                             {&b.full, &b.model->mesh, patch_b, {}, reach(b)}, window, grid, 3);
       if (truth.samples == 0) continue;
       const auto along_n = [](double slope) { return std::hypot(1.0, std::min(slope, 1.0)); };
       const double bound = 2.0 * tau_m + along_n(truth.dense.slope_a) * a.model->report.max_error_m +
