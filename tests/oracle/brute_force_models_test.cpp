@@ -2,7 +2,6 @@
 // its depth compared with the brute-force depth of the two originals in the same window.
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <glm/vector_relational.hpp>
 #include <gtest/gtest.h>
 #include <random>
@@ -10,9 +9,7 @@
 #include <vector>
 
 #include "asperity/asperity.hpp"
-#include "asperity/io/mesh_file.hpp"
-#include "asperity/io/textured_model_file.hpp"
-#include "oracle/against_originals.hpp"
+#include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
 
 namespace {
@@ -22,19 +19,8 @@ using oracle::original_and_bake;
 using oracle::percentile;
 using oracle::reach;
 
-const std::filesystem::path models_dir = ASPERITY_TEST_MODELS_DIR;
 constexpr int poses_per_pair = 70;
 constexpr int grid = oracle::comparison_grid;
-
-original_and_bake load(const std::string& name) {
-  auto full = io::load_mesh(models_dir / (name + ".ply"));
-  auto model = io::load_textured_model(models_dir / (name + ".glb"));
-  if (!full || !model) {
-    ADD_FAILURE() << (full ? model.error().message : full.error().message);
-    return {};
-  }
-  return {name, std::move(full).value(), std::make_shared<const textured_model>(std::move(model).value())};
-}
 
 TEST(brute_force_models, depth_agrees_with_the_full_resolution_meshes) {
   struct pair {
@@ -44,8 +30,8 @@ TEST(brute_force_models, depth_agrees_with_the_full_resolution_meshes) {
   oracle::print_heading();
   int poses = 0;
   for (const pair& p : {pair{"block", "gear", 11}, pair{"file", "cad_part", 12}, pair{"hammer", "torus", 13}}) {
-    const original_and_bake a = load(p.probe);
-    const original_and_bake b = load(p.fixed);
+    const original_and_bake a = oracle::load_benchmark_body(p.probe);
+    const original_and_bake b = oracle::load_benchmark_body(p.fixed);
     ASSERT_TRUE(a.model && b.model);
     const oracle::comparison r = oracle::compare_with_originals(a, b, poses_per_pair, p.seed);
     oracle::print_row(a, b, r);
@@ -83,8 +69,8 @@ TEST(brute_force_models, a_single_contact_of_the_shared_potential_is_as_deep_as_
   std::printf("  %-20s %9s %14s %9s %9s %7s\n", "pair", "contacts", "error um: p50", "p95", "max", "share");
   int contacts = 0;
   for (const pair& which : {pair{"block", "gear", 21}, pair{"file", "cad_part", 22}, pair{"hammer", "torus", 23}}) {
-    const original_and_bake a = load(which.probe);
-    const original_and_bake b = load(which.fixed);
+    const original_and_bake a = oracle::load_benchmark_body(which.probe);
+    const original_and_bake b = oracle::load_benchmark_body(which.fixed);
     ASSERT_TRUE(a.model && b.model);
     auto made = make_renderer({a.model, {b.model}});
     ASSERT_TRUE(made) << made.error().message;

@@ -53,14 +53,14 @@ class deepest_line {
     begin(half_m, epsilon_m, seed);
     collect_roots(b);
     for (std::uint32_t slot = 0; slot < a.view.patch.triangles().size(); ++slot) {
-      for_each_root(a, slot, [&](const texture_place& at, const window_piece& piece) {
+      for_each_root(a, slot, [&](const surface_part& part, const window_piece& piece) {
         for (const root& r : roots_) {
           if (r.low.x > piece.high.x || r.high.x < piece.low.x || r.low.y > piece.high.y || r.high.y < piece.low.y) {
             continue;
           }
           window_piece other;
-          if (make_piece(b, r.slot, r.at, other))
-            offer({std::numeric_limits<double>::infinity(), 0, slot, r.slot, at, r.at}, piece, other);
+          if (make_piece(b, r.part, other))
+            offer({std::numeric_limits<double>::infinity(), 0, part, r.part}, piece, other);
         }
       });
     }
@@ -83,12 +83,10 @@ class deepest_line {
   struct node {
     double upper_m;
     std::uint32_t number;
-    std::uint32_t slot_a, slot_b;
-    texture_place at_a, at_b;
+    surface_part a, b;
   };
   struct root {
-    std::uint32_t slot;
-    texture_place at;
+    surface_part part;
     vec2 low, high;
   };
   [[nodiscard]] static bool later(const node& x, const node& y) noexcept {
@@ -104,11 +102,11 @@ class deepest_line {
     roots_.clear();
   }
 
-  /// Squares of the texture, at most four, that hold a triangle's chart, and what the window sees of them.
+  /// The parts of a triangle's chart, at most four, that are first looked at, and what the window sees of them.
   template <class Take>
   void for_each_root(const searched_body& body, std::uint32_t slot, Take take) const noexcept {
     const std::array<vec2, 3>& z = body.chart(slot).corner;
-    const double margin = body.gutter() + 1e-6;
+    const double margin = 1e-6;
     // In cells: cell k lies between texels k - 1 and k.
     const vec2 low = glm::floor(glm::min(z[0], glm::min(z[1], z[2])) + (1.0 - margin));
     const vec2 high = glm::floor(glm::max(z[0], glm::max(z[1], z[2])) + (1.0 + margin));
@@ -119,21 +117,21 @@ class deepest_line {
     while (level < top && ((x1 >> level) - (x0 >> level) > 1 || (y1 >> level) - (y0 >> level) > 1)) ++level;
     for (std::int32_t y = y0 >> level; y <= y1 >> level; ++y) {
       for (std::int32_t x = x0 >> level; x <= x1 >> level; ++x) {
-        const texture_place at{static_cast<std::int8_t>(level), x, y};
+        const surface_part part{slot, {static_cast<std::int8_t>(level), x, y}};
         window_piece piece;
-        if (!make_piece(body, slot, at, piece)) continue;
+        if (!make_piece(body, part, piece)) continue;
         if (piece.low.x > half_m_ || piece.high.x < -half_m_ || piece.low.y > half_m_ || piece.high.y < -half_m_) {
           continue;
         }
-        take(at, piece);
+        take(part, piece);
       }
     }
   }
 
   void collect_roots(const searched_body& b) noexcept {
     for (std::uint32_t slot = 0; slot < b.view.patch.triangles().size(); ++slot) {
-      for_each_root(b, slot, [&](const texture_place& at, const window_piece& piece) {
-        roots_.push_back({slot, at, vec2(piece.low), vec2(piece.high)});
+      for_each_root(b, slot, [&](const surface_part& part, const window_piece& piece) {
+        roots_.push_back({part, vec2(piece.low), vec2(piece.high)});
       });
     }
   }
@@ -166,7 +164,7 @@ class deepest_line {
   /// Looks at a pair, and cuts it.
   void open(const searched_body& a, const searched_body& b, const node& n) noexcept {
     window_piece piece_a, piece_b;
-    if (!make_piece(a, n.slot_a, n.at_a, piece_a) || !make_piece(b, n.slot_b, n.at_b, piece_b)) return;
+    if (!make_piece(a, n.a, piece_a) || !make_piece(b, n.b, piece_b)) return;
     const pair_bound bound = bound_pair(piece_a, piece_b, half_m_);
     // The bound's own place first; it may lie just outside of what is really shared.
     for (const double inwards : {0.0, 1e-3, 0.1, 1.0}) {
@@ -182,16 +180,17 @@ class deepest_line {
     bool cut_a = loose_a >= loose_b;
     // Where planes say it all, the pieces are too large across the window instead.
     if (loose_a + loose_b < 0.1 * gap) cut_a = extent(piece_a) >= extent(piece_b);
-    if ((cut_a ? n.at_a : n.at_b).level == finest_level) cut_a = !cut_a;
-    if ((cut_a ? n.at_a : n.at_b).level == finest_level) {
+    if ((cut_a ? n.a : n.b).at.level == finest_level) cut_a = !cut_a;
+    if ((cut_a ? n.a : n.b).at.level == finest_level) {
       settle(n.upper_m);
       return;
     }
     for (std::uint32_t i = 0; i < 4; ++i) {
       node child = n;
-      (cut_a ? child.at_a : child.at_b) = (cut_a ? n.at_a : n.at_b).child(i);
+      surface_part& smaller = cut_a ? child.a : child.b;
+      smaller.at = smaller.at.child(i);
       window_piece part;
-      if (!(cut_a ? make_piece(a, n.slot_a, child.at_a, part) : make_piece(b, n.slot_b, child.at_b, part))) continue;
+      if (!make_piece(cut_a ? a : b, smaller, part)) continue;
       cut_a ? offer(child, part, piece_b) : offer(child, piece_a, part);
     }
   }
@@ -205,13 +204,13 @@ class deepest_line {
       const double half = at.half();
       return at.middle() + glm::clamp(vec2(way), vec2(-half), vec2(half));
     };
-    const surface_hit over_a = read_surface(a, n.slot_a, uv, start(piece_a, n.at_a), tolerance_m_);
+    const surface_hit over_a = read_surface(a, n.a, uv, start(piece_a, n.a.at), tolerance_m_);
     if (!over_a.found) return false;
-    const surface_hit over_b = read_surface(b, n.slot_b, uv, start(piece_b, n.at_b), tolerance_m_);
+    const surface_hit over_b = read_surface(b, n.b, uv, start(piece_b, n.b.at), tolerance_m_);
     if (!over_b.found) return false;
     const double depth_m = over_a.height - over_b.height;
     if (!result_.deepest.found || depth_m > result_.deepest.depth_m) {
-      result_.deepest = {true, depth_m, uv, n.slot_a, n.slot_b, over_a.texel, over_b.texel};
+      result_.deepest = {true, depth_m, uv, n.a.slot, n.b.slot, over_a.texel, over_b.texel};
     }
     return true;
   }

@@ -70,9 +70,10 @@ struct depth_bracket {
 /// - parallax_mode::paper_lookup: h(u, v) is the height of the fine point that the texture holds for the coarse point
 ///   over (u, v). No sample of cpu_depth is deeper than upper_m.
 /// - parallax_mode::exact: h is the height of the fine surface over (u, v), A's highest and B's lowest where there are
-///   several. A chart goes on for one texel beyond its triangle, but not across the lines of the patch's last edges. No
-///   sample of cpu_depth is deeper than upper_m, but for samples where the fine surface folds over or ends, and the
-///   paper's lookup stands in: those are not points of the surface over their line, and do not count here.
+///   several. The fine surface of a triangle is that of the texels inside its chart; it ends at the lines of the edges
+///   where the patch ends, and what turns its other side to the window is no part of it. A sample of cpu_depth is
+///   deeper than upper_m only where its lookup runs into a chart's gutter, or gives up (the fine surface folds over or
+///   ends) and takes the paper's point: that is not a point of the surface over its line.
 ///
 /// depth_m and soft_depth_m are the depth along the deepest line that was read, witness_w A's fine point on it, the
 /// gradient that of the depth along this line (the probe moves, the line stays). Curvature is zero. At a crest of the

@@ -16,22 +16,26 @@ struct half_plane {
   [[nodiscard]] double at(const vec2& uv) const noexcept { return a * uv.x + b * uv.y + c; }
 };
 
+/// Part of a textured surface: what a coarse triangle shows of a square of the texture.
+struct surface_part {
+  std::uint32_t slot = 0;  ///< index in patch_projection::triangles()
+  texture_place at;
+};
+
 /// A body in the search for the deepest line: all that says where its surface is.
 ///
 /// The surface over coarse triangle t is the textured one at the texel positions of t's chart. With the exact parallax
-/// a point lies over its own (u, v), and the chart goes on for `gutter` texels beyond the triangle, as it does for the
-/// sampling backends; but where the patch ends, not across the lines of its last edges in the window. Parts that turn
-/// their other side to the window do not count. With the paper's lookup a point lies over its coarse point.
+/// a point lies over its own (u, v); but where the patch ends, the surface does not go on across the lines of its last
+/// edges in the window, and parts that turn their other side to the window do not count. With the paper's lookup a
+/// point lies over its coarse point.
 struct searched_body {
   const body_view& view;
   const texture_pyramid& pyramid;
   parallax_mode parallax;
 
-  static constexpr double gutter_texels = 1.0;
   static constexpr double rounding_texels = 1e-9;
 
   [[nodiscard]] bool over_itself() const noexcept { return parallax == parallax_mode::exact; }
-  [[nodiscard]] double gutter() const noexcept { return over_itself() ? gutter_texels : 0.0; }
   [[nodiscard]] const projected_triangle& triangle(std::uint32_t slot) const noexcept {
     return view.patch.triangles()[slot];
   }
@@ -46,8 +50,8 @@ struct searched_body {
             w.x + w.y * t.texel_x.at_centre + w.z * t.texel_y.at_centre};
   }
 
-  /// Calls use(side) for every line across the window at which the surface of a triangle ends: its own edges where the
-  /// patch ends, and those of its neighbours, into whose charts its own may go on, unless they cut into itself.
+  /// Calls use(side) for every line across the window at which the surface over a triangle ends: where the patch ends,
+  /// at its own edges and at those of its neighbours that do not cut into the triangle itself.
   template <class Use>
   void for_each_border(std::uint32_t slot, Use use) const noexcept {
     if (!over_itself()) return;
@@ -84,9 +88,9 @@ struct searched_body {
   return t.texel_x.per_u * t.texel_y.per_v - t.texel_x.per_v * t.texel_y.per_u;
 }
 
-/// The part of a surface over coarse triangle `slot` whose texel positions lie in a square of the texture. With w the
-/// way from the square's middle, each of its points is centre + along_x w.x + along_y w.y + an error; the error of
-/// component i is at most spare[i]. Window coordinates, metres.
+/// A part of a surface as the window sees it. With w the way from the square's middle, in texels, each of its points is
+/// centre + along_x w.x + along_y w.y + an error; the error of component i is at most spare[i]. Window coordinates,
+/// metres.
 struct window_piece {
   static constexpr std::size_t most_sides = 4 + 3 + 9;  ///< of the square, the chart, the patch's border
 
@@ -107,8 +111,9 @@ struct window_piece {
 };
 
 /// Describes a piece. @return false where no point of the surface is in it   @rt safe
-[[nodiscard]] inline bool make_piece(const searched_body& body, std::uint32_t slot, const texture_place& at,
-                                     window_piece& out) noexcept {
+[[nodiscard]] inline bool make_piece(const searched_body& body, const surface_part& part, window_piece& out) noexcept {
+  const std::uint32_t slot = part.slot;
+  const texture_place& at = part.at;
   const projected_triangle& t = body.triangle(slot);
   const texel_triangle& chart = body.chart(slot);
   const vec2 middle = at.middle();
@@ -123,8 +128,7 @@ struct window_piece {
   for (std::size_t k = 0; k < 3; ++k) {
     const vec3& w = chart.weight[k];
     const double reach = (std::fabs(w.y) + std::fabs(w.z)) * half;
-    const double here =
-        w.x + w.y * middle.x + w.z * middle.y + (body.gutter() + searched_body::rounding_texels) / chart.altitude[k];
+    const double here = w.x + w.y * middle.x + w.z * middle.y + searched_body::rounding_texels / chart.altitude[k];
     if (here + reach < 0.0) return false;
     if (here - reach < 0.0) cuts[cut_count++] = {here, w.y, w.z};
   }
@@ -212,14 +216,15 @@ struct surface_hit {
 
 /// Reads the surface of one coarse triangle over (u, v), from a texel position near by.
 /// @rt safe
-[[nodiscard]] inline surface_hit read_surface(const searched_body& body, std::uint32_t slot, const vec2& uv,
+[[nodiscard]] inline surface_hit read_surface(const searched_body& body, const surface_part& part, const vec2& uv,
                                               const vec2& start, double tolerance_m) noexcept {
+  const std::uint32_t slot = part.slot;
   const projected_triangle& t = body.triangle(slot);
   const texel_triangle& chart = body.chart(slot);
   const auto inside = [&](const vec2& z) {
     const vec3 bary = chart.barycentric(z);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double reach = (body.gutter() + searched_body::rounding_texels) / chart.altitude[k];
+      const double reach = searched_body::rounding_texels / chart.altitude[k];
       if (bary[static_cast<int>(k)] < -reach) return false;
     }
     bool within = true;

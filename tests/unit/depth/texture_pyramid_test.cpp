@@ -163,19 +163,22 @@ TEST(WindowPiece, HoldsEveryPointOfItsPartOfTheSurface) {
       for (int i = 0; i < 4000; ++i) {
         const auto slot = static_cast<std::uint32_t>(d.below(slots));
         const texture_place at = any_place(d, s.model->texture, d.below(9) - 4);
+        const surface_part part{slot, at};
         window_piece piece;
-        const bool made = make_piece(body, slot, at, piece);
+        const bool made = make_piece(body, part, piece);
         pieces += made ? 1U : 0U;
         for (int k = 0; k < 10; ++k) {
           const vec2 z = at.middle() + at.half() * vec2(d.between(-1.0, 1.0), d.between(-1.0, 1.0));
           const vec3 bary = body.chart(slot).barycentric(z);
           if (std::min({bary.x, bary.y, bary.z}) < 0.0) continue;
+          const haptic_texture& image = s.model->texture;
+          if (z.x < 0.0 || z.y < 0.0 || z.x > image.width - 1.0 || z.y > image.height - 1.0) continue;
           vec3 point = s.map.point(read(s.model->texture, z).point);
           if (mode == parallax_mode::paper_lookup) {
             const auto& c = body.triangle(slot).corner;
             point = {vec2(bary.x * c[0] + bary.y * c[1] + bary.z * c[2]), point.z};
           } else {  // a part that is turned away, or beyond the patch's border, need not be held
-            const surface_hit h = read_surface(body, slot, vec2(point), z, 1e-13);
+            const surface_hit h = read_surface(body, part, vec2(point), z, 1e-13);
             if (!h.found || std::fabs(h.height - point.z) > 1e-9) continue;
           }
           ASSERT_TRUE(made);

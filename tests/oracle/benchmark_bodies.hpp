@@ -1,0 +1,28 @@
+// The benchmark models with their originals, as the tests have made them.
+#pragma once
+
+#include <filesystem>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "asperity/io/mesh_file.hpp"
+#include "asperity/io/textured_model_file.hpp"
+#include "oracle/against_originals.hpp"
+
+namespace asperity::oracle {
+
+/// A failure of the test, and a body without model, where it cannot be read.
+inline original_and_bake load_benchmark_body(const std::string& name) {
+  const std::filesystem::path folder = ASPERITY_TEST_MODELS_DIR;
+  auto full = io::load_mesh(folder / (name + ".ply"));
+  auto model = io::load_textured_model(folder / (name + ".glb"));
+  if (!full || !model) {
+    ADD_FAILURE() << (full ? model.error().message : full.error().message);
+    return {};
+  }
+  return {name, std::move(full).value(), std::make_shared<const textured_model>(std::move(model).value())};
+}
+
+}  // namespace asperity::oracle
