@@ -1,6 +1,8 @@
 #include "asperity/bake/bake.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -13,9 +15,11 @@
 #include "bake/parallel.hpp"
 #include "bake/pieces.hpp"
 #include "bake/project.hpp"
+#include "bake/refine.hpp"
 #include "bake/relief_fit.hpp"
 #include "bake/simplify.hpp"
 #include "bake/stage_monitor.hpp"
+#include "bake/surface_points.hpp"
 #include "bake/triangle_bvh.hpp"
 
 namespace asperity::bake {
@@ -29,6 +33,10 @@ constexpr std::uint32_t largest_texture = 8192;
 constexpr double range_per_cage = 2.0;
 constexpr double least_range_in_diagonals = 0.005;
 constexpr double least_band_texels = 0.5;
+
+constexpr std::size_t relief_samples = 65536;
+constexpr double finest_per_texel = 1.5;  // texels up to this many times a relief's detail are not worth a word
+constexpr std::size_t most_reference_triangles = 1'500'000;
 
 error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
 
@@ -74,6 +82,50 @@ coarse_mesh with_uvs(const triangle_mesh& mesh, const atlas& charts) {
   return out;
 }
 
+// Heights that cannot be meant are refused before any work is done on them.
+result<void> check_relief(const added_relief& added, double diagonal_m) {
+  if (!added.heights) return {};
+  double highest = 0.0;
+  for (const relief_point& p : spread_points(added.original, relief_samples)) {
+    const double h = std::abs(added.at(p.triangle, p.position));
+    if (!std::isfinite(h))
+      return error{error_code::bad_texture, "the relief has a height that is not finite; mend its source"};
+    highest = std::max(highest, h);
+  }
+  if (highest <= widest_cage_in_diagonals * diagonal_m) return {};
+  std::ostringstream text;
+  text << "the relief reaches " << highest << " m, more than " << 100.0 * widest_cage_in_diagonals
+       << " % of the mesh's diagonal of " << diagonal_m << " m: its heights or the mesh are not in metres, or it "
+       << "describes a shape, which belongs into the mesh";
+  return error{error_code::bad_texture, text.str()};
+}
+
+std::string too_coarse(double texel_m, double finest_m, std::uint32_t texture_size) {
+  std::ostringstream text;
+  text << "the haptic texture has texels of " << texel_m << " m, too coarse for a relief whose detail is " << finest_m
+       << " m: what is finer is lost or distorted; ask for about "
+       << static_cast<std::uint64_t>(std::ceil(texture_size * texel_m / finest_m)) << " texels per side";
+  return text.str();
+}
+
+// The original with its relief as triangles, about one per texel, against the textured surface.
+result<surface_error> measure_with_relief(const added_relief& added, double texel_m, const textured_model& model,
+                                          unsigned threads, stage_monitor& monitor) {
+  const refined_mesh fine = refine(added.original, texel_m, most_reference_triangles);
+  triangle_mesh raised;
+  raised.positions.reserve(3 * fine.triangles.size());
+  raised.triangles.reserve(fine.triangles.size());
+  for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
+    const std::uint32_t source = fine.source[t];
+    const vec3 n = unit_normal(corners(added.original.positions, added.original.triangles[source]));
+    const auto first = static_cast<std::uint32_t>(raised.positions.size());
+    for (const std::uint32_t v : fine.triangles[t])
+      raised.positions.push_back(fine.positions[v] + added.at(source, fine.positions[v]) * n);
+    raised.triangles.push_back({first, first + 1, first + 2});
+  }
+  return measure(raised, triangle_bvh(raised.positions, raised.triangles), model.mesh, model.texture, threads, monitor);
+}
+
 }  // namespace
 
 result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& options) {
@@ -92,6 +144,8 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);
   if (!coarse) return coarse.error();
   remark(options, coarse->note);
+  const added_relief added{options.relief, full->mesh, full->flipped};
+  if (const auto sound = check_relief(added, diagonal); !sound) return sound.error();
   if (!monitor.begin("compare")) return cancelled();
   const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
   if (!cage) return cage.error();
@@ -99,12 +153,14 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (!monitor.begin("atlas")) return cancelled();
   const auto charts = make_atlas(coarse->mesh, options.texture_size);
   if (!charts) return charts.error();
+  if (options.relief && charts->texel_m > options.relief.finest_m * finest_per_texel && options.relief.finest_m > 0.0)
+    remark(options, too_coarse(charts->texel_m, options.relief.finest_m, options.texture_size));
 
   if (!monitor.begin("project")) return cancelled();
   const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
   auto projected =
       project(coarse->mesh, *charts, crease_normals(coarse->mesh, full_tree, least_band_texels * charts->texel_m),
-              full_tree, range, options.texture_size, threads, monitor);
+              full_tree, range, options.texture_size, threads, monitor, options.relief ? &added : nullptr);
   if (!projected) return projected.error();
 
   if (!monitor.begin("pieces")) return cancelled();
@@ -120,7 +176,8 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   out.box = bounds_of(out.mesh.positions);
 
   if (!monitor.begin("measure")) return cancelled();
-  const auto errors = measure(full->mesh, full_tree, out.mesh, out.texture, threads, monitor);
+  const auto errors = options.relief ? measure_with_relief(added, charts->texel_m, out, threads, monitor)
+                                     : measure(full->mesh, full_tree, out.mesh, out.texture, threads, monitor);
   if (!errors) return errors.error();
   out.report.rms_error_m = errors->rms_m();
   out.report.max_error_m = errors->max_m();

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "asperity/bake/relief.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/haptic_texture.hpp"
 #include "asperity/model/triangle_mesh.hpp"
@@ -13,6 +14,16 @@
 #include "bake/triangle_bvh.hpp"
 
 namespace asperity::bake {
+
+/// A relief over the original, and the original itself.
+struct added_relief {
+  const relief& heights;
+  const triangle_mesh& original;
+  bool reversed = false;  ///< the relief knows the original with every second and third corner swapped
+
+  /// Height over the point of triangle t that is nearest to p. @pre there is a relief
+  [[nodiscard]] double at(std::uint32_t t, const vec3& p) const;
+};
 
 struct projection {
   haptic_texture texture;
@@ -27,9 +38,12 @@ struct projection {
 /// first meets the front of the original within range_m; where it meets none, with the point of the original closest to
 /// it. Texels of the gutter continue the chart's own surface: the coarse triangle's plane, plus a displacement of
 /// 2 d(edge) - d(mirror), so that a bilinear lookup at the edge of a chart gives the edge. All others are NaN.
-/// @return cancelled
+/// Where `heights` are given, each point then goes on in its direction until it is that height above the plane of the
+/// triangle that it has met.
+/// @return cancelled | bad_texture (a height that is not finite)
 [[nodiscard]] result<projection> project(const triangle_mesh& coarse, const atlas& charts,
                                          const crease_normals& directions, const triangle_bvh& full, double range_m,
-                                         std::uint32_t texture_size, unsigned threads, stage_monitor& monitor);
+                                         std::uint32_t texture_size, unsigned threads, stage_monitor& monitor,
+                                         const added_relief* heights = nullptr);
 
 }  // namespace asperity::bake

@@ -14,6 +14,7 @@
 #include "options.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
+#include "relief_options.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -31,6 +32,7 @@ struct bake_command {
   unsigned threads = 0;
   double scale = 1.0;
   bool close_holes = false;
+  std::shared_ptr<relief_options> relief = std::make_shared<relief_options>();
 };
 
 // Wall time of each stage, told apart by the names that the work reports.
@@ -60,17 +62,19 @@ void scale_mesh(triangle_mesh& mesh, double factor) {
 
 result<void> check_paths(const bake_command& options) {
   std::error_code ignored;
-  for (const std::string& input : {options.full, options.coarse}) {
+  std::vector<std::string> inputs = options.relief->inputs();
+  inputs.insert(inputs.end(), {options.full, options.coarse});
+  for (const std::string& input : inputs) {
     if (!input.empty() && fs::equivalent(input, options.out, ignored)) {
       return error{error_code::invalid_argument,
-                   "-o " + options.out + " would replace the mesh that is being baked: give another name"};
+                   "-o " + options.out + " would replace a file that is being baked: give another name"};
     }
   }
   return check_writable(options.out);
 }
 
 answer report(const bake_command& options, const textured_model& model, const bake::hole_report& holes,
-              const stage_clock& clock, std::vector<std::string> notes) {
+              const relief_job& relief, const stage_clock& clock, std::vector<std::string> notes) {
   for (std::string& warning : warnings(model)) notes.push_back(std::move(warning));
   answer out;
   out.document = {{"file", options.out}, {"source", options.full}, {"scale", options.scale}};
@@ -79,6 +83,7 @@ answer report(const bake_command& options, const textured_model& model, const ba
                             {"triangles_added", holes.triangles_added},
                             {"area_added", holes.area_added_m2},
                             {"largest_hole", holes.largest_m}};
+  if (relief.relief) out.document["relief"] = relief.document;
   json stages = json::array();
   std::string times;
   double total = 0.0;
@@ -92,6 +97,7 @@ answer report(const bake_command& options, const textured_model& model, const ba
   out.document["warnings"] = notes;
   out.document["units"] = "SI";
   out.text = options.full + " -> " + options.out + '\n' + describe_text(model);
+  out.text += relief.text;
   if (holes.holes > 0) {
     out.text +=
         row("holes closed", std::to_string(holes.holes) + ", the largest " + length_text(holes.largest_m) + " across");
@@ -128,7 +134,12 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.texture_size = options.texture;
   settings.threads = options.threads;
   settings.progress = enter;
-  std::vector<std::string> remarks;
+  if (!options.relief->kind().empty() && !enter("relief", 0.0))
+    return error{error_code::cancelled, "interrupted: nothing was written"};
+  result<relief_job> relief = make_relief(*options.relief, *full, options.full);
+  if (!relief) return relief.error();
+  settings.relief = relief->relief;
+  std::vector<std::string> remarks = relief->notes;
   settings.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
   if (!options.coarse.empty()) {
     result<triangle_mesh> coarse = io::load_mesh(options.coarse);
@@ -142,7 +153,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!enter("write", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
   if (const result<void> saved = io::save_textured_model(*model, options.out); !saved) return saved.error();
   clock.leave();
-  return report(options, *model, holes, clock, std::move(remarks));
+  return report(options, *model, holes, *relief, clock, std::move(remarks));
 }
 
 }  // namespace
@@ -166,6 +177,7 @@ void add_bake(command_line& line) {
   sub.add_option("--scale", o->scale, "Metres per unit of the meshes (0.001 for millimetres)")
       ->check(positive_number_error, "NUMBER > 0")
       ->capture_default_str();
+  add_relief_options(sub, o->relief);
   sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
   sub.add_option("--threads", o->threads, "Threads to use; 0 takes all. The result does not depend on it")
