@@ -36,7 +36,8 @@ constexpr double least_band_texels = 0.5;
 
 constexpr std::size_t relief_samples = 65536;
 constexpr double finest_per_texel = 1.5;  // texels up to this many times a relief's detail are not worth a word
-constexpr std::size_t most_reference_triangles = 1'500'000;
+constexpr double reference_edge_texels = 1.4;
+constexpr std::size_t most_reference_triangles = 1'000'000;
 
 error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
 
@@ -111,17 +112,26 @@ std::string too_coarse(double texel_m, double finest_m, std::uint32_t texture_si
 // The original with its relief as triangles, about one per texel, against the textured surface.
 result<surface_error> measure_with_relief(const added_relief& added, double texel_m, const textured_model& model,
                                           unsigned threads, stage_monitor& monitor) {
-  const refined_mesh fine = refine(added.original, texel_m, most_reference_triangles);
+  const refined_mesh fine = refine(added.original, reference_edge_texels * texel_m, most_reference_triangles);
   triangle_mesh raised;
-  raised.positions.reserve(3 * fine.triangles.size());
   raised.triangles.reserve(fine.triangles.size());
+  // A vertex stands once for each triangle of the original that it belongs to; the parts of one follow one another.
+  std::vector<std::uint32_t> number(fine.positions.size(), no_halfedge);
+  std::vector<std::uint32_t> number_is_of(fine.positions.size(), no_halfedge);
   for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
     const std::uint32_t source = fine.source[t];
     const vec3 n = unit_normal(corners(added.original.positions, added.original.triangles[source]));
-    const auto first = static_cast<std::uint32_t>(raised.positions.size());
-    for (const std::uint32_t v : fine.triangles[t])
-      raised.positions.push_back(fine.positions[v] + added.at(source, fine.positions[v]) * n);
-    raised.triangles.push_back({first, first + 1, first + 2});
+    index_triangle corner_numbers{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = fine.triangles[t][k];
+      if (number_is_of[v] != source) {
+        number_is_of[v] = source;
+        number[v] = static_cast<std::uint32_t>(raised.positions.size());
+        raised.positions.push_back(fine.positions[v] + added.at(source, fine.positions[v]) * n);
+      }
+      corner_numbers[k] = number[v];
+    }
+    raised.triangles.push_back(corner_numbers);
   }
   return measure(raised, triangle_bvh(raised.positions, raised.triangles), model.mesh, model.texture, threads, monitor);
 }

@@ -16,7 +16,7 @@
 namespace asperity::bake {
 namespace {
 
-constexpr std::size_t most_triangles_solved = 1'500'000;
+constexpr std::size_t most_triangles_solved = 1'000'000;
 constexpr double steepest_slope = 10.0;       // about 84 degrees: what lies beyond is no height field
 constexpr double most_backward_pixels = 0.1;  // share of pixels that face inwards: then the map is of another kind
 
@@ -77,19 +77,21 @@ tangent_frame frame_of(const std::array<vec3, 3>& c, const std::array<vec2, 3>& 
 
 struct solved_surface {
   triangle_bvh tree;
-  std::vector<std::array<vec3, 3>> corners;
-  std::vector<std::array<double, 3>> heights_m;
+  std::vector<vec3> positions;
+  std::vector<index_triangle> triangles;
+  std::vector<double> heights_m;  // per position
 };
 
 double height_at(const solved_surface& s, const vec3& p) {
   const auto nearest = s.tree.closest(p);
-  const auto& c = s.corners[nearest.triangle];
-  const auto& h = s.heights_m[nearest.triangle];
+  const index_triangle& t = s.triangles[nearest.triangle];
+  const auto c = corners(s.positions, t);
   const vec3 up = area_normal(c);
   const double whole = glm::dot(up, up);
   const double b1 = glm::dot(up, glm::cross(nearest.point - c[0], c[2] - c[0])) / whole;
   const double b2 = glm::dot(up, glm::cross(c[1] - c[0], nearest.point - c[0])) / whole;
-  return h[0] + b1 * (h[1] - h[0]) + b2 * (h[2] - h[0]);
+  const double first = s.heights_m[t[0]];
+  return first + b1 * (s.heights_m[t[1]] - first) + b2 * (s.heights_m[t[2]] - first);
 }
 
 }  // namespace
@@ -152,11 +154,8 @@ result<normal_map_relief> integrate_normal_map(const triangle_mesh& mesh, const 
   out.fit.points = fine.positions.size();
   out.fit.iterations = solved.iterations;
 
-  auto surface = std::make_shared<solved_surface>(solved_surface{triangle_bvh(fine.positions, fine.triangles), {}, {}});
-  for (const index_triangle& t : fine.triangles) {
-    surface->corners.push_back(corners(fine.positions, t));
-    surface->heights_m.push_back({solved.heights_m[t[0]], solved.heights_m[t[1]], solved.heights_m[t[2]]});
-  }
+  auto surface = std::make_shared<solved_surface>(solved_surface{
+      triangle_bvh(fine.positions, fine.triangles), fine.positions, fine.triangles, std::move(solved.heights_m)});
   out.heights.finest_m = out.fit.texel_m;
   out.heights.height_m = [shared = std::shared_ptr<const solved_surface>(std::move(surface))](const relief_point& p) {
     return height_at(*shared, p.position);
