@@ -1,9 +1,11 @@
 #include "asperity/bake/bake.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "bake/added_relief.hpp"
 #include "bake/atlas.hpp"
 #include "bake/cage.hpp"
 #include "bake/check.hpp"
@@ -130,6 +132,11 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);
   if (!coarse) return coarse.error();
   remark(options, coarse->note);
+  if (options.relief && full->turned_triangles > 0)
+    return error{error_code::bad_mesh, winding_remark(full->turned_triangles) +
+                                           "; a relief lies on triangles as they come, so mend their winding first"};
+  const added_relief added{options.relief, full->mesh, full->flipped};
+  if (const auto sound = check_relief(added, diagonal); !sound) return sound.error();
   if (!monitor.begin("compare")) return cancelled();
   const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
   if (!cage) return cage.error();
@@ -137,12 +144,13 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (!monitor.begin("atlas")) return cancelled();
   const auto charts = make_atlas(coarse->mesh, options.texture_size);
   if (!charts) return charts.error();
+  remark(options, too_coarse_remark(options.relief, charts->texel_m, options.texture_size));
 
   if (!monitor.begin("project")) return cancelled();
   const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
   auto projected =
       project(coarse->mesh, *charts, crease_normals(coarse->mesh, full_tree, least_band_texels * charts->texel_m),
-              full_tree, range, options.texture_size, threads, monitor);
+              full_tree, range, options.texture_size, threads, monitor, options.relief ? &added : nullptr);
   if (!projected) return projected.error();
 
   if (!monitor.begin("pieces")) return cancelled();
@@ -156,17 +164,24 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   const auto fit = measure_fit(coarse->mesh, *pieces, fit_spacing_in_diagonals * diagonal, monitor);
   if (!fit) return cancelled();
 
+  // What the textured surface should be: the mesh, or the mesh with its relief.
+  const triangle_mesh raised = options.relief ? raise(added, charts->texel_m) : triangle_mesh{};
+  std::optional<triangle_bvh> raised_tree;
+  if (options.relief) raised_tree.emplace(raised.positions, raised.triangles);
+  const triangle_mesh& original = options.relief ? raised : full->mesh;
+  const triangle_bvh& original_tree = raised_tree ? *raised_tree : full_tree;
+
   textured_model out;
   out.name = options.name;
   out.mesh = with_uvs(coarse->mesh, *charts);
   out.texture = std::move(projected->texture);
-  stitch(out.mesh, full_tree, widest_gap_texels * charts->texel_m, out.texture);
+  stitch(out.mesh, original_tree, widest_gap_texels * charts->texel_m, out.texture);
   out.pieces = std::move(*pieces);
   out.mass = compute_mass_properties(out.mesh);
   out.box = bounds_of(out.mesh.positions);
 
   if (!monitor.begin("measure")) return cancelled();
-  const auto errors = measure(full->mesh, full_tree, out.mesh, out.texture, charts->texel_m, threads, monitor);
+  const auto errors = measure(original, original_tree, out.mesh, out.texture, charts->texel_m, threads, monitor);
   if (!errors) return errors.error();
   out.report.rms_error_m = errors->rms_m();
   out.report.max_error_m = errors->max_m();

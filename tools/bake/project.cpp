@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "bake/geometry.hpp"
@@ -83,12 +84,14 @@ struct tally {
   double highest = -std::numeric_limits<double>::infinity();
   double lowest = std::numeric_limits<double>::infinity();
   double farthest = 0.0;
+  bool broken = false;  // a height was not finite
 };
 
 class projector {
  public:
-  projector(const triangle_mesh& coarse, const crease_normals& directions, const triangle_bvh& full, double range_m)
-      : coarse_(coarse), directions_(directions), full_(full), range_m_(range_m) {}
+  projector(const triangle_mesh& coarse, const crease_normals& directions, const triangle_bvh& full, double range_m,
+            const added_relief* added)
+      : coarse_(coarse), directions_(directions), full_(full), range_m_(range_m), added_(added) {}
 
   // The plane of coarse triangle t.
   [[nodiscard]] vec3 base(std::uint32_t t, const barycentric& b) const noexcept {
@@ -100,7 +103,9 @@ class projector {
     const vec3 p = base(t, b);
     const vec3 d = directions_.at(t, b);
     const auto crossing = full_.nearest_front_crossing(p, d, range_m_);
-    const vec3 q = crossing ? crossing->point : full_.closest(p).point;
+    const auto nearest = crossing ? triangle_bvh::nearest{} : full_.closest(p);
+    vec3 q = crossing ? crossing->point : nearest.point;
+    if (added_ != nullptr) q += rise(crossing ? crossing->triangle : nearest.triangle, q, d) * d;
     if (count != nullptr) {
       const double offset = glm::dot(q - p, d);
       ++count->texels;
@@ -113,19 +118,27 @@ class projector {
   }
 
  private:
+  // How far to go along d to be at the height of the relief over the plane of triangle t.
+  [[nodiscard]] double rise(std::uint32_t t, const vec3& q, const vec3& d) const {
+    constexpr double least_cosine = 0.5;  // at an edge sharper than 120 degrees the relief is cut off
+    const vec3 n = unit_normal(corners(added_->original.positions, added_->original.triangles[t]));
+    return added_->at(t, q) / std::max(glm::dot(n, d), least_cosine);
+  }
+
   const triangle_mesh& coarse_;
   const crease_normals& directions_;
   const triangle_bvh& full_;
   double range_m_;
+  const added_relief* added_;
 };
 
 }  // namespace
 
 result<projection> project(const triangle_mesh& coarse, const atlas& charts, const crease_normals& directions,
                            const triangle_bvh& full, double range_m, std::uint32_t texture_size, unsigned threads,
-                           stage_monitor& monitor) {
+                           stage_monitor& monitor, const added_relief* heights) {
   const std::vector<owner> owners = assign_texels(charts, texture_size);
-  const projector surface(coarse, directions, full, range_m);
+  const projector surface(coarse, directions, full, range_m, heights);
   const glm::vec3 nowhere(std::numeric_limits<float>::quiet_NaN());
   projection out;
   out.texture = {texture_size, texture_size, std::vector<glm::vec3>(owners.size(), nowhere)};
@@ -151,6 +164,7 @@ result<projection> project(const triangle_mesh& coarse, const atlas& charts, con
         };
         q = surface.base(o.triangle, triangle.coordinates(p)) + 2.0 * displacement(edge) - displacement(mirror);
       }
+      if (!is_finite(q)) of_block[block].broken = true;
       out.texture.texels[i] = glm::vec3(q);
     }
   };
@@ -164,7 +178,9 @@ result<projection> project(const triangle_mesh& coarse, const atlas& charts, con
     all.highest = std::max(all.highest, b.highest);
     all.lowest = std::min(all.lowest, b.lowest);
     all.farthest = std::max(all.farthest, b.farthest);
+    all.broken = all.broken || b.broken;
   }
+  if (all.broken) return error{error_code::bad_texture, "the relief has a height that is not finite; mend its source"};
   out.texels = all.texels;
   out.fallback_texels = all.fallback_texels;
   if (all.texels > 0) {

@@ -8,6 +8,7 @@
 #include "asperity/core/status.hpp"
 #include "asperity/model/haptic_texture.hpp"
 #include "asperity/model/triangle_mesh.hpp"
+#include "bake/added_relief.hpp"
 #include "bake/atlas.hpp"
 #include "bake/crease_normals.hpp"
 #include "bake/stage_monitor.hpp"
@@ -29,9 +30,12 @@ struct projection {
 /// first meets the front of the original within range_m; where it meets none, with the point of the original closest to
 /// it. Texels of the gutter continue the chart's own surface: the coarse triangle's plane, plus a displacement of
 /// 2 d(edge) - d(mirror), so that a bilinear lookup at the edge of a chart gives the edge. All others are NaN.
-/// @return cancelled
+/// Where `heights` are given, each point then goes on in its direction until it is that height above the plane of the
+/// triangle that it has met.
+/// @return cancelled | bad_texture (a height that is not finite)
 [[nodiscard]] result<projection> project(const triangle_mesh& coarse, const atlas& charts,
                                          const crease_normals& directions, const triangle_bvh& full, double range_m,
-                                         std::uint32_t texture_size, unsigned threads, stage_monitor& monitor);
+                                         std::uint32_t texture_size, unsigned threads, stage_monitor& monitor,
+                                         const added_relief* heights = nullptr);
 
 }  // namespace asperity::bake

@@ -20,7 +20,7 @@ foreach(_component io bake)
 endforeach()
 
 # What find_dependency has to find before a component is used; the core needs GLM only.
-set(ASPERITY_PACKAGES_io TinyGLTF nlohmann_json)
+set(ASPERITY_PACKAGES_io TinyGLTF nlohmann_json PNG TIFF JPEG OpenEXR)
 set(ASPERITY_PACKAGES_bake Threads)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/asperity-config.cmake.in
                               ${PROJECT_BINARY_DIR}/asperity-config.cmake INSTALL_DESTINATION ${_config_dir})

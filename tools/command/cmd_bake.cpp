@@ -18,6 +18,7 @@
 #include "options.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
+#include "relief_options.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -38,6 +39,7 @@ struct bake_command {
   std::optional<std::string> units;
   std::optional<std::size_t> pieces;
   bool close_holes = false;
+  std::shared_ptr<relief_options> relief = std::make_shared<relief_options>();
 };
 
 // Wall time of each stage, told apart by the names that the work reports.
@@ -107,10 +109,12 @@ void scale_mesh(triangle_mesh& mesh, double factor) {
 
 result<void> check_paths(const bake_command& options) {
   std::error_code ignored;
-  for (const std::string& input : {options.full, options.coarse}) {
+  std::vector<std::string> inputs = options.relief->inputs();
+  inputs.insert(inputs.end(), {options.full, options.coarse});
+  for (const std::string& input : inputs) {
     if (!input.empty() && fs::equivalent(input, options.out, ignored)) {
       return error{error_code::invalid_argument,
-                   "-o " + options.out + " would replace the mesh that is being baked: give another name"};
+                   "-o " + options.out + " would replace a file that is being baked: give another name"};
     }
     if (!input.empty() && !options.picture.empty() && fs::equivalent(input, options.picture, ignored)) {
       return error{error_code::invalid_argument,
@@ -125,7 +129,7 @@ result<void> check_paths(const bake_command& options) {
 }
 
 answer report(const bake_command& options, const textured_model& model, const bake::hole_report& holes,
-              const stage_clock& clock, std::vector<std::string> notes) {
+              const relief_job& relief, const stage_clock& clock, std::vector<std::string> notes) {
   for (std::string& warning : warnings(model)) notes.push_back(std::move(warning));
   answer out;
   out.document = {{"file", options.out}, {"source", options.full}, {"scale", metres_per_unit(options)}};
@@ -134,6 +138,7 @@ answer report(const bake_command& options, const textured_model& model, const ba
                             {"triangles_added", holes.triangles_added},
                             {"area_added", holes.area_added_m2},
                             {"largest_hole", holes.largest_m}};
+  if (relief.relief) out.document["relief"] = relief.document;
   json stages = json::array();
   std::string times;
   double total = 0.0;
@@ -147,6 +152,7 @@ answer report(const bake_command& options, const textured_model& model, const ba
   out.document["warnings"] = notes;
   out.document["units"] = "SI";
   out.text = options.full + " -> " + options.out + '\n' + describe_text(model);
+  out.text += relief.text;
   if (holes.holes > 0) {
     out.text +=
         row("holes closed", std::to_string(holes.holes) + ", the largest " + length_text(holes.largest_m) + " across");
@@ -196,6 +202,12 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.pieces = options.pieces;
   settings.threads = options.threads;
   settings.progress = enter;
+  if (!options.relief->kind().empty() && !enter("relief", 0.0))
+    return error{error_code::cancelled, "interrupted: nothing was written"};
+  result<relief_job> relief = make_relief(*options.relief, *full, options.full);
+  if (!relief) return relief.error();
+  settings.relief = relief->relief;
+  remarks.insert(remarks.end(), relief->notes.begin(), relief->notes.end());
   settings.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
   if (!options.coarse.empty()) {
     result<triangle_mesh> coarse = io::load_mesh(options.coarse);
@@ -224,7 +236,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     if (const result<void> kept = drawing->commit(); !kept) return kept.error();
   }
   clock.leave();
-  answer out = report(options, *model, holes, clock, std::move(remarks));
+  answer out = report(options, *model, holes, *relief, clock, std::move(remarks));
   if (drawing) {
     out.document["picture"] = std::move(picture);
     out.text += row("picture", options.picture);
@@ -257,6 +269,7 @@ void add_bake(command_line& line) {
       ->excludes(scale);
   sub.add_option("--pieces", o->pieces, "Convex pieces to aim for; by default as many as the usual tolerances make")
       ->check(CLI::Range(1, 1000000));
+  add_relief_options(sub, o->relief);
   sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
       ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");

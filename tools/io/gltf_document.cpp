@@ -116,20 +116,25 @@ void gltf_document::collect_buffers(std::string_view bin, const fs::path& file, 
 }
 
 std::string gltf_document::outside_buffer(const std::string& uri, const std::string& place, const fs::path& file) {
-  if (uri.starts_with("data:")) {
-    std::vector<unsigned char> decoded;
-    std::string mime_type;
-    if (!tinygltf::DecodeDataURI(&decoded, mime_type, uri, 0, false))
-      reject(place + " is no base64 data URI of a buffer");
-    return {decoded.begin(), decoded.end()};
-  }
-  const fs::path name = below(uri, place);
-  if (!opened_.insert(name).second) {
+  if (!uri.starts_with("data:") && !opened_.insert(below(uri, place)).second) {
     reject(place + " names a file that another buffer has named; give each buffer a file of its own");
   }
   std::uintmax_t total = 0;
   for (const std::string& other : owned_) total += other.size();
-  auto bytes = read_file_below(fs::absolute(file).parent_path(), name, max_mesh_bytes - total);
+  return outside_bytes(uri, place, file, max_mesh_bytes - total);
+}
+
+std::string gltf_document::outside_bytes(const std::string& uri, const std::string& place, const fs::path& file,
+                                         std::uintmax_t limit) {
+  if (uri.starts_with("data:")) {
+    std::vector<unsigned char> decoded;
+    std::string mime_type;
+    if (!tinygltf::DecodeDataURI(&decoded, mime_type, uri, 0, false)) {
+      reject(place + " is no base64 data URI of a buffer or an image");
+    }
+    return {decoded.begin(), decoded.end()};
+  }
+  auto bytes = read_file_below(fs::absolute(file).parent_path(), below(uri, place), limit);
   if (!bytes) throw rejection{bytes.error().code, place + " names " + bytes.error().message};
   return std::move(bytes).value();
 }

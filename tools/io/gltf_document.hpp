@@ -34,6 +34,10 @@ class gltf_document {
 
   /// Bytes of a buffer view. @pre view < geometry().bufferViews.size()
   [[nodiscard]] std::string_view view_bytes(std::size_t view) const;
+  /// Bytes that a URI gives: its own, where it is a data URI, or those of a file below the folder of `file`, by the
+  /// rules for buffers. Throws rejection. @param place names the URI in messages
+  [[nodiscard]] static std::string outside_bytes(const std::string& uri, const std::string& place,
+                                                 const std::filesystem::path& file, std::uintmax_t limit);
   /// Elements of an accessor. Whoever reads several that belong together compares their counts first: an accessor of
   /// bytes takes many times its own size once it is read.
   [[nodiscard]] std::size_t count(int accessor) const {

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "asperity/bake/relief.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/textured_model.hpp"
 #include "asperity/model/triangle_mesh.hpp"
@@ -18,6 +19,7 @@ struct bake_options {
   std::size_t triangles = 600;          ///< coarse triangles to aim for; ignored where `coarse` is given
   std::optional<triangle_mesh> coarse;  ///< a coarse mesh to use instead of simplifying
   std::uint32_t texture_size = 1024;    ///< texels per side
+  bake::relief relief;                  ///< heights to add to the mesh; none by default
   /// Convex pieces to aim for, by smaller pieces or looser tolerances than usual; what that costs is in the report.
   std::optional<std::size_t> pieces;
   unsigned threads = 0;  ///< 0: as many as the machine has; the result does not depend on it
@@ -33,7 +35,11 @@ struct bake_options {
 /// mesh into convex pieces, and measure how far the textured surface and the original are apart. The mesh has to be
 /// closed, 2-manifold and in metres; several components and cavities are allowed. Positions and texture coordinates of
 /// the model are exact in float32. The same input gives the same bits.
-/// @return bad_mesh | invalid_argument | limit_exceeded | cancelled, with the fault, its place and the mend
+/// A relief is added on the way: every texel goes on, in its own direction, until it is that height above the triangle
+/// of the mesh that it has met. The errors in the report are then against the mesh with its relief.
+/// @return bad_mesh | bad_texture (relief) | invalid_argument | limit_exceeded | cancelled, with the fault, its place
+/// and
+///         the mend
 [[nodiscard]] result<textured_model> bake(const triangle_mesh& full, const bake_options& options);
 
 }  // namespace asperity::bake

@@ -1,0 +1,110 @@
+// OpenEXR: one channel as heights, R, G and B as colour; half and float.
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <array>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "file_bytes.hpp"
+#include "image_formats.hpp"
+
+namespace asperity::io {
+namespace {
+
+constexpr std::size_t most_pixels_per_byte = std::size_t{1} << 15;
+
+class memory_stream final : public Imf::IStream {
+ public:
+  explicit memory_stream(std::string_view bytes) : IStream("image"), bytes_(bytes) {}
+
+  bool read(char to[], int count) override {
+    const auto n = static_cast<std::size_t>(count);
+    if (count < 0 || n > bytes_.size() - at_) throw std::runtime_error("the file ends early");
+    std::memcpy(to, bytes_.data() + at_, n);
+    at_ += n;
+    return at_ < bytes_.size();
+  }
+  std::uint64_t tellg() override { return at_; }
+  void seekg(std::uint64_t position) override {
+    if (position > bytes_.size()) throw std::runtime_error("the file ends early");
+    at_ = static_cast<std::size_t>(position);
+  }
+  void clear() override {}
+
+ private:
+  std::string_view bytes_;
+  std::size_t at_ = 0;
+};
+
+/// Names of the channels that hold the map: R, G, B, or the only one, or luminance. Empty where there is no such
+/// choice.
+std::vector<std::string> map_channels(const Imf::ChannelList& channels) {
+  if (channels.findChannel("R") != nullptr && channels.findChannel("G") != nullptr &&
+      channels.findChannel("B") != nullptr)
+    return {"R", "G", "B"};
+  if (channels.findChannel("Y") != nullptr) return {"Y"};
+  std::vector<std::string> all;
+  for (auto c = channels.begin(); c != channels.end(); ++c) {
+    if (std::strcmp(c.name(), "A") != 0) all.emplace_back(c.name());
+  }
+  return all.size() == 1 ? all : std::vector<std::string>();
+}
+
+result<map_image> read_exr(std::string_view bytes, const std::filesystem::path& file) {
+  memory_stream stream(bytes);
+  Imf::InputFile image(stream, 0);
+  const Imath::Box2i window = image.header().dataWindow();
+  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+  const std::vector<std::string> names = map_channels(image.header().channels());
+  if (names.empty())
+    return fault(error_code::unsupported, file,
+                 "has several channels, none of them R, G, B or Y; export the heights as one channel");
+  for (const std::string& name : names) {
+    const Imf::Channel& channel = image.header().channels()[name.c_str()];
+    if (channel.xSampling != 1 || channel.ySampling != 1)
+      return fault(error_code::unsupported, file, "has subsampled channels; export it at full resolution");
+  }
+  auto sized =
+      sized_image(width < 0 ? 0 : static_cast<std::size_t>(width), height < 0 ? 0 : static_cast<std::size_t>(height),
+                  static_cast<std::uint32_t>(names.size()), bytes.size(), most_pixels_per_byte, file);
+  if (!sized) return sized.error();
+  map_image& out = *sized;
+
+  // Row by row: a file that ends early has taken no memory for what it does not hold.
+  const std::size_t pixel = sizeof(float) * names.size();
+  std::vector<float> row(std::size_t{out.width} * names.size());
+  for (int y = window.min.y; y <= window.max.y; ++y) {
+    Imf::FrameBuffer frame;
+    for (std::size_t c = 0; c < names.size(); ++c)
+      frame.insert(names[c], Imf::Slice::Make(Imf::FLOAT, row.data() + c, Imath::V2i(window.min.x, y), out.width, 1,
+                                              pixel, pixel * out.width));
+    image.setFrameBuffer(frame);
+    image.readPixels(y);
+    out.samples.insert(out.samples.end(), row.begin(), row.end());
+    if (y == window.max.y) break;  // the largest int has no successor
+  }
+  return finite_image(std::move(out), file);
+}
+
+}  // namespace
+
+result<map_image> decode_exr(std::string_view bytes, const std::filesystem::path& file) {
+  try {
+    return read_exr(bytes, file);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    return fault(error_code::bad_format, file,
+                 "cannot be read as EXR: " + plain_reason(e.what()) + "; export it again, flat and with one part");
+  }
+}
+
+}  // namespace asperity::io

@@ -1,0 +1,125 @@
+// PNG through libpng, every bit depth and colour type.
+#include <algorithm>
+#include <csetjmp>
+#include <cstring>
+#include <png.h>
+#include <string>
+#include <vector>
+
+#include "asperity/io/image_file.hpp"
+#include "file_bytes.hpp"
+#include "image_formats.hpp"
+
+namespace asperity::io {
+namespace {
+
+/// Deflate makes 1032 bytes of one at best; a byte holds 8 pixels of 1 bit.
+constexpr std::size_t most_pixels_per_byte = std::size_t{1032} * 8;
+constexpr std::size_t max_chunk_bytes = std::size_t{8} << 20;
+
+/// What the reading works on. It stands outside the functions that libpng may leave by longjmp: a jump runs no
+/// destructors.
+struct png_job {
+  std::string_view bytes;
+  std::size_t at = 0;
+  std::string reason;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  png_uint_32 width = 0, height = 0;
+  int depth = 0, channels = 0;
+  std::size_t row_bytes = 0;
+  std::vector<unsigned char> pixels;
+  std::vector<unsigned char*> rows;
+
+  explicit png_job(std::string_view b) : bytes(b) {
+    png = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
+    if (png != nullptr) info = png_create_info_struct(png);
+  }
+  png_job(const png_job&) = delete;
+  png_job& operator=(const png_job&) = delete;
+  ~png_job() { png_destroy_read_struct(&png, &info, nullptr); }
+
+  static void on_error(png_structp png, png_const_charp message) {
+    static_cast<png_job*>(png_get_error_ptr(png))->reason = message;
+    longjmp(png_jmpbuf(png), 1);
+  }
+  static void on_warning(png_structp, png_const_charp) {}
+  static void on_read(png_structp png, png_bytep to, std::size_t count) {
+    auto& job = *static_cast<png_job*>(png_get_io_ptr(png));
+    if (count > job.bytes.size() - job.at) png_error(png, "the file ends early");
+    std::memcpy(to, job.bytes.data() + job.at, count);
+    job.at += count;
+  }
+};
+
+/// Header, and what the samples are to be brought to: 8 or 16 bits, grey or colour, no alpha.
+bool read_header(png_job& job) {
+  if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+  png_set_read_fn(job.png, &job, png_job::on_read);
+  png_set_user_limits(job.png, 0x7fffffff, 0x7fffffff);  // sized_image() decides
+  png_set_chunk_malloc_max(job.png, max_chunk_bytes);
+  png_set_crc_action(job.png, PNG_CRC_ERROR_QUIT, PNG_CRC_WARN_DISCARD);
+  png_read_info(job.png, job.info);
+  job.width = png_get_image_width(job.png, job.info);
+  job.height = png_get_image_height(job.png, job.info);
+  job.depth = png_get_bit_depth(job.png, job.info);
+  const int type = png_get_color_type(job.png, job.info);
+  if (type == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(job.png);
+  if (type == PNG_COLOR_TYPE_GRAY && job.depth < 8) png_set_expand_gray_1_2_4_to_8(job.png);
+  if ((type & PNG_COLOR_MASK_ALPHA) != 0 || png_get_valid(job.png, job.info, PNG_INFO_tRNS) != 0) {
+    png_set_strip_alpha(job.png);
+  }
+  if (job.depth == 16) png_set_swap(job.png);  // PNG is big-endian
+  (void)png_set_interlace_handling(job.png);
+  png_read_update_info(job.png, job.info);
+  job.channels = png_get_channels(job.png, job.info);
+  job.row_bytes = png_get_rowbytes(job.png, job.info);
+  return true;
+}
+
+bool read_pixels(png_job& job) {
+  if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+  png_read_image(job.png, job.rows.data());
+  png_read_end(job.png, nullptr);
+  return true;
+}
+
+}  // namespace
+
+result<map_image> decode_png(std::string_view bytes, const std::filesystem::path& file) {
+  png_job job(bytes);
+  if (job.info == nullptr) return fault(error_code::limit_exceeded, file, "does not fit into memory; reduce it first");
+  const auto damaged = [&] {
+    return fault(error_code::bad_format, file,
+                 "cannot be read as PNG: " + plain_reason(job.reason) + ", before byte " + std::to_string(job.at) +
+                     " of " + std::to_string(bytes.size()) + "; export it again");
+  };
+  if (!read_header(job)) return damaged();
+  auto sized = sized_image(job.width, job.height, static_cast<std::uint32_t>(job.channels), bytes.size(),
+                           most_pixels_per_byte, file);
+  if (!sized) return sized.error();
+  map_image& out = *sized;
+  job.pixels.resize(job.row_bytes * job.height);
+  for (std::size_t j = 0; j < job.height; ++j) job.rows.push_back(job.pixels.data() + j * job.row_bytes);
+  if (!read_pixels(job)) return damaged();
+
+  out.bits = static_cast<std::uint32_t>(job.depth);
+  const std::size_t per_row = std::size_t{out.width} * out.channels;
+  out.samples.resize(per_row * out.height);
+  for (std::size_t j = 0; j < out.height; ++j) {
+    const unsigned char* row = job.rows[j];
+    for (std::size_t i = 0; i < per_row; ++i) {
+      float& to = out.samples[j * per_row + i];
+      if (job.depth == 16) {
+        std::uint16_t value = 0;
+        std::memcpy(&value, row + 2 * i, sizeof value);
+        to = static_cast<float>(value) / 65535.0F;
+      } else {
+        to = static_cast<float>(row[i]) / 255.0F;
+      }
+    }
+  }
+  return sized;
+}
+
+}  // namespace asperity::io
