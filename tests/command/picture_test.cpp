@@ -91,17 +91,18 @@ TEST(picture_colours, white_black_and_grey_are_where_srgb_has_them) {
 TEST(picture_canvas, triangles_with_a_common_edge_leave_nothing_out) {
   const colour red{1.0F, 0.0F, 0.0F};
   const colour green{0.0F, 1.0F, 0.0F};
-  canvas to(40, 40);
-  // A fan about a crooked middle, as large as the canvas.
-  const screen_point middle{17.37, 21.11, 0.0};
-  const std::array<screen_point, 5> around{
-      {{0.0, 0.0, 0.0}, {40.0, 0.0, 0.0}, {40.0, 23.3, 0.0}, {40.0, 40.0, 0.0}, {0.0, 40.0, 0.0}}};
-  for (std::size_t k = 0; k < 5; ++k) {
-    to.triangle({middle, around[k], around[(k + 1) % 5]}, [&](const std::array<float, 3>&) { return red; });
-  }
-  const pixmap out = to.finish(green);
-  for (std::size_t y = 0; y < 40; ++y) {
-    for (std::size_t x = 0; x < 40; ++x) ASSERT_EQ(out.at(x, y), as_pixel(red)) << x << ", " << y;
+  // Fans about a middle, as large as the canvas: one crooked, one whose edges go right through samples.
+  for (const screen_point& middle : {screen_point{17.37, 21.11, 0.0}, screen_point{20.5, 20.5, 0.0}}) {
+    const std::array<screen_point, 5> around{
+        {{0.0, 0.0, 0.0}, {41.0, 0.0, 0.0}, {41.0, 23.3, 0.0}, {41.0, 41.0, 0.0}, {0.0, 41.0, 0.0}}};
+    canvas to(41, 41);
+    for (std::size_t k = 0; k < 5; ++k) {
+      to.triangle({middle, around[k], around[(k + 1) % 5]}, [&](const std::array<float, 3>&) { return red; });
+    }
+    const pixmap out = to.finish(green);
+    for (std::size_t y = 0; y < 41; ++y) {
+      for (std::size_t x = 0; x < 41; ++x) ASSERT_EQ(out.at(x, y), as_pixel(red)) << x << ", " << y;
+    }
   }
 }
 
