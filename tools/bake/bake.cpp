@@ -35,7 +35,7 @@ constexpr std::uint32_t largest_texture = 8192;
 constexpr double range_per_cage = 2.0;
 constexpr double least_range_in_diagonals = 0.005;
 constexpr double least_band_texels = 0.5;
-// A wider gap at a coarse edge is closed; narrower ones are what bilinear lookups leave where the surface is curved.
+// Wider gaps at coarse edges are worked on; narrower ones are what bilinear lookups leave where the surface is curved.
 constexpr double widest_gap_texels = 0.25;
 constexpr double fit_spacing_in_diagonals = 0.005;
 

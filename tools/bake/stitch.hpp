@@ -13,7 +13,9 @@ namespace asperity::bake {
 /// until they meet on the original. Both sides are projected along the same directions at the edge, so only places
 /// where neighbouring texels find surface far apart are touched: a coarse edge that stands off a rounded one. All other
 /// edges keep their texels to the bit.
-/// @return how many edges were closed
+/// Stops after a fixed number of rounds: a gap may stay where neighbouring points ask the same texels for different
+/// things. largest_crack() tells.
+/// @return how many edges were worked on
 std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double limit_m, haptic_texture& texture);
 
 }  // namespace asperity::bake

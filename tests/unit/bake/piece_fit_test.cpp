@@ -68,7 +68,7 @@ TEST(PieceFit, OfADecompositionKeepsItsLimits) {
 
 TEST(Pieces, AreAsManyAsAskedForWithinATenth) {
   stage_monitor monitor;
-  const triangle_mesh coarse = coarse_torus(120);
+  const triangle_mesh coarse = coarse_torus(90);
   const std::size_t usual = decompose(coarse, piece_limits{}, monitor)->size();
   for (const std::size_t count : {usual + usual / 4, usual + usual / 2}) {
     const auto pieces = decompose_into(coarse, count, monitor);
