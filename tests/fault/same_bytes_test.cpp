@@ -34,7 +34,7 @@ class same_bytes : public command_test {
   }
 
   [[nodiscard]] std::string baked(const std::string& mesh, const arguments& more, int threads) const {
-    arguments args{"bake", path(mesh), "-o", path("out.glb"), "--texture", "128", "--threads", std::to_string(threads)};
+    arguments args{"bake", path(mesh), "-o", path("out.glb"), "--texture", "96", "--threads", std::to_string(threads)};
     args.insert(args.end(), more.begin(), more.end());
     static_cast<void>(expect_document(args, "asperity.bake/1"));
     return read("out.glb");
@@ -42,31 +42,31 @@ class same_bytes : public command_test {
 
   void expect_the_same_on_any_number_of_threads(const std::string& mesh, const arguments& more) const {
     const std::string one = baked(mesh, more, 1);
-    ASSERT_GT(one.size(), 128U * 128U * 12U);
+    ASSERT_GT(one.size(), 96U * 96U * 12U);
     for (const int threads : {1, 2, 3, 7}) EXPECT_TRUE(baked(mesh, more, threads) == one) << threads << " threads";
   }
 };
 
 TEST_F(same_bytes, simplified) {
   write_torus("torus.obj");
-  expect_the_same_on_any_number_of_threads("torus.obj", {"--triangles", "300"});
+  expect_the_same_on_any_number_of_threads("torus.obj", {"--triangles", "120"});
 }
 
 TEST_F(same_bytes, with_a_coarse_mesh) {
   write_torus("torus.obj");
-  write_torus("coarse.obj", 0, 20, 8);
+  write_torus("coarse.obj", 0, 12, 6);
   expect_the_same_on_any_number_of_threads("torus.obj", {"--coarse", path("coarse.obj")});
 }
 
 TEST_F(same_bytes, with_holes_closed) {
   write_torus("torus.obj", 3);
-  expect_the_same_on_any_number_of_threads("torus.obj", {"--triangles", "300", "--close-holes"});
+  expect_the_same_on_any_number_of_threads("torus.obj", {"--triangles", "120", "--close-holes"});
 }
 
 // That the comparison can see: other options give another file.
 TEST_F(same_bytes, other_options_give_other_bytes) {
   write_torus("torus.obj");
-  EXPECT_FALSE(baked("torus.obj", {"--triangles", "300"}, 2) == baked("torus.obj", {"--triangles", "302"}, 2));
+  EXPECT_FALSE(baked("torus.obj", {"--triangles", "120"}, 2) == baked("torus.obj", {"--triangles", "122"}, 2));
 }
 
 class interrupted_bake : public command_test {};
