@@ -28,7 +28,7 @@ TEST(ClosedFormsExactly, RidgesOnRidges) {
   error_table table("O1: sine ridges on sine ridges, exact maximum (depths in mm)");
   std::size_t i = 0;
   for (const json& c : cases("O1_sine_ridges_translation")) {
-    if (i++ % 3 != 0) continue;
+    if (i++ % 9 != 0) continue;
     const double a = c["a"], b = c["b"], lambda = c["lam"], K = 2.0 * std::numbers::pi / lambda;
     const auto ridges = [K](double amplitude) { return [=](double x, double) { return amplitude * std::cos(K * x); }; };
     const scene bodies{make_plate(plate_mm(3.2 * lambda, 512, ridges(a))),
