@@ -44,10 +44,10 @@ struct tick_timing {
 template <contact_renderer Renderer, haptic_device Device, session_observer Observer = no_observer>
 class real_session {
  public:
-  real_session(Renderer renderer, scene_placement placement, Device& dev, const control_config& config,
+  real_session(Renderer feel, scene_placement placement, Device& dev, const control_config& config,
                const real_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
-        contact_(std::move(renderer), placement, shared_),
+        contact_(std::move(feel), placement, shared_),
         device_(dev, config, placement.centre_of_mass_a, shared_, std::move(observer)) {}
 
   // The loops hold the address of the exchange, the threads that of the session.

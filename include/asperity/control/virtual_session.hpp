@@ -27,10 +27,10 @@ class virtual_session {
  public:
   /// @param dev open and, to be felt, armed; outlives the session
   /// @pre both periods > 0
-  virtual_session(Renderer renderer, scene_placement placement, Device& dev, const control_config& config,
+  virtual_session(Renderer feel, scene_placement placement, Device& dev, const control_config& config,
                   const virtual_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
-        contact_(std::move(renderer), placement, shared_),
+        contact_(std::move(feel), placement, shared_),
         device_(dev, config, placement.centre_of_mass_a, shared_, std::move(observer)),
         next_contact_ns_(schedule.start_ns),
         next_device_ns_(schedule.start_ns) {}
