@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <gtest/gtest.h>
+#include <span>
 
 #include "asperity/asperity.hpp"
 #include "asperity/render/exact_renderer.hpp"
@@ -14,7 +15,6 @@ namespace {
 using namespace asperity;
 using namespace asperity::oracle;
 
-constexpr int poses_per_pair = 25;
 constexpr int grid = 64;
 constexpr int refinement = 5;
 
@@ -26,7 +26,8 @@ struct tally {
   double times_slower = 0.0;
 };
 
-tally undersampling(const std::string& probe_name, const std::string& fixed_name, std::uint64_t seed) {
+tally undersampling(const std::string& probe_name, const std::string& fixed_name, std::uint64_t seed,
+                    int poses_per_pair) {
   tally out;
   const original_and_bake a = load_benchmark_body(probe_name), b = load_benchmark_body(fixed_name);
   if (a.model == nullptr || b.model == nullptr) return out;
@@ -115,11 +116,12 @@ tally undersampling(const std::string& probe_name, const std::string& fixed_name
   return out;
 }
 
-TEST(undersampling, of_the_default_grid_on_the_benchmark_models) {
-  struct pair {
-    const char *probe, *fixed;
-    std::uint64_t seed;
-  };
+struct model_pair {
+  const char *probe, *fixed;
+  std::uint64_t seed;
+};
+
+void tell_undersampling(std::span<const model_pair> pairs, int poses_per_pair) {
   std::printf(
       "  what a grid of 64 x 64 misses of the exact maximum, one of 256 x 256, and how far the exact maximum is\n"
       "  from the originals, um; contacts with samples that the paper's lookup stands in for; searches capped\n");
@@ -127,13 +129,13 @@ TEST(undersampling, of_the_default_grid_on_the_benchmark_models) {
               "256: p50", "p95", "orig.: p50", "p95", "beside", "deeper", "capped", "slower");
   const auto um = [](const std::vector<double>& v, double share) { return percentile(v, share) * 1e6; };
   std::vector<double> all;
-  for (const pair& p : {pair{"block", "gear", 11}, pair{"file", "cad_part", 12}, pair{"hammer", "torus", 13}}) {
-    const tally r = undersampling(p.probe, p.fixed, p.seed);
+  for (const model_pair& p : pairs) {
+    const tally r = undersampling(p.probe, p.fixed, p.seed, poses_per_pair);
     std::printf("  %-8s on %-8s %8d %9.2f %7.2f %7.2f %9.2f %7.2f %10.1f %7.1f %7d %7d %7d %6.0fx\n", p.probe, p.fixed,
                 r.contacts, um(r.missed_m, 0.5), um(r.missed_m, 0.95), um(r.missed_m, 1.0), um(r.finer_m, 0.5),
                 um(r.finer_m, 0.95), um(r.originals_m, 0.5), um(r.originals_m, 0.95), r.beside, r.deeper, r.capped,
                 r.times_slower);
-    EXPECT_GT(r.missed_m.size(), 10U);
+    EXPECT_GT(r.missed_m.size(), static_cast<std::size_t>(poses_per_pair) / 3);
     EXPECT_EQ(r.beyond, 0) << p.probe << " on " << p.fixed;
     EXPECT_LT(percentile(r.finer_m, 0.5), percentile(r.missed_m, 0.5)) << "a finer grid comes nearer";
     all.insert(all.end(), r.missed_m.begin(), r.missed_m.end());
@@ -142,5 +144,12 @@ TEST(undersampling, of_the_default_grid_on_the_benchmark_models) {
       "  all %zu contacts whose search ended: 64 x 64 misses %.2f um in the median, %.1f um at p95, %.1f um at most\n",
       all.size(), um(all, 0.5), um(all, 0.95), um(all, 1.0));
 }
+
+constexpr model_pair all_pairs[] = {{"block", "gear", 11}, {"file", "cad_part", 12}, {"hammer", "torus", 13}};
+
+TEST(undersampling, of_the_default_grid_on_benchmark_models) { tell_undersampling(std::span(all_pairs).first(2), 8); }
+
+/// The table of docs/explanation/penetration-depth.md; ask for it with --gtest_also_run_disabled_tests.
+TEST(undersampling, DISABLED_of_the_default_grid_on_all_of_them) { tell_undersampling(all_pairs, 25); }
 
 }  // namespace

@@ -19,7 +19,6 @@ using test_support::tick_trap;
 // The first second: the approach, the touch and the first stroke. The pages of code and stack that a session needs may
 // be met for the first time in it; no later tick may find one that is missing.
 constexpr std::uint64_t warm_up_ticks = 1'000;
-constexpr std::uint64_t steady_ticks = 99'000;
 
 model_ptr load(const char* name) {
   result<textured_model> model =
@@ -48,9 +47,10 @@ workspace_map held_above(pose T_wa_touch, const vec3& centre_of_mass_a, double h
           .T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a}};
 }
 
-// 100 s of the session. Make is make_renderer or make_paper_renderer.
+// So many device ticks of the session after the warm-up, a millisecond each. Make is make_renderer or
+// make_paper_renderer.
 template <class Make>
-void trap_file_on_cad_part(Make&& make) {
+void trap_file_on_cad_part(std::uint64_t steady_ticks, Make&& make) {
   const model_ptr file = load("file");
   const model_ptr cad_part = load("cad_part");
   ASSERT_TRUE(file && cad_part);
@@ -93,18 +93,18 @@ void trap_file_on_cad_part(Make&& make) {
   }
   EXPECT_EQ(session.device().gate().fault(), gate_fault::none);
   EXPECT_EQ(felt.not_ok, 0U);
-  EXPECT_GT(felt.in_contact, 90'000U);
+  EXPECT_GT(felt.in_contact, steady_ticks - steady_ticks / 10);
   EXPECT_EQ(steady.page_faults(), 0U);
 }
 
 TEST(benchmark_ticks, file_on_cad_part_does_nothing_that_a_tick_must_not_do) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part([](const scene& bodies) { return make_renderer(bodies); });
+  trap_file_on_cad_part(99'000, [](const scene& bodies) { return make_renderer(bodies); });
 }
 
 TEST(benchmark_ticks, nor_does_it_with_the_contacts_of_the_paper) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part([](const scene& bodies) { return make_paper_renderer(bodies); });
+  trap_file_on_cad_part(24'000, [](const scene& bodies) { return make_paper_renderer(bodies); });
 }
 
 }  // namespace
