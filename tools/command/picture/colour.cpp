@@ -31,7 +31,7 @@ colour between(const std::array<lightness_chroma_hue, N>& points, double value) 
 std::uint8_t to_srgb8(float linear) noexcept {
   const double x = std::clamp(static_cast<double>(linear), 0.0, 1.0);
   const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1.0 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(encoded * 255.0 + 0.5);
+  return static_cast<std::uint8_t>(std::lround(encoded * 255.0));
 }
 
 colour oklch(double lightness, double chroma, double hue_deg) noexcept {

@@ -228,8 +228,9 @@ class page {
   }
 
   void begin(std::size_t number, const std::optional<pixmap>& picture, const char* title, const std::string& words) {
-    left_ = static_cast<double>(margin + number % 2 * (panel_width + gap));
-    top_ = static_cast<double>(header + number / 2 * (panel_height + gap));
+    const std::size_t column = number % 2, row = number / 2;
+    left_ = static_cast<double>(margin + column * (panel_width + gap));
+    top_ = static_cast<double>(header + row * (panel_height + gap));
     if (picture) {
       sheet_.place(*picture, static_cast<std::size_t>(left_), static_cast<std::size_t>(top_));
     } else {

@@ -11,8 +11,9 @@
 #include "picture/canvas.hpp"
 #include "picture/colour.hpp"
 
-struct _cairo;
-struct _cairo_surface;
+// Cairo's own names for its types, so that its header stays out of this one.
+struct _cairo;          // NOLINT(bugprone-reserved-identifier)
+struct _cairo_surface;  // NOLINT(bugprone-reserved-identifier)
 
 namespace asperity::picture {
 
