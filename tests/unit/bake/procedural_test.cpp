@@ -75,7 +75,11 @@ double profile_power(const std::vector<relief>& surfaces, const vec3& along, int
   double power = 0.0;
   for (const relief& heights : surfaces)
     for (int line = 0; line < lines; ++line) {
-      const vec3 start = roll(-20.0, 20.0) * across + roll(-20.0, 20.0) * along + vec3(0, 0, roll(-20.0, 20.0));
+      // One number a statement: the operands of a sum come in any order, and each build would draw other lines.
+      const double a = roll(-20.0, 20.0);
+      const double b = roll(-20.0, 20.0);
+      const double c = roll(-20.0, 20.0);
+      const vec3 start = a * across + b * along + vec3(0, 0, c);
       double re = 0.0, im = 0.0;
       for (int i = 0; i < samples; ++i) {
         const double x = (i + 0.5) / samples;
@@ -91,7 +95,7 @@ double profile_power(const std::vector<relief>& surfaces, const vec3& along, int
 
 TEST(Procedural, RoughnessHasItsRmsAndItsSpectrumInEveryDirection) {
   std::vector<relief> surfaces;
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const auto made = make_roughness(fine_roughness(seed), block());
     ASSERT_TRUE(made) << made.error().message;
     surfaces.push_back(*made);
@@ -99,11 +103,16 @@ TEST(Procedural, RoughnessHasItsRmsAndItsSpectrumInEveryDirection) {
   const relief_extent extent = measure_relief(block(), surfaces.front());
   EXPECT_NEAR(extent.rms_m, 12e-6, 12e-12);
   EXPECT_NEAR(extent.mean_m, 0.0, 12e-12);
+  // Between wavelengths of 20 mm and 4 mm: a factor of 5, far from the end of the band at 1 mm. Twelve surfaces are an
+  // estimate, so that one direction is held less tightly than the mean of all.
+  double mean = 0.0;
   for (const vec3& along : {vec3(1, 0, 0), vec3(0.6, 0.8, 0), vec3(0, 1, 0)}) {
-    // Between wavelengths of 20 mm and 4 mm: a factor of 5, far from the end of the band at 1 mm.
     const double fall = profile_power(surfaces, along, 4, 180) / profile_power(surfaces, along, 20, 180);
-    EXPECT_NEAR(std::log(fall) / std::log(5.0), 2.4, 0.25) << along.x;
+    const double slope = std::log(fall) / std::log(5.0);
+    EXPECT_NEAR(slope, 2.4, 0.4) << along.x;
+    mean += slope / 3.0;
   }
+  EXPECT_NEAR(mean, 2.4, 0.25);
   // Nothing is finer than the band.
   const std::vector<relief> one(1, surfaces.front());
   EXPECT_LT(profile_power(one, {1, 0, 0}, 100, 400), 1e-4 * profile_power(one, {1, 0, 0}, 20, 400));
