@@ -133,8 +133,10 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (!coarse) return coarse.error();
   remark(options, coarse->note);
   if (options.relief && full->turned_triangles > 0)
-    return error{error_code::bad_mesh, winding_remark(full->turned_triangles) +
-                                           "; a relief lies on triangles as they come, so mend their winding first"};
+    return error{error_code::bad_mesh,
+                 "in the mesh " + std::to_string(full->turned_triangles) +
+                     " of the triangles wind against their neighbours; a relief lies on triangles "
+                     "as they come, so let their normals agree first"};
   const added_relief added{options.relief, full->mesh, full->flipped};
   if (const auto sound = check_relief(added, diagonal); !sound) return sound.error();
   if (!monitor.begin("compare")) return cancelled();

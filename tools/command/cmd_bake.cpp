@@ -221,8 +221,10 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   json picture;
   if (drawing) {
     picture::picture_options page;
-    page.original = &*full;
-    page.original_name = fs::path(options.full).filename().string();
+    if (!settings.relief) {  // with one, the mesh is not what the textured surface should be
+      page.original = &*full;
+      page.original_name = fs::path(options.full).filename().string();
+    }
     page.threads = options.threads;
     page.progress = enter;
     result<json> drawn = write_picture(*model, page, *drawing);

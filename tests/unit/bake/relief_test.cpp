@@ -195,6 +195,19 @@ TEST(Relief, IsSeenTheSameWayOnAMeshThatComesInsideOut) {
   EXPECT_LT(miss(*bake(turned, with_relief(slopes->heights))), 0.05);
 }
 
+// A bake would turn the odd triangle, and the relief would then be read at other corners than it was made for.
+TEST(Relief, IsRefusedOnAMeshThatDoesNotWindOneWay) {
+  triangle_mesh mesh = slab.mesh(2);
+  std::swap(mesh.triangles[3][1], mesh.triangles[3][2]);
+  bake_options options;
+  EXPECT_TRUE(bake(mesh, options));
+  options.relief.height_m = [](const relief_point&) { return 1e-5; };
+  const auto refused = bake(mesh, options);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, error_code::bad_mesh);
+  EXPECT_NE(refused.error().message.find("wind against"), std::string::npos) << refused.error().message;
+}
+
 TEST(Relief, IsKeptWhenTheMeshIsSimplified) {
   const triangle_mesh mesh = slab.mesh(12);
   bake_options options = with_relief(*height_map_relief(mesh, slab.height_map(map_side, 16), slab_range()));
