@@ -23,14 +23,6 @@
 namespace asperity::hostile {
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(NDEBUG)
-constexpr std::size_t share = 8;  // one in so many of the runs, where the build is slow
-#elif defined(__has_feature)
-constexpr std::size_t share = __has_feature(address_sanitizer) ? 8 : 1;
-#else
-constexpr std::size_t share = 1;
-#endif
-
 // ASPERITY_FUZZ_TIMES=n runs n times as many: for an afternoon under a sanitizer.
 std::size_t runs(std::size_t usual) {
   const char* times = std::getenv("ASPERITY_FUZZ_TIMES");

@@ -1,6 +1,7 @@
 // What has to be true of a reader's answer, whatever the bytes were.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -10,6 +11,15 @@
 #include "asperity/model/triangle_mesh.hpp"
 
 namespace asperity::hostile {
+
+/// One in so many of the usual runs, where the build is slow.
+#if defined(__SANITIZE_ADDRESS__) || !defined(NDEBUG)
+inline constexpr std::size_t share = 8;
+#elif defined(__has_feature)
+inline constexpr std::size_t share = __has_feature(address_sanitizer) ? 8 : 1;
+#else
+inline constexpr std::size_t share = 1;
+#endif
 
 /// Says what is wrong with an answer; nothing where all is well:
 /// - an error has one printable line of sensible length with a mend in it;
