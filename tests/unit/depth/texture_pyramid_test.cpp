@@ -123,27 +123,29 @@ struct looked_at {
   model_ptr model;
   surface_index index;
   texture_pyramid pyramid;
+  chart_blocks charts;
   contact_window window = window_downwards(4e-3);
   window_map map;
   patch_projection patch;
   body_view view;
 
-  static plate_spec spec(bool charts) {
+  static plate_spec spec(bool cut) {
     plate_spec s;
     s.half_x = s.half_y = 5e-3;
     s.cells_x = s.cells_y = 3;
     s.texels = 96;
-    s.chart_per_cell = charts;
+    s.chart_per_cell = cut;
     s.T_body_plate = {exp_rotation(vec3(0.4, -1.1, 0.7)), {0.01, 0.02, -0.03}};
     s.height = [](double x, double y) { return 2e-4 * std::cos(1500.0 * x) * std::cos(1200.0 * y); };
     s.coarse_height = [](double x, double y) { return 3e-4 * std::cos(300.0 * x + 200.0 * y); };
     return s;
   }
-  explicit looked_at(bool charts)
-      : model(make_plate(spec(charts))),
+  explicit looked_at(bool cut)
+      : model(make_plate(spec(cut))),
         index(*model),
         pyramid(model->texture),
-        map(window, pose{exp_rotation(vec3(0.2, 0.1, 0.5)), vec3(0.0)} * inverse(spec(charts).T_body_plate)),
+        charts(*model, index),
+        map(window, pose{exp_rotation(vec3(0.2, 0.1, 0.5)), vec3(0.0)} * inverse(spec(cut).T_body_plate)),
         patch(model->mesh.triangles.size()),
         view{model->texture, index, patch, map} {
     const std::vector<std::uint32_t> all = all_triangles(*model);
@@ -159,7 +161,7 @@ TEST(WindowPiece, HoldsEveryPointOfItsPartOfTheSurface) {
     const auto slots = static_cast<std::int32_t>(s.patch.triangles().size());
     ASSERT_GE(slots, 18);
     for (const parallax_mode mode : {parallax_mode::paper_lookup, parallax_mode::exact}) {
-      const searched_body body{s.view, s.pyramid, mode};
+      const searched_body body{s.view, s.pyramid, s.charts, mode};
       for (int i = 0; i < 4000; ++i) {
         const auto slot = static_cast<std::uint32_t>(d.below(slots));
         const texture_place at = any_place(d, s.model->texture, d.below(9) - 4);
