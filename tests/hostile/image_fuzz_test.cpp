@@ -84,7 +84,7 @@ outcome fuzz_images(const image_format& format, const char* how, const std::stri
     const std::size_t natural = bytes.size() + (image ? 4 * image->samples.size() : 0);
     EXPECT_LE(taken, 4 * natural + plus_bytes) << (image ? std::string("an image") : image.error().message);
     most = std::max(most, taken);
-    out.other_pixels += image && image->samples != pixels ? 1 : 0;
+    out.other_pixels += image && image->samples != pixels ? 1U : 0U;
     return image;
   };
   const tally t = fuzz(runs, seed, good, mutate, watched);

@@ -50,7 +50,7 @@ struct texel_count {
   std::size_t looked_at = 0, holes = 0;
   void add(const vec3& texel) {
     ++looked_at;
-    holes += std::isfinite(texel.x) && std::isfinite(texel.y) && std::isfinite(texel.z) ? 0 : 1;
+    holes += std::isfinite(texel.x) && std::isfinite(texel.y) && std::isfinite(texel.z) ? 0U : 1U;
   }
 };
 

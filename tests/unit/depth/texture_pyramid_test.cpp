@@ -153,6 +153,25 @@ struct looked_at {
   }
 };
 
+TEST(ChartBlocks, HoldAllOfAChartAndAreAsThickAsItsRelief) {
+  dice d(8);
+  const looked_at s(true);
+  for (std::uint32_t t = 0; t < s.index.texels.size(); ++t) {
+    const texel_triangle& chart = s.index.texels[t];
+    for (int k = 0; k < 50; ++k) {
+      double a = d.between(0.0, 1.0), b = d.between(0.0, 1.0);
+      if (a + b > 1.0) a = 1.0 - a, b = 1.0 - b;
+      const vec2 z =
+          chart.corner[0] + a * (chart.corner[1] - chart.corner[0]) + b * (chart.corner[2] - chart.corner[0]);
+      const texture_block block = s.charts.block(t, z);
+      ASSERT_FALSE(block.empty);
+      const vec3 off = glm::abs(read(s.model->texture, z).point - block.centre);
+      ASSERT_TRUE(glm::all(glm::lessThanEqual(off, block.spare + 1e-12))) << "triangle " << t;
+      ASSERT_LT(glm::length(block.spare), 2e-3) << "the plate is 10 mm wide";
+    }
+  }
+}
+
 TEST(WindowPiece, HoldsEveryPointOfItsPartOfTheSurface) {
   dice d(7);
   std::size_t points = 0, graphs = 0, pieces = 0;
