@@ -60,14 +60,13 @@ std::vector<std::pair<std::string, std::string>> huge_claims() {
   constexpr std::int32_t far = 0x7fffffff;
   return {
       {"most.png", png_image{16384, 8192, 8, 0, "x", {}}.bytes()},
-      {"more.png", png_image{0x7fffffff, 0x7fffffff, 16, 6, "x", {}}.bytes()},
+      {"more.png", png_image{0x7fffffff, 20000, 16, 6, "x", {}}.bytes()},
       {"row.png", png_image{0x7fffffff, 1, 16, 6, "x", {}}.bytes()},
       {"most.tif", with_tag(with_tag(strips, 256, 16384), 257, 8192)},
       {"more.tif", with_tag(with_tag(strips, 256, 0xffffffff), 257, 0xffffffff)},
       {"tile.tif", with_tag(with_tag(tiled, 322, 60000), 323, 60000)},
       {"tile_wide.tif", with_tag(tiled, 322, 0x7ffffff0)},
       {"tile_high.tif", with_tag(tiled, 323, 0x7ffffff0)},
-      {"strip.tif", with_tag(strips, 278, 0xffffffff)},
       {"strip_bytes.tif", with_tag(strips, 279, 0xffffff00)},
       {"most.exr", with_window(exr, {0, 0, 16383, 8191})},
       {"more.exr", with_window(exr, {-far, -far, far, far})},
