@@ -100,6 +100,9 @@ outcome fuzz_images(const image_format& format, const char* how, const std::stri
     const std::size_t taken = memory.works() ? memory.bytes() : 0;
     const std::size_t natural = bytes.size() + (image ? 4 * image->samples.size() : 0);
     EXPECT_LE(taken, 4 * natural + plus_bytes) << (image ? std::string("an image") : image.error().message);
+    if (!image) {
+      EXPECT_EQ(image.error().message.find("does not fit into memory"), std::string::npos) << "a claim was believed";
+    }
     most = std::max(most, taken);
     out.other_pixels += image && image->samples != pixels ? 1U : 0U;
     return image;
