@@ -181,6 +181,50 @@ TEST_F(documents, both_gradient_schemes_agree_on_the_depth) {
   EXPECT_EQ(paper["contacts"][0]["soft_depth"], paper["contacts"][0]["depth"]);
 }
 
+TEST_F(documents, the_exact_maximum_is_deeper_than_a_grid_s_and_says_how_deep_it_can_be) {
+  const arguments query{"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0.001 0.0005 0.0198 0 0 0 1"};
+  arguments paper = query, exact = query;
+  paper.insert(paper.end(), {"--contacts", "paper"});
+  exact.insert(exact.end(), {"--backend", "exact"});
+  const json on_grid = expect_document(paper, "asperity.query/1");
+  const json searched = expect_document(exact, "asperity.query/1");
+  EXPECT_EQ(searched["backend"], "exact");
+  EXPECT_EQ(searched["formulation"], "paper");
+  EXPECT_EQ(searched["gradient_scheme"], "exact");
+  ASSERT_FALSE(searched["contacts"].empty());
+  ASSERT_EQ(searched["contacts"].size(), on_grid["contacts"].size());
+  for (std::size_t i = 0; i < searched["contacts"].size(); ++i) {
+    const json &c = searched["contacts"][i], &g = on_grid["contacts"][i];
+    EXPECT_EQ(c["centre"], g["centre"]) << "the same window";
+    EXPECT_FALSE(g.contains("depth_at_most"));
+    const double depth = c["depth"], most = c["depth_at_most"];
+    EXPECT_GE(most, depth);
+    EXPECT_LE(most, depth + 1e-8);
+    EXPECT_GT(depth, g["depth"].get<double>()) << "samples reach the maximum from below";
+    EXPECT_EQ(c["flags"], g["flags"]);
+  }
+}
+
+TEST_F(documents, what_contradicts_the_exact_maximum_is_refused_by_name) {
+  for (const arguments& option :
+       {arguments{"--contacts", "shared"}, arguments{"--gradient", "soft"}, arguments{"--grid", "64"}}) {
+    arguments query{"query",        "--probe",       block(),     "--fixed", block(),
+                    "--probe-pose", "0 0 1 0 0 0 1", "--backend", "exact"};
+    query.insert(query.end(), option.begin(), option.end());
+    const std::string message = expect_failure(query, 1, "invalid_argument");
+    EXPECT_NE(message.find(option.front()), std::string::npos) << message;
+    EXPECT_NE(message.find("--backend exact"), std::string::npos) << message;
+  }
+  EXPECT_NE(expect_failure({"run", "--probe", block(), "--fixed", block(), "--backend", "exact", "--clock", "real"}, 1,
+                           "invalid_argument")
+                .find("--clock virtual"),
+            std::string::npos);
+  EXPECT_EQ(expect_document({"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1",
+                             "--backend", "exact", "--contacts", "paper"},
+                            "asperity.query/1")["contacts"],
+            json::array());
+}
+
 TEST_F(documents, backends_that_are_not_built_say_so) {
   for (const char* backend : {"cpu-simd", "gl-occlusion", "gl-compute"}) {
     const std::string message = expect_failure(

@@ -1,6 +1,6 @@
-// load_probe mesh|model|bare|bake FILE: loads one file in a process of its own and prints how far its memory went (peak
-// resident bytes beyond the start), then "loaded" or the error's message. `bare` takes tinygltf without the guard,
-// `bake` bakes the mesh too, with a small texture.
+// load_probe mesh|model|image|material|bare|bake FILE: loads one file in a process of its own and prints how far its
+// memory went (peak resident bytes beyond the start), then "loaded" or the error's message. `bare` takes tinygltf
+// without the guard, `bake` bakes the mesh too, with a small texture.
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -8,6 +8,8 @@
 #include <tiny_gltf.h>
 
 #include "asperity/bake/bake.hpp"
+#include "asperity/io/image_file.hpp"
+#include "asperity/io/material_file.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 
@@ -47,6 +49,16 @@ std::string load_model(const char* file) {
   return model ? "loaded" : model.error().message;
 }
 
+std::string load_image(const char* file) {
+  const auto image = asperity::io::load_image(file);
+  return image ? "loaded" : image.error().message;
+}
+
+std::string load_material(const char* file) {
+  const auto texture = asperity::io::load_normal_texture(file);
+  return texture ? "loaded" : texture.error().message;
+}
+
 std::string load_bare(const char* file) {
   tinygltf::TinyGLTF parser;
   tinygltf::Model model;
@@ -63,10 +75,12 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const std::string_view how = argv[1];
   const unsigned long before = status_kb("VmHWM");
-  const std::string said = how == "bare"   ? load_bare(argv[2])
-                           : how == "mesh" ? load_mesh(argv[2])
-                           : how == "bake" ? load_and_bake(argv[2])
-                                           : load_model(argv[2]);
+  const std::string said = how == "bare"       ? load_bare(argv[2])
+                           : how == "mesh"     ? load_mesh(argv[2])
+                           : how == "bake"     ? load_and_bake(argv[2])
+                           : how == "image"    ? load_image(argv[2])
+                           : how == "material" ? load_material(argv[2])
+                                               : load_model(argv[2]);
   std::printf("%lu\n%s\n", 1024 * (status_kb("VmHWM") - before), said.c_str());
   return 0;
 }

@@ -22,7 +22,7 @@ struct probe_limits {
   unsigned wall_s = 60;
 };
 
-/// @param how "mesh", "model" or "bare"
+/// @param how the first argument of load_probe
 [[nodiscard]] probe_outcome run_probe(const char* how, const std::filesystem::path& file, const probe_limits& limits);
 
 }  // namespace asperity::hostile

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <memory>
 
+#include "asperity/io/image_file.hpp"
 #include "asperity/model/validate.hpp"
 #include "asperity/render/default_renderer.hpp"
 
@@ -46,6 +48,22 @@ std::optional<std::string> complaint_of_tick(Made feel, const textured_model& mo
 }
 
 }  // namespace
+
+std::optional<std::string> complaint(const result<map_image>& image) {
+  if (!image) return complaint(image.error());
+  const std::size_t samples = std::size_t{image->width} * image->height * image->channels;
+  if (samples == 0 || image->width > io::max_image_side || image->height > io::max_image_side ||
+      samples > io::max_image_samples) {
+    return "an image of " + std::to_string(image->width) + " x " + std::to_string(image->height) + " pixels";
+  }
+  if (image->channels != 1 && image->channels != 3)
+    return "an image of " + std::to_string(image->channels) + " channels";
+  if (image->samples.size() != samples) return "an image with " + std::to_string(image->samples.size()) + " samples";
+  if (!std::all_of(image->samples.begin(), image->samples.end(), [](float s) { return std::isfinite(s); })) {
+    return "a sample that is not finite";
+  }
+  return std::nullopt;
+}
 
 std::optional<std::string> complaint(const result<triangle_mesh>& mesh) {
   if (!mesh) return complaint(mesh.error());

@@ -2,6 +2,7 @@
 #include <numbers>
 
 #include "oracle/closed_forms.hpp"
+#include "oracle/ellipsoid_on_plane.hpp"
 
 namespace asperity::oracle {
 namespace {
@@ -68,31 +69,12 @@ TEST(ClosedForms, BallOnBall) {
 TEST(ClosedForms, EllipsoidOnPlane) {
   error_table table("O7: ellipsoid on a plane (depths in mm)");
   for (const json& c : cases("O7_ellipsoid_plane")) {
-    const vec3 axes = vector_of(c["semi_axes"]), centre = vector_of(c["centre"]), lowest = vector_of(c["witness"]);
-    const quat R = exp_rotation(vector_of(c["rotvec"]));
+    const ellipsoid_on_plane e = make_ellipsoid_on_plane(c, 2.2, 2048);
     const double delta = c["delta"];
-    // Lower surface over (x, y) by the quadratic x^T S x = 1; beyond the silhouette something that does not touch.
-    const mat3 Rm = glm::mat3_cast(R);
-    const mat3 S = Rm *
-                   mat3(1.0 / (axes.x * axes.x), 0, 0, 0, 1.0 / (axes.y * axes.y), 0, 0, 0, 1.0 / (axes.z * axes.z)) *
-                   glm::transpose(Rm);
-    const auto below_lowest = [=](double x, double y) {
-      const vec3 d(x + lowest.x - centre.x, lowest.y - centre.y - y, 0.0);  // the plate's y points to -y in the world
-      const double qa = S[2][2], qb = S[2][0] * d.x + S[2][1] * d.y;
-      const double qc = S[0][0] * d.x * d.x + 2.0 * S[0][1] * d.x * d.y + S[1][1] * d.y * d.y - 1.0;
-      const double root = qb * qb - qa * qc;
-      return root > 0.0 ? lowest.z - centre.z + (qb + std::sqrt(root)) / qa : -1.0;
-    };
-    plate_spec probe = plate_mm(2.2, 2048, below_lowest);
-    const pose T_wa{R, mm * centre};  // the body frame is the ellipsoid's own
-    const pose T_w_plate{face_down(), mm * lowest};
-    probe.T_body_plate = inverse(T_wa) * T_w_plate;
-    probe.centre_of_mass = inverse(T_w_plate) * T_wa.position;
-    const scene bodies{make_plate(probe), {make_plate(plate_mm(8.0, 64, {}))}};
-    const contact_window window = window_downwards(2.0 * mm, mm * vec3(lowest.x, lowest.y, 0.0));
-    cpu_depth fine(bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
-    table.add("depth, N = 400", std::fabs(measure_whole(fine, bodies, window, T_wa).depth_m / mm - delta), 1e-3);
-    check_gradient(table, bodies, window, T_wa, gradient_of(vector_of(c["F"]), vector_of(c["T"]), 1.0, delta));
+    const contact_window window = window_downwards(2.0 * mm, mm * vec3(e.lowest.x, e.lowest.y, 0.0));
+    cpu_depth fine(e.bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
+    table.add("depth, N = 400", std::fabs(measure_whole(fine, e.bodies, window, e.T_wa).depth_m / mm - delta), 1e-3);
+    check_gradient(table, e.bodies, window, e.T_wa, gradient_of(vector_of(c["F"]), vector_of(c["T"]), 1.0, delta));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "asperity/depth/exact_depth.hpp"
 #include "oracle/closed_forms.hpp"
+#include "oracle/ellipsoid_on_plane.hpp"
 
 namespace asperity::oracle {
 namespace {
@@ -61,34 +62,18 @@ TEST(ClosedFormsExactly, EllipsoidOnPlane) {
   std::size_t i = 0;
   for (const json& c : cases("O7_ellipsoid_plane")) {
     if (i++ % 2 != 0) continue;
-    const vec3 axes = vector_of(c["semi_axes"]), centre = vector_of(c["centre"]), lowest = vector_of(c["witness"]);
-    const quat R = exp_rotation(vector_of(c["rotvec"]));
-    const mat3 Rm = glm::mat3_cast(R);
-    const mat3 S = Rm *
-                   mat3(1.0 / (axes.x * axes.x), 0, 0, 0, 1.0 / (axes.y * axes.y), 0, 0, 0, 1.0 / (axes.z * axes.z)) *
-                   glm::transpose(Rm);
-    const auto below_lowest = [=](double x, double y) {
-      const vec3 d(x + lowest.x - centre.x, lowest.y - centre.y - y, 0.0);  // the plate's y points to -y in the world
-      const double qa = S[2][2], qb = S[2][0] * d.x + S[2][1] * d.y;
-      const double qc = S[0][0] * d.x * d.x + 2.0 * S[0][1] * d.x * d.y + S[1][1] * d.y * d.y - 1.0;
-      const double root = qb * qb - qa * qc;
-      return root > 0.0 ? lowest.z - centre.z + (qb + std::sqrt(root)) / qa : -1.0;
-    };
-    plate_spec probe = plate_mm(1.1, 512, below_lowest);
-    const pose T_wa{R, mm * centre}, T_w_plate{face_down(), mm * lowest};
-    probe.T_body_plate = inverse(T_wa) * T_w_plate;
-    probe.centre_of_mass = inverse(T_w_plate) * T_wa.position;
-    const scene bodies{make_plate(probe), {make_plate(plate_mm(8.0, 64, {}))}};
-    const contact_window window = window_downwards(1.0 * mm, mm * vec3(lowest.x, lowest.y, 0.0));
-    exact_depth backend(bodies);
+    const ellipsoid_on_plane e = make_ellipsoid_on_plane(c, 1.1, 512);
+    const contact_window window = window_downwards(1.0 * mm, mm * vec3(e.lowest.x, e.lowest.y, 0.0));
+    exact_depth backend(e.bodies);
     // The sharpest curvature is that of the ellipsoid's smallest section, along both of the texture's directions.
-    const double smallest = std::min({axes.x, axes.y, axes.z}), largest = std::max({axes.x, axes.y, axes.z});
+    const double smallest = std::min({e.axes.x, e.axes.y, e.axes.z}),
+                 largest = std::max({e.axes.x, e.axes.y, e.axes.z});
     const double curvature = largest / (smallest * smallest), texel = 2.2 / 512;
-    table.add("depth", error_mm(backend, bodies, window, T_wa, c["delta"]),
+    table.add("depth", error_mm(backend, e.bodies, window, e.T_wa, c["delta"]),
               0.25 * curvature * texel * texel + rounding);
     const vec6 expected = gradient_of(vector_of(c["F"]), vector_of(c["T"]), 1.0, c["delta"]);
     // One side's slope at a crest of the interpolation, at the lever arm of the centre of mass.
-    table.add("gradient", gradient_error(measure_whole(backend, bodies, window, T_wa).gradient, expected),
+    table.add("gradient", gradient_error(measure_whole(backend, e.bodies, window, e.T_wa).gradient, expected),
               2.0 * curvature * texel);
   }
 }

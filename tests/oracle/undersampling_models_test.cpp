@@ -136,6 +136,7 @@ void tell_undersampling(std::span<const model_pair> pairs, int poses_per_pair) {
                 um(r.finer_m, 0.95), um(r.originals_m, 0.5), um(r.originals_m, 0.95), r.beside, r.deeper, r.capped,
                 r.times_slower);
     EXPECT_GT(r.missed_m.size(), static_cast<std::size_t>(poses_per_pair) / 3);
+    EXPECT_EQ(r.capped, 0) << p.probe << " on " << p.fixed;
     EXPECT_EQ(r.beyond, 0) << p.probe << " on " << p.fixed;
     EXPECT_LT(percentile(r.finer_m, 0.5), percentile(r.missed_m, 0.5)) << "a finer grid comes nearer";
     all.insert(all.end(), r.missed_m.begin(), r.missed_m.end());

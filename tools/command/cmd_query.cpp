@@ -25,7 +25,8 @@ json flag_names(depth_flag flags) {
   const std::pair<depth_flag, const char*> all[] = {{depth_flag::no_overlap, "no_overlap"},
                                                     {depth_flag::window_too_small, "window_too_small"},
                                                     {depth_flag::saturated, "saturated"},
-                                                    {depth_flag::bad_texel, "bad_texel"}};
+                                                    {depth_flag::bad_texel, "bad_texel"},
+                                                    {depth_flag::unresolved, "unresolved"}};
   for (const auto& [flag, name] : all) {
     if (has(flags, flag)) names.push_back(name);
   }
@@ -66,11 +67,12 @@ std::string contact_text(std::size_t i, const contact& c, const penetration& p) 
                                                      std::to_string(p.samples) + " samples" + flags);
 }
 
-answer report(const query_command& options, const tick& found, status answered) {
+answer report(const query_command& options, chosen_renderer& feel, const tick& found, status answered) {
   answer out;
   json contacts = json::array();
   for (std::size_t i = 0; i < found.contacts.size(); ++i) {
     contacts.push_back(contact_json(found.contacts[i], found.depths[i]));
+    if (const auto most_m = feel.depth_at_most_m(i)) contacts.back()["depth_at_most"] = *most_m;
     out.text += contact_text(i, found.contacts[i], found.depths[i]);
   }
   const wrench& w = found.force.on_probe_w;
@@ -80,7 +82,7 @@ answer report(const query_command& options, const tick& found, status answered) 
                   {"centre_of_mass", command::to_json(found.centre_of_mass_w)},
                   {"stiffness", found.force.stiffness.m},
                   {"backend", options.render.backend},
-                  {"formulation", options.render.contacts},
+                  {"formulation", formulation_name(options.render)},
                   {"gradient_scheme", gradient_name(options.render)},
                   {"status", to_string(answered)},
                   {"dropped_contacts", found.dropped_contacts},
@@ -112,7 +114,7 @@ result<answer> query(const query_command& options) {
     return error{error_code::unsupported, std::string("the contact could not be computed at these poses (") +
                                               to_string(answered) + "): inspect both models"};
   }
-  return report(options, found, answered);
+  return report(options, *made, found, answered);
 }
 
 }  // namespace

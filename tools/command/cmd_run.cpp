@@ -116,7 +116,8 @@ std::string plot_title(const run_command& options, const session_summary& summar
 
 std::string plot_caption(const run_command& options) {
   return "Simulated device at 1 kHz, contact loop at " + brief(options.contact_rate_hz) + " Hz, " + options.clock +
-         " clock, " + (options.render.contacts == "shared" ? "contacts as one potential" : "contacts as in the paper") +
+         " clock, " +
+         (formulation_name(options.render) == "shared" ? "contacts as one potential" : "contacts as in the paper") +
          ", seed " + std::to_string(options.seed) + "; world axes, torque about the probe's centre of mass.";
 }
 
@@ -196,7 +197,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
                   {"seed", options.seed},
                   {"seconds", ended.ended_at_s},
                   {"backend", options.render.backend},
-                  {"formulation", options.render.contacts},
+                  {"formulation", formulation_name(options.render)},
                   {"gradient_scheme", gradient_name(options.render)},
                   {"grid", grid_json(options.render)}};
   out.document.update(summary.to_json());
@@ -239,6 +240,10 @@ answer report(const run_command& options, const given_poses& poses, const sessio
 
 result<answer> run_session(const run_command& options, const common_options& common) {
   if (const result<void> ok = check(options.render); !ok) return ok.error();
+  if (options.render.backend == "exact" && options.clock == "real") {
+    return error{error_code::invalid_argument,
+                 "--backend exact takes as long as its search does, no contact would be in time: use --clock virtual"};
+  }
   result<given_poses> poses = read_poses(options);
   if (!poses) return poses.error();
   result<session_files> files = session_files::open(options);

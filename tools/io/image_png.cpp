@@ -52,7 +52,7 @@ struct png_job {
   }
 };
 
-/// Header, and what the samples are to be brought to: 8 or 16 bits, grey or colour, no alpha.
+/// What the header says. Nothing is set up by it yet: libpng would take memory for a row of any width.
 bool read_header(png_job& job) {
   if (setjmp(png_jmpbuf(job.png)) != 0) return false;
   png_set_read_fn(job.png, &job, png_job::on_read);
@@ -63,6 +63,13 @@ bool read_header(png_job& job) {
   job.width = png_get_image_width(job.png, job.info);
   job.height = png_get_image_height(job.png, job.info);
   job.depth = png_get_bit_depth(job.png, job.info);
+  job.channels = (png_get_color_type(job.png, job.info) & PNG_COLOR_MASK_COLOR) != 0 ? 3 : 1;
+  return true;
+}
+
+/// Samples are brought to 8 or 16 bits, grey or colour, no alpha.
+bool choose_samples(png_job& job) {
+  if (setjmp(png_jmpbuf(job.png)) != 0) return false;
   const int type = png_get_color_type(job.png, job.info);
   if (type == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(job.png);
   if (type == PNG_COLOR_TYPE_GRAY && job.depth < 8) png_set_expand_gray_1_2_4_to_8(job.png);
@@ -72,9 +79,8 @@ bool read_header(png_job& job) {
   if (job.depth == 16) png_set_swap(job.png);  // PNG is big-endian
   (void)png_set_interlace_handling(job.png);
   png_read_update_info(job.png, job.info);
-  job.channels = png_get_channels(job.png, job.info);
   job.row_bytes = png_get_rowbytes(job.png, job.info);
-  return true;
+  return png_get_channels(job.png, job.info) == job.channels;
 }
 
 bool read_pixels(png_job& job) {
@@ -98,6 +104,7 @@ result<map_image> decode_png(std::string_view bytes, const std::filesystem::path
   auto sized = sized_image(job.width, job.height, static_cast<std::uint32_t>(job.channels), bytes.size(),
                            most_pixels_per_byte, file);
   if (!sized) return sized.error();
+  if (!choose_samples(job)) return damaged();
   map_image& out = *sized;
   job.pixels.resize(job.row_bytes * job.height);
   for (std::size_t j = 0; j < job.height; ++j) job.rows.push_back(job.pixels.data() + j * job.row_bytes);

@@ -104,6 +104,15 @@ std::string unknown_in(const tiff_layout& l) {
   return {};
 }
 
+/// Small images have tiles larger than themselves, but not of any size: a tile is taken into memory as it is.
+bool has_sensible_tiles(TIFF* tiff, const tiff_layout& l) {
+  constexpr std::uint32_t always = 1024;
+  std::uint32_t tile_width = 0, tile_height = 0;
+  (void)TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tile_width);
+  (void)TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tile_height);
+  return tile_width <= std::max(always, l.width + 15) && tile_height <= std::max(always, l.height + 15);
+}
+
 /// Appends `pixels` pixels without what comes after the last channel (alpha).
 void append_pixels(const tiff_layout& l, const unsigned char* from, std::size_t pixels, map_image& to) {
   for (std::size_t i = 0; i < pixels; ++i) {
@@ -169,6 +178,8 @@ result<map_image> decode_tiff(std::string_view bytes, const std::filesystem::pat
   if (const std::string unknown = unknown_in(l); !unknown.empty()) return fault(error_code::unsupported, file, unknown);
   auto sized = sized_image(l.width, l.height, l.samples >= 3 ? 3 : 1, bytes.size(), most_pixels_per_byte, file);
   if (!sized) return sized.error();
+  if (TIFFIsTiled(tiff.get()) != 0 && !has_sensible_tiles(tiff.get(), l))
+    return fault(error_code::bad_format, file, "has tiles far larger than itself; export it again, in strips");
   sized->bits = l.bits == 32 ? 0 : l.bits;
   const bool whole =
       TIFFIsTiled(tiff.get()) != 0 ? read_tiles(tiff.get(), l, *sized) : read_strips(tiff.get(), l, *sized);

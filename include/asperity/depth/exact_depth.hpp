@@ -147,12 +147,12 @@ class exact_depth {
     const textured_model* model;
     detail::surface_index index;
     detail::texture_pyramid pyramid;
-    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(index, pyramid); }
+    detail::chart_blocks charts;
+    explicit searched_model(const textured_model& m) : model(&m), index(m), pyramid(m.texture), charts(m, index) {}
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(index, pyramid, charts); }
   };
 
-  void add_body(const textured_model& m) {
-    bodies_.push_back({&m, detail::surface_index(m), detail::texture_pyramid(m.texture)});
-  }
+  void add_body(const textured_model& m) { bodies_.emplace_back(m); }
   [[nodiscard]] std::size_t samples() const noexcept {
     return ready_ ? std::size_t{settings_.grid} * settings_.grid : 0;
   }
@@ -193,9 +193,9 @@ class exact_depth {
     const deepest_sample sampled = find_deepest(a_.field, b_.field, grid);
     bracket.beside_samples = drop_substitutes(grid);
 
-    const search_result found =
-        search_.find({view_a, model_a.pyramid, settings_.parallax}, {view_b, model_b.pyramid, settings_.parallax},
-                     window.half_size_m, settings_.epsilon_m, seed(grid));
+    const search_result found = search_.find({view_a, model_a.pyramid, model_a.charts, settings_.parallax},
+                                             {view_b, model_b.pyramid, model_b.charts, settings_.parallax},
+                                             window.half_size_m, settings_.epsilon_m, seed(grid));
     bracket.bounded = found.bounded;
     bracket.lower_m = found.deepest.found ? found.deepest.depth_m : -std::numeric_limits<double>::infinity();
     bracket.upper_m = found.upper_m;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "asperity/depth/chart_blocks.hpp"
 #include "asperity/depth/height_lookup.hpp"
 #include "asperity/depth/texture_pyramid.hpp"
 
@@ -31,6 +32,7 @@ struct surface_part {
 struct searched_body {
   const body_view& view;
   const texture_pyramid& pyramid;
+  const chart_blocks& charts;
   parallax_mode parallax;
 
   static constexpr double rounding_texels = 1e-9;
@@ -133,8 +135,14 @@ struct window_piece {
     if (here - reach < 0.0) cuts[cut_count++] = {here, w.y, w.z};
   }
 
-  const texture_block block = body.pyramid.block(at);
+  texture_block block = body.pyramid.block(at);
   if (block.empty) return false;
+  if (!block.one_cell) {
+    const texture_block whole_chart = body.charts.block(t.triangle, middle);
+    if (whole_chart.empty) return false;
+    const auto size = [](const vec3& spare) { return spare.x + spare.y + spare.z; };
+    if (size(whole_chart.spare) < size(block.spare)) block = whole_chart;
+  }
   const window_map& map = body.view.map;
   out.centre = map.point(block.centre);
   out.along_x = map.direction(block.along_x);

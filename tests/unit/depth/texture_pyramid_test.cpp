@@ -123,33 +123,54 @@ struct looked_at {
   model_ptr model;
   surface_index index;
   texture_pyramid pyramid;
+  chart_blocks charts;
   contact_window window = window_downwards(4e-3);
   window_map map;
   patch_projection patch;
   body_view view;
 
-  static plate_spec spec(bool charts) {
+  static plate_spec spec(bool cut) {
     plate_spec s;
     s.half_x = s.half_y = 5e-3;
     s.cells_x = s.cells_y = 3;
     s.texels = 96;
-    s.chart_per_cell = charts;
+    s.chart_per_cell = cut;
     s.T_body_plate = {exp_rotation(vec3(0.4, -1.1, 0.7)), {0.01, 0.02, -0.03}};
     s.height = [](double x, double y) { return 2e-4 * std::cos(1500.0 * x) * std::cos(1200.0 * y); };
     s.coarse_height = [](double x, double y) { return 3e-4 * std::cos(300.0 * x + 200.0 * y); };
     return s;
   }
-  explicit looked_at(bool charts)
-      : model(make_plate(spec(charts))),
+  explicit looked_at(bool cut)
+      : model(make_plate(spec(cut))),
         index(*model),
         pyramid(model->texture),
-        map(window, pose{exp_rotation(vec3(0.2, 0.1, 0.5)), vec3(0.0)} * inverse(spec(charts).T_body_plate)),
+        charts(*model, index),
+        map(window, pose{exp_rotation(vec3(0.2, 0.1, 0.5)), vec3(0.0)} * inverse(spec(cut).T_body_plate)),
         patch(model->mesh.triangles.size()),
         view{model->texture, index, patch, map} {
     const std::vector<std::uint32_t> all = all_triangles(*model);
     patch.project(model->mesh, index, all, map, layer::lowest, 0.1);
   }
 };
+
+TEST(ChartBlocks, HoldAllOfAChartAndAreAsThickAsItsRelief) {
+  dice d(8);
+  const looked_at s(true);
+  for (std::uint32_t t = 0; t < s.index.texels.size(); ++t) {
+    const texel_triangle& chart = s.index.texels[t];
+    for (int k = 0; k < 50; ++k) {
+      double a = d.between(0.0, 1.0), b = d.between(0.0, 1.0);
+      if (a + b > 1.0) a = 1.0 - a, b = 1.0 - b;
+      const vec2 z =
+          chart.corner[0] + a * (chart.corner[1] - chart.corner[0]) + b * (chart.corner[2] - chart.corner[0]);
+      const texture_block block = s.charts.block(t, z);
+      ASSERT_FALSE(block.empty);
+      const vec3 off = glm::abs(read(s.model->texture, z).point - block.centre);
+      ASSERT_TRUE(glm::all(glm::lessThanEqual(off, block.spare + 1e-12))) << "triangle " << t;
+      ASSERT_LT(glm::length(block.spare), 2e-3) << "the plate is 10 mm wide";
+    }
+  }
+}
 
 TEST(WindowPiece, HoldsEveryPointOfItsPartOfTheSurface) {
   dice d(7);
@@ -159,7 +180,7 @@ TEST(WindowPiece, HoldsEveryPointOfItsPartOfTheSurface) {
     const auto slots = static_cast<std::int32_t>(s.patch.triangles().size());
     ASSERT_GE(slots, 18);
     for (const parallax_mode mode : {parallax_mode::paper_lookup, parallax_mode::exact}) {
-      const searched_body body{s.view, s.pyramid, mode};
+      const searched_body body{s.view, s.pyramid, s.charts, mode};
       for (int i = 0; i < 4000; ++i) {
         const auto slot = static_cast<std::uint32_t>(d.below(slots));
         const texture_place at = any_place(d, s.model->texture, d.below(9) - 4);

@@ -1,25 +1,21 @@
 // Images of surfaces: what each format holds comes out as it is, and a broken file says how it is broken.
-#include <ImfChannelList.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
-#include <ImfOutputFile.h>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <gtest/gtest.h>
-#include <jpeglib.h>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "asperity/io/image_file.hpp"
 #include "scratch_folder.hpp"
+#include "support/image_writers.hpp"
 #include "support/png_image.hpp"
 
 namespace asperity {
 namespace {
 
+using test_support::exr_bytes;
+using test_support::jpeg_bytes;
 using test_support::png_image;
 using test_support::scratch_folder;
 
@@ -150,42 +146,24 @@ TEST(Tiff, SaysWhatIsBroken) {
     expect_error(load(good.substr(0, length)), error_code::bad_format, "cannot be read as TIFF");
 }
 
-std::string exr(const scratch_folder& folder, int width, int height, const std::vector<std::string>& channels,
-                std::vector<float> values) {
-  Imf::Header header(width, height);
-  Imf::FrameBuffer frame;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    header.channels().insert(channels[c], Imf::Channel(Imf::FLOAT));
-    frame.insert(channels[c],
-                 Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data() + c), sizeof(float) * channels.size(),
-                            sizeof(float) * channels.size() * static_cast<std::size_t>(width)));
-  }
-  {
-    Imf::OutputFile out(folder.file("made.exr").c_str(), header);
-    out.setFrameBuffer(frame);
-    out.writePixels(height);
-  }
-  return test_support::read_all(folder.file("made.exr"));
-}
-
 TEST(Exr, ReadsHeightsAndNormals) {
   const scratch_folder folder;
-  const map_image heights = loaded(folder, "h.exr", exr(folder, 2, 2, {"Y"}, {0.5F, -1e-4F, 3, 4}));
+  const map_image heights = loaded(folder, "h.exr", exr_bytes(2, 2, {"Y"}, {0.5F, -1e-4F, 3, 4}));
   EXPECT_EQ(heights.bits, 0U);
   EXPECT_EQ(heights.channels, 1U);
   EXPECT_EQ(heights.samples, (std::vector<float>{0.5F, -1e-4F, 3, 4}));
-  EXPECT_EQ(loaded(folder, "one.exr", exr(folder, 1, 1, {"depth"}, {7})).samples, std::vector<float>{7});
-  EXPECT_EQ(loaded(folder, "rgb.exr", exr(folder, 1, 1, {"R", "G", "B"}, {0.1F, 0.2F, 0.3F})).samples,
+  EXPECT_EQ(loaded(folder, "one.exr", exr_bytes(1, 1, {"depth"}, {7})).samples, std::vector<float>{7});
+  EXPECT_EQ(loaded(folder, "rgb.exr", exr_bytes(1, 1, {"R", "G", "B"}, {0.1F, 0.2F, 0.3F})).samples,
             (std::vector<float>{0.1F, 0.2F, 0.3F}));
 }
 
 TEST(Exr, SaysWhatIsBroken) {
   const scratch_folder folder;
   const auto load = [&](const std::string& bytes) { return io::load_image(folder.file("b.exr", bytes)); };
-  expect_error(load(exr(folder, 1, 1, {"Y"}, {std::numeric_limits<float>::infinity()})), error_code::bad_format,
+  expect_error(load(exr_bytes(1, 1, {"Y"}, {std::numeric_limits<float>::infinity()})), error_code::bad_format,
                "not a finite number");
-  expect_error(load(exr(folder, 1, 1, {"U", "V"}, {1, 2})), error_code::unsupported, "none of them R, G, B or Y");
-  const std::string good = exr(folder, 32, 32, {"Y"}, std::vector<float>(1024, 0.1F));
+  expect_error(load(exr_bytes(1, 1, {"U", "V"}, {1, 2})), error_code::unsupported, "none of them R, G, B or Y");
+  const std::string good = exr_bytes(32, 32, {"Y"}, std::vector<float>(1024, 0.1F));
   for (const std::size_t length : {std::size_t{8}, std::size_t{50}, good.size() / 2, good.size() - 3})
     expect_error(load(good.substr(0, length)), error_code::bad_format, "cannot be read as EXR");
   // The data window's lower right corner, planted far out: its name is in the file once.
@@ -197,37 +175,9 @@ TEST(Exr, SaysWhatIsBroken) {
   ASSERT_FALSE(refused);
 }
 
-std::string jpeg(int width, int height, int quality) {
-  jpeg_compress_struct c{};
-  jpeg_error_mgr errors{};
-  c.err = jpeg_std_error(&errors);
-  jpeg_create_compress(&c);
-  unsigned char* memory = nullptr;
-  unsigned long size = 0;
-  jpeg_mem_dest(&c, &memory, &size);
-  c.image_width = static_cast<JDIMENSION>(width);
-  c.image_height = static_cast<JDIMENSION>(height);
-  c.input_components = 3;
-  c.in_color_space = JCS_RGB;
-  jpeg_set_defaults(&c);
-  jpeg_set_quality(&c, quality, TRUE);
-  jpeg_start_compress(&c, TRUE);
-  std::vector<unsigned char> row;
-  for (int i = 0; i < width; ++i) row.insert(row.end(), {128, static_cast<unsigned char>(i), 250});
-  for (int j = 0; j < height; ++j) {
-    JSAMPROW at = row.data();
-    (void)jpeg_write_scanlines(&c, &at, 1);
-  }
-  jpeg_finish_compress(&c);
-  std::string out(reinterpret_cast<const char*>(memory), size);
-  jpeg_destroy_compress(&c);
-  std::free(memory);
-  return out;
-}
-
 TEST(Jpeg, ReadsColoursAndSaysWhatIsBroken) {
   const scratch_folder folder;
-  const std::string good = jpeg(64, 16, 100);
+  const std::string good = jpeg_bytes(64, 16, 100);
   const map_image image = loaded(folder, "n.jpg", good);
   ASSERT_EQ(image.channels, 3U);
   ASSERT_EQ(image.samples.size(), 64U * 16U * 3U);

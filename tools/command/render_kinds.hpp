@@ -1,0 +1,17 @@
+// The renderers that the command offers. Each is made in a file of its own, which compiles its ticks.
+#pragma once
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/scene.hpp"
+#include "chosen_renderer.hpp"
+#include "render_options.hpp"
+
+namespace asperity::command {
+
+using renderer_maker = result<chosen_renderer>(scene bodies, const render_options& options);
+
+renderer_maker make_shared_on_cpu;     // shared_on_cpu.cpp
+renderer_maker make_paper_on_cpu;      // paper_on_cpu.cpp
+renderer_maker make_paper_with_exact;  // paper_with_exact.cpp
+
+}  // namespace asperity::command
