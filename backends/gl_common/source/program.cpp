@@ -1,0 +1,92 @@
+#include "asperity/gl/program.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace asperity::gl {
+namespace {
+
+std::string first_lines(const std::string& log) {
+  std::size_t end = 0;
+  for (int i = 0; i < 4 && end != std::string::npos; ++i) end = log.find('\n', end == 0 ? 0 : end + 1);
+  std::string out = log.substr(0, end);
+  while (!out.empty() && (out.back() == '\n' || out.back() == '\0')) out.pop_back();
+  return out;
+}
+
+std::string preamble(const context_facts& facts) {
+  if (facts.dialect == dialect::core) return "#version 430 core\n";
+  const std::string version = facts.minor >= 2 ? "#version 320 es\n" : "#version 310 es\n";
+  return version + "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
+}
+
+/// The stage's text; `#line` numbers the files from 1, so that a driver's message can be told which file it means.
+std::string assemble(const context_facts& facts, const shader_stage& stage) {
+  std::string text = preamble(facts) + stage.definitions;
+  int number = 0;
+  for (const shader_source& s : stage.files) {
+    text += "#line 1 " + std::to_string(++number) + "\n" + std::string(s.text) + "\n";
+  }
+  return text;
+}
+
+std::string legend(const shader_stage& stage) {
+  std::string out = "files: 0 definitions";
+  int number = 0;
+  for (const shader_source& s : stage.files) out += ", " + std::to_string(++number) + " " + std::string(s.file);
+  return out;
+}
+
+/// A shader that goes with its scope.
+struct compiled {
+  const functions& gl;
+  GLuint name;
+  compiled(const functions& functions, GLenum stage) : gl(functions), name(gl.CreateShader(stage)) {}
+  ~compiled() { gl.DeleteShader(name); }
+  compiled(const compiled&) = delete;
+  compiled& operator=(const compiled&) = delete;
+};
+
+result<void> add_stage(const functions& gl, const context_facts& facts, const shader_stage& stage, GLuint program,
+                       const std::string& what) {
+  const std::string text = assemble(facts, stage);
+  const char* const start = text.c_str();
+  const compiled shader(gl, stage.stage);
+  gl.ShaderSource(shader.name, 1, &start, nullptr);
+  gl.CompileShader(shader.name);
+  GLint good = GL_FALSE;
+  gl.GetShaderiv(shader.name, GL_COMPILE_STATUS, &good);
+  if (good != GL_TRUE) {
+    GLint length = 0;
+    gl.GetShaderiv(shader.name, GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(std::max(length, 0)), '\0');
+    if (length > 0) gl.GetShaderInfoLog(shader.name, length, nullptr, log.data());
+    return error{error_code::unsupported, "OpenGL: " + facts.renderer + " does not compile the shader of " + what +
+                                              " (" + legend(stage) + "): " + first_lines(log)};
+  }
+  gl.AttachShader(program, shader.name);  // which keeps it after its own deletion
+  return {};
+}
+
+}  // namespace
+
+result<owned_name> make_program(const context_ptr& context, std::span<const shader_stage> stages,
+                                const std::string& what) {
+  const functions& gl = context->gl();
+  owned_name program = make_name(context, name_kind::program);
+  for (const shader_stage& stage : stages) {
+    if (const result<void> r = add_stage(gl, context->facts(), stage, program.get(), what); !r) return r.error();
+  }
+  gl.LinkProgram(program.get());
+  GLint good = GL_FALSE;
+  gl.GetProgramiv(program.get(), GL_LINK_STATUS, &good);
+  if (good == GL_TRUE) return program;
+  GLint length = 0;
+  gl.GetProgramiv(program.get(), GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<std::size_t>(std::max(length, 0)), '\0');
+  if (length > 0) gl.GetProgramInfoLog(program.get(), length, nullptr, log.data());
+  return error{error_code::unsupported, "OpenGL: " + context->facts().renderer + " does not link the program of " +
+                                            what + ": " + first_lines(log)};
+}
+
+}  // namespace asperity::gl
