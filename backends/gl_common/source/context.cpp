@@ -26,7 +26,8 @@ struct thread_guard {
 };
 thread_local thread_guard guard;
 
-EGLContext create(const egl_library& egl, EGLDisplay display, const version& v, bool robust) {
+/// @param why  EGL's error where the result is EGL_NO_CONTEXT
+EGLContext create(const egl_library& egl, EGLDisplay display, const version& v, bool robust, std::string& why) {
   std::array<EGLint, 12> attributes{EGL_CONTEXT_MAJOR_VERSION, v.major, EGL_CONTEXT_MINOR_VERSION, v.minor};
   std::size_t n = 4;
   if (v.dialect == dialect::core) {
@@ -42,6 +43,7 @@ EGLContext create(const egl_library& egl, EGLDisplay display, const version& v, 
   const EGLenum before = egl.QueryAPI();
   egl.BindAPI(v.dialect == dialect::core ? EGL_OPENGL_API : EGL_OPENGL_ES_API);
   const EGLContext handle = egl.CreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+  if (handle == EGL_NO_CONTEXT) why = last_error(egl);
   if (before != EGL_NONE) egl.BindAPI(before);
   return handle;
 }
@@ -93,13 +95,14 @@ result<context_ptr> open_on(const egl_library& egl, const display_source& source
     parts->display = *display;
     parts->facts.dialect = v.dialect;
     parts->facts.robust = true;
-    parts->handle = create(egl, *display, v, true);
+    std::string why;
+    parts->handle = create(egl, *display, v, true, why);
     if (parts->handle == EGL_NO_CONTEXT) {
       parts->facts.robust = false;
-      parts->handle = create(egl, *display, v, false);
+      parts->handle = create(egl, *display, v, false, why);
     }
     if (parts->handle == EGL_NO_CONTEXT) {
-      refused += (refused.empty() ? "" : ", ") + words(v) + " with " + last_error(egl);
+      refused += (refused.empty() ? "" : ", ") + words(v) + " with " + why;
       continue;
     }
     context_parts& inside = *parts;

@@ -20,21 +20,32 @@ std::string preamble(const context_facts& facts) {
   return version + "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
 }
 
-/// The stage's text; `#line` numbers the files from 1, so that a driver's message can be told which file it means.
+/// Files are told apart by their line numbers, because not every driver repeats the file number of a #line.
+constexpr int lines_per_file = 10'000;
+
 std::string assemble(const context_facts& facts, const shader_stage& stage) {
   std::string text = preamble(facts) + stage.definitions;
-  int number = 0;
+  int first = lines_per_file + 1;
   for (const shader_source& s : stage.files) {
-    text += "#line 1 " + std::to_string(++number) + "\n" + std::string(s.text) + "\n";
+    text += "#line " + std::to_string(first) + "\n" + std::string(s.text) + "\n";
+    first += lines_per_file;
   }
   return text;
 }
 
-std::string legend(const shader_stage& stage) {
-  std::string out = "files: 0 definitions";
-  int number = 0;
-  for (const shader_source& s : stage.files) out += ", " + std::to_string(++number) + " " + std::string(s.file);
-  return out;
+/// File and line of the first line number in a driver's message; empty where there is none.
+std::string place(const shader_stage& stage, const std::string& log) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  for (auto at = std::find_if(log.begin(), log.end(), is_digit); at != log.end();) {
+    const auto end = std::find_if_not(at, log.end(), is_digit);
+    const int number = end - at < 8 ? std::stoi(std::string(at, end)) : 0;
+    const auto file = static_cast<std::size_t>(number / lines_per_file);
+    if (file > 0 && file <= stage.files.size()) {
+      return std::string(stage.files[file - 1].file) + " line " + std::to_string(number % lines_per_file) + ": ";
+    }
+    at = std::find_if(end, log.end(), is_digit);
+  }
+  return {};
 }
 
 /// A shader that goes with its scope.
@@ -62,7 +73,7 @@ result<void> add_stage(const functions& gl, const context_facts& facts, const sh
     std::string log(static_cast<std::size_t>(std::max(length, 0)), '\0');
     if (length > 0) gl.GetShaderInfoLog(shader.name, length, nullptr, log.data());
     return error{error_code::unsupported, "OpenGL: " + facts.renderer + " does not compile the shader of " + what +
-                                              " (" + legend(stage) + "): " + first_lines(log)};
+                                              ": " + place(stage, log) + first_lines(log)};
   }
   gl.AttachShader(program, shader.name);  // which keeps it after its own deletion
   return {};

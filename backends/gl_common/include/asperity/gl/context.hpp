@@ -31,7 +31,7 @@ enum class dialect : std::uint8_t {
 struct context_options {
   /// Empty: the first device that works, real ones before software. Otherwise the index or a part of the name of a
   /// device of list_devices().
-  std::string device;
+  std::string device{};
   gl::dialect dialect = dialect::automatic;
   /// Most memory that textures and buffers of this context may take on the device, bytes; 0: what the device has.
   std::size_t memory_limit_bytes = 0;
