@@ -1,0 +1,141 @@
+// From the coarse hit over a sample to the textured surface there: height_lookup.hpp, step by step.
+
+const int hit_none = 0;    // no surface, or a texel that is no position
+const int hit_beside = 1;  // the texel of the coarse hit: its point may lie beside the sample
+const int hit_above = 2;   // the point of the textured surface over the sample
+
+struct surface_hit {
+  int kind;
+  real height;
+  ivec2 base;  // texel that `texel` is counted from
+  rvec2 texel;
+  rvec3 point, along_x, along_y;  // of the textured surface at `texel`
+};
+
+// Bilinear patch between four texel centres, in window coordinates.
+struct texture_cell {
+  rvec3 corner, along_x, along_y, twist;
+  ivec2 place;      // texel of the lower corner
+  bvec2 low, high;  // the image ends there
+  bool whole;       // all four texels are positions
+};
+
+vec4 texel_of(bool fixed_body, ivec2 at) {
+  return fixed_body ? texelFetch(texture_b, at, 0) : texelFetch(texture_a, at, 0);
+}
+
+texture_cell read_cell(bool fixed_body, window_map map, ivec2 base, rvec2 z) {
+  ivec2 size = fixed_body ? textureSize(texture_b, 0) : textureSize(texture_a, 0);
+  ivec2 last = max(size - 2, ivec2(0));
+  ivec2 next = min(size - 1, ivec2(1));
+  texture_cell c;
+  c.place = clamp(base + ivec2(floor(clamp(z, rvec2(-1e6), rvec2(1e6)))), ivec2(0), last);
+  c.low = equal(c.place, ivec2(0));
+  c.high = equal(c.place, last);
+  vec4 t00 = texel_of(fixed_body, c.place);
+  vec4 t10 = texel_of(fixed_body, c.place + ivec2(next.x, 0));
+  vec4 t01 = texel_of(fixed_body, c.place + ivec2(0, next.y));
+  vec4 t11 = texel_of(fixed_body, c.place + next);
+  c.whole = t00.w * t10.w * t01.w * t11.w > 0.5;
+  c.corner = point(map, t00.xyz);
+  c.along_x = direction(map, rvec3(t10.xyz) - rvec3(t00.xyz));
+  c.along_y = direction(map, rvec3(t01.xyz) - rvec3(t00.xyz));
+  c.twist = direction(map, (rvec3(t11.xyz) - rvec3(t01.xyz)) - (rvec3(t10.xyz) - rvec3(t00.xyz)));
+  return c;
+}
+
+bool holds(texture_cell c, ivec2 base, rvec2 z) {
+  rvec2 from = rvec2(c.place - base);
+  return (z.x >= from.x || c.low.x) && (z.x <= from.x + real(1.0) || c.high.x) && (z.y >= from.y || c.low.y) &&
+         (z.y <= from.y + real(1.0) || c.high.y);
+}
+
+surface_hit hit_at(texture_cell c, ivec2 base, rvec2 z) {
+  rvec2 f = clamp(z - rvec2(c.place - base), rvec2(0.0), rvec2(1.0));
+  surface_hit h;
+  h.along_x = c.along_x + f.y * c.twist;
+  h.along_y = c.along_y + f.x * c.twist;
+  h.point = c.corner + f.x * h.along_x + f.y * c.along_y;
+  h.base = base;
+  h.texel = z;
+  h.kind = hit_beside;
+  h.height = h.point.z;
+  return h;
+}
+
+surface_hit no_hit() {
+  return surface_hit(hit_none, real(0.0), ivec2(0), rvec2(0.0), rvec3(0.0), rvec3(0.0), rvec3(0.0));
+}
+
+// Where a body's triangles stand.
+struct patch_place {
+  int numbers, integers;
+};
+
+rvec2 coarse_texel(int triangle, rvec2 uv) {
+  return rvec2(affine(triangle + TRIANGLE_TEXEL_X, uv), affine(triangle + TRIANGLE_TEXEL_Y, uv));
+}
+
+ivec2 base_of(int triangle_integers) {
+  return ivec2(integers[triangle_integers], integers[triangle_integers + 1]);
+}
+
+surface_hit look_beside(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
+  ivec2 base = base_of(place.integers + owner * TRIANGLE_INTEGERS);
+  rvec2 z = coarse_texel(place.numbers + owner * TRIANGLE_NUMBERS, uv);
+  texture_cell cell = read_cell(fixed_body, map, base, z);
+  surface_hit h = hit_at(cell, base, z);
+  if (!cell.whole) h = no_hit();
+  return h;
+}
+
+#ifdef EXACT_PARALLAX
+surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
+  int triangle = place.numbers + owner * TRIANGLE_NUMBERS;
+  int whole_numbers = place.integers + owner * TRIANGLE_INTEGERS;
+  ivec2 base = base_of(whole_numbers);
+  rvec2 z = coarse_texel(triangle, uv);
+  texture_cell cell = read_cell(fixed_body, map, base, z);
+  for (int step = 0; step < 12; ++step) {
+    if (!holds(cell, base, z)) cell = read_cell(fixed_body, map, base, z);
+    if (!cell.whole) return no_hit();
+    surface_hit h = hit_at(cell, base, z);
+    real det = h.along_x.x * h.along_y.y - h.along_x.y * h.along_y.x;
+    real coarse_det = numbers[triangle + TRIANGLE_TEXEL_X + 1] * numbers[triangle + TRIANGLE_TEXEL_Y + 2] -
+                      numbers[triangle + TRIANGLE_TEXEL_X + 2] * numbers[triangle + TRIANGLE_TEXEL_Y + 1];
+    if (!(det * coarse_det > real(0.02))) break;  // a fold
+    rvec2 miss = uv - h.point.xy;
+    rvec2 dz = rvec2(h.along_y.y * miss.x - h.along_y.x * miss.y, h.along_x.x * miss.y - h.along_x.y * miss.x) / det;
+    // Rounding may keep single precision from the last digits: what it got to in twelve steps is near enough.
+    real tolerance = step < 11 ? real(TOLERANCE) : real(LAST_TOLERANCE);
+    if (abs(miss.x) <= tolerance && abs(miss.y) <= tolerance) {
+      h.kind = hit_above;
+      h.height = h.point.z + h.along_x.z * dz.x + h.along_y.z * dz.y;
+      return h;
+    }
+    z += dz;
+
+    int weight = triangle + TRIANGLE_WEIGHTS;
+    rvec3 bary = rvec3(affine(weight, z), affine(weight + 3, z), affine(weight + 6, z));
+    rvec3 outside = bary * numbers3(triangle + TRIANGLE_ALTITUDES);
+    int outermost = outside.x <= outside.y && outside.x <= outside.z ? 0 : (outside.y <= outside.z ? 1 : 2);
+    if (outside[outermost] >= real(-1.0)) continue;
+    int next = integers[whole_numbers + 2 + (outermost + 1) % 3];
+    if (next < 0) break;
+    int corner = triangle + TRIANGLE_CORNERS;
+    rvec2 coarse = bary.x * rvec2(numbers[corner], numbers[corner + 1]) +
+                   bary.y * rvec2(numbers[corner + 2], numbers[corner + 3]) +
+                   bary.z * rvec2(numbers[corner + 4], numbers[corner + 5]);
+    triangle = place.numbers + next * TRIANGLE_NUMBERS;
+    whole_numbers = place.integers + next * TRIANGLE_INTEGERS;
+    base = base_of(whole_numbers);
+    z = coarse_texel(triangle, coarse);
+    cell = read_cell(fixed_body, map, base, z);
+  }
+  return look_beside(fixed_body, map, place, owner, uv);
+}
+#else
+surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
+  return look_beside(fixed_body, map, place, owner, uv);
+}
+#endif
