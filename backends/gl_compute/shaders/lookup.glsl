@@ -1,5 +1,7 @@
 // From the coarse hit over a sample to the textured surface there: height_lookup.hpp, step by step.
 
+#define SEARCH_STEPS 12
+
 const int hit_none = 0;    // no surface, or a texel that is no position
 const int hit_beside = 1;  // the texel of the coarse hit: its point may lie beside the sample
 const int hit_above = 2;   // the point of the textured surface over the sample
@@ -76,66 +78,67 @@ rvec2 coarse_texel(int triangle, rvec2 uv) {
   return rvec2(affine(triangle + TRIANGLE_TEXEL_X, uv), affine(triangle + TRIANGLE_TEXEL_Y, uv));
 }
 
-ivec2 base_of(int triangle_integers) {
-  return ivec2(integers[triangle_integers], integers[triangle_integers + 1]);
-}
-
-surface_hit look_beside(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
-  ivec2 base = base_of(place.integers + owner * TRIANGLE_INTEGERS);
-  rvec2 z = coarse_texel(place.numbers + owner * TRIANGLE_NUMBERS, uv);
-  texture_cell cell = read_cell(fixed_body, map, base, z);
-  surface_hit h = hit_at(cell, base, z);
-  if (!cell.whole) h = no_hit();
-  return h;
-}
-
-#ifdef EXACT_PARALLAX
+// There is one place that reads texels, for both bodies and both ways of looking up: a shader is compiled as often as it
+// names them.
 surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
   int triangle = place.numbers + owner * TRIANGLE_NUMBERS;
-  int whole_numbers = place.integers + owner * TRIANGLE_INTEGERS;
-  ivec2 base = base_of(whole_numbers);
+  int triangle_whole = place.integers + owner * TRIANGLE_INTEGERS;
+  ivec2 base = ivec2(integers[triangle_whole], integers[triangle_whole + 1]);
   rvec2 z = coarse_texel(triangle, uv);
-  texture_cell cell = read_cell(fixed_body, map, base, z);
-  for (int step = 0; step < 12; ++step) {
-    if (!holds(cell, base, z)) cell = read_cell(fixed_body, map, base, z);
-    if (!cell.whole) return no_hit();
+#ifdef EXACT_PARALLAX
+  bool beside = false;  // the paper's lookup, which needs no search, or stands in where the search ends
+#else
+  bool beside = true;
+#endif
+  texture_cell cell;
+  for (int step = 0; step <= SEARCH_STEPS; ++step) {
+    if (step == 0 || !holds(cell, base, z)) cell = read_cell(fixed_body, map, base, z);
+    if (!cell.whole) break;
     surface_hit h = hit_at(cell, base, z);
+    if (beside) return h;
     real det = h.along_x.x * h.along_y.y - h.along_x.y * h.along_y.x;
     real coarse_det = numbers[triangle + TRIANGLE_TEXEL_X + 1] * numbers[triangle + TRIANGLE_TEXEL_Y + 2] -
                       numbers[triangle + TRIANGLE_TEXEL_X + 2] * numbers[triangle + TRIANGLE_TEXEL_Y + 1];
-    if (!(det * coarse_det > real(0.02))) break;  // a fold
-    rvec2 miss = uv - h.point.xy;
-    rvec2 dz = rvec2(h.along_y.y * miss.x - h.along_y.x * miss.y, h.along_x.x * miss.y - h.along_x.y * miss.x) / det;
-    // Rounding may keep single precision from the last digits: what it got to in twelve steps is near enough.
-    real tolerance = step < 11 ? real(TOLERANCE) : real(LAST_TOLERANCE);
-    if (abs(miss.x) <= tolerance && abs(miss.y) <= tolerance) {
-      h.kind = hit_above;
-      h.height = h.point.z + h.along_x.z * dz.x + h.along_y.z * dz.y;
-      return h;
+    beside = !(det * coarse_det > real(0.02));  // a fold
+    if (!beside) {
+      rvec2 miss = uv - h.point.xy;
+      rvec2 dz =
+          rvec2(h.along_y.y * miss.x - h.along_y.x * miss.y, h.along_x.x * miss.y - h.along_x.y * miss.x) / det;
+      // Rounding may keep single precision from the last digits: what it got to in the last step is near enough.
+      real tolerance = step + 1 < SEARCH_STEPS ? real(TOLERANCE) : real(LAST_TOLERANCE);
+      if (abs(miss.x) <= tolerance && abs(miss.y) <= tolerance) {
+        h.kind = hit_above;
+        h.height = h.point.z + h.along_x.z * dz.x + h.along_y.z * dz.y;
+        return h;
+      }
+      z += dz;
+      beside = step + 1 == SEARCH_STEPS;
     }
-    z += dz;
 
     int weight = triangle + TRIANGLE_WEIGHTS;
     rvec3 bary = rvec3(affine(weight, z), affine(weight + 3, z), affine(weight + 6, z));
     rvec3 outside = bary * numbers3(triangle + TRIANGLE_ALTITUDES);
     int outermost = outside.x <= outside.y && outside.x <= outside.z ? 0 : (outside.y <= outside.z ? 1 : 2);
-    if (outside[outermost] >= real(-1.0)) continue;
-    int next = integers[whole_numbers + 2 + (outermost + 1) % 3];
-    if (next < 0) break;
-    int corner = triangle + TRIANGLE_CORNERS;
-    rvec2 coarse = bary.x * rvec2(numbers[corner], numbers[corner + 1]) +
-                   bary.y * rvec2(numbers[corner + 2], numbers[corner + 3]) +
-                   bary.z * rvec2(numbers[corner + 4], numbers[corner + 5]);
-    triangle = place.numbers + next * TRIANGLE_NUMBERS;
-    whole_numbers = place.integers + next * TRIANGLE_INTEGERS;
-    base = base_of(whole_numbers);
-    z = coarse_texel(triangle, coarse);
-    cell = read_cell(fixed_body, map, base, z);
+    if (!beside && outside[outermost] < real(-1.0)) {
+      int next = integers[triangle_whole + 2 + (outermost + 1) % 3];
+      beside = next < 0;
+      if (!beside) {
+        int corner = triangle + TRIANGLE_CORNERS;
+        rvec2 coarse = bary.x * rvec2(numbers[corner], numbers[corner + 1]) +
+                       bary.y * rvec2(numbers[corner + 2], numbers[corner + 3]) +
+                       bary.z * rvec2(numbers[corner + 4], numbers[corner + 5]);
+        triangle = place.numbers + next * TRIANGLE_NUMBERS;
+        triangle_whole = place.integers + next * TRIANGLE_INTEGERS;
+        base = ivec2(integers[triangle_whole], integers[triangle_whole + 1]);
+        z = coarse_texel(triangle, coarse);
+      }
+    }
+    if (beside) {
+      triangle = place.numbers + owner * TRIANGLE_NUMBERS;
+      triangle_whole = place.integers + owner * TRIANGLE_INTEGERS;
+      base = ivec2(integers[triangle_whole], integers[triangle_whole + 1]);
+      z = coarse_texel(triangle, uv);
+    }
   }
-  return look_beside(fixed_body, map, place, owner, uv);
+  return no_hit();
 }
-#else
-surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
-  return look_beside(fixed_body, map, place, owner, uv);
-}
-#endif

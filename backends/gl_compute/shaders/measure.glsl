@@ -105,15 +105,29 @@ void main() {
     if (owner_b == NO_OWNER || (owner_a == NO_OWNER && !all_of_b)) continue;
     int column = i % side, row = i / side;
     rvec2 uv = rvec2(coordinate(column), coordinate(row));
-    surface_hit b = look_up(true, map_b, place_b, owner_b, uv);
-    if (b.kind == hit_none) counts.z = 1;
-    if (b.kind == hit_none || owner_a == NO_OWNER) continue;
-    surface_hit a = look_up(false, map_a, place_a, owner_a, uv);
-    if (a.kind == hit_none) {
-      counts.z = 1;
-      continue;
+    surface_hit a = no_hit();
+    real height_b = real(0.0);
+    // The fixed body first: without it there is nothing to look up on the probe.
+    for (int body = 1; body >= 0; --body) {
+      bool fixed_body = body == 1;
+      int owner = fixed_body ? owner_b : owner_a;
+      if (owner == NO_OWNER) break;
+      window_map map = map_a;
+      patch_place place = place_a;
+      if (fixed_body) {
+        map = map_b;
+        place = place_b;
+      }
+      surface_hit h = look_up(fixed_body, map, place, owner, uv);
+      if (h.kind == hit_none) {
+        counts.z = 1;
+        break;
+      }
+      if (fixed_body) height_b = h.height;
+      if (!fixed_body) a = h;
     }
-    real d = a.height - b.height;
+    if (a.kind == hit_none) continue;
+    real d = a.height - height_b;
     counts.x += 1;
     if (goes_before(d, i, best, best_index)) {
       best = d;
