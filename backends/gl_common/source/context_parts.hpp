@@ -2,10 +2,13 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "asperity/gl/context.hpp"
 #include "asperity/gl/functions.hpp"
+#include "asperity/gl/names.hpp"
 #include "egl_library.hpp"
 
 namespace asperity::gl {
@@ -19,6 +22,8 @@ struct context_parts {
   functions gl;
   context_facts facts;
   std::vector<std::weak_ptr<const uploaded_model>> models;  ///< what upload() knows
+  std::vector<std::pair<std::string, std::weak_ptr<const owned_name>>>
+      programs;  ///< what share_program() knows, by text
 };
 
 /// Newest first: core 4.5 to 4.3, then ES 3.2 and 3.1, as far as `wanted` allows.

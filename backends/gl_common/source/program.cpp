@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "context_parts.hpp"
+
 namespace asperity::gl {
 namespace {
 
@@ -80,6 +82,22 @@ result<void> add_stage(const functions& gl, const context_facts& facts, const sh
 }
 
 }  // namespace
+
+result<program_ptr> share_program(const context_ptr& context, std::span<const shader_stage> stages,
+                                  const std::string& what) {
+  std::string text;
+  for (const shader_stage& s : stages) text += std::to_string(s.stage) + "\n" + assemble(context->facts(), s);
+  auto& known = context->parts().programs;
+  std::erase_if(known, [](const auto& p) { return p.second.expired(); });
+  for (const auto& [its_text, program] : known) {
+    if (program_ptr there = program.lock(); there != nullptr && its_text == text) return there;
+  }
+  result<owned_name> made = make_program(context, stages, what);
+  if (!made) return made.error();
+  auto out = std::make_shared<const owned_name>(*std::move(made));
+  known.emplace_back(std::move(text), out);
+  return out;
+}
 
 result<owned_name> make_program(const context_ptr& context, std::span<const shader_stage> stages,
                                 const std::string& what) {

@@ -56,7 +56,7 @@ struct compute_depth::parts {
   std::size_t groups = 0;  ///< per job
   uploaded_ptr probe;
   std::vector<uploaded_ptr> fixed;
-  owned_name program;
+  program_ptr program;
   GLint first_job = 0, side = 0;  ///< uniforms
   mapped_buffer numbers, integers, results;
   std::vector<contact_jobs> placed;
@@ -145,11 +145,11 @@ result<compute_depth> compute_depth::make(context_ptr context, const scene& s, c
   const shader_stage stage{GL_COMPUTE_SHADER,
                            definitions_of(settings, p->doubles, facts),
                            {shaders::window_glsl, shaders::lookup_glsl, shaders::taper_glsl, shaders::measure_glsl}};
-  result<owned_name> program = make_program(context, std::span(&stage, 1), "the compute depth");
+  result<program_ptr> program = share_program(context, std::span(&stage, 1), "the compute depth");
   if (!program) return program.error();
-  p->program = *std::move(program);
-  p->first_job = context->gl().GetUniformLocation(p->program.get(), "first_job");
-  p->side = context->gl().GetUniformLocation(p->program.get(), "side");
+  p->program = *program;
+  p->first_job = context->gl().GetUniformLocation(p->program->get(), "first_job");
+  p->side = context->gl().GetUniformLocation(p->program->get(), "side");
   if (const std::string errors = take_errors(context->gl()); !errors.empty()) {
     return error{error_code::unsupported, "compute depth: " + facts.renderer + " reports " + errors};
   }
@@ -186,7 +186,7 @@ status compute_depth::parts::measure(const contact_set& contacts, std::span<pene
   integer_list to_integers(integers.as<std::int32_t>(), contacts.size() * jobs_each);
   placed.clear();
   const functions& gl = context->gl();
-  gl.UseProgram(program.get());
+  gl.UseProgram(program->get());
   gl.Uniform1i(side, static_cast<GLint>(writer.settings().grid));
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, probe->texture.get());

@@ -142,7 +142,8 @@ penetration read_back(const job_writer& writer, const number_list& results, std:
   out.samples = here.samples;
   out.area_m2 = here.samples * grid.cell_m2();
   const detail::window_map map_a(c.window, T_wa);
-  out.witness_w = detail::to_world(c.window, map_a.point(detail::read(writer.bodies().probe->texture, here.texel).point));
+  out.witness_w =
+      detail::to_world(c.window, map_a.point(detail::read(writer.bodies().probe->texture, here.texel).point));
   if (here.inner_samples == 0 || out.depth_m > half * here.inner_depth + 0.1 * pair.tau_m) {
     out.flags |= depth_flag::window_too_small;
   }

@@ -1,6 +1,7 @@
 // Programs made from GLSL that was built into the library.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,5 +30,11 @@ struct shader_stage {
 /// @return unsupported, with the driver's first lines and the files that its line numbers are about
 [[nodiscard]] result<owned_name> make_program(const context_ptr& context, std::span<const shader_stage> stages,
                                               const std::string& what);
+
+/// The same program for everybody in a context who asks for the same text, as long as anyone holds it: compiling takes
+/// far longer than a tick.
+using program_ptr = std::shared_ptr<const owned_name>;
+[[nodiscard]] result<program_ptr> share_program(const context_ptr& context, std::span<const shader_stage> stages,
+                                                const std::string& what);
 
 }  // namespace asperity::gl
