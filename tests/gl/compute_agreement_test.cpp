@@ -59,7 +59,7 @@ struct patch_kind {
   std::uint32_t cells_x, cells_y, texels;
 };
 constexpr std::array<patch_kind, 8> kinds{
-    {{1, 1, 64}, {1, 1, 512}, {2, 1, 128}, {2, 2, 256}, {3, 2, 96}, {3, 3, 384}, {4, 4, 192}, {5, 4, 320}}};
+    {{1, 1, 64}, {1, 1, 256}, {2, 1, 128}, {2, 2, 256}, {3, 2, 96}, {3, 3, 224}, {4, 4, 192}, {5, 4, 200}}};
 
 void run(const char* name, const context_ptr& context, const depth_settings& settings, arithmetic a,
          std::size_t contacts_each, const bounds_of& allowed) {

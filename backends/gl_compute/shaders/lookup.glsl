@@ -74,32 +74,50 @@ struct patch_place {
   int numbers, integers;
 };
 
-rvec2 coarse_texel(int triangle, rvec2 uv) {
-  return rvec2(affine(triangle + TRIANGLE_TEXEL_X, uv), affine(triangle + TRIANGLE_TEXEL_Y, uv));
+// What a search keeps at hand of the triangle that it is in.
+struct chart {
+  int numbers, integers;
+  ivec2 base;
+  rvec3 outside_0, outside_1, outside_2;  // distance from each edge, texels, as affine functions of the texel
+  real det;                               // texels^2 per area across the window
+};
+
+rvec3 distances(chart c, rvec2 z) {
+  rvec3 at = rvec3(real(1.0), z);
+  return rvec3(dot(c.outside_0, at), dot(c.outside_1, at), dot(c.outside_2, at));
 }
 
-// There is one place that reads texels, for both bodies and both ways of looking up: a shader is compiled as often as it
-// names them.
+// Point of the textured surface over a sample, or beside it. There is one place that reads a triangle and one that reads
+// texels, for both bodies and both ways of looking up: a shader is compiled as often as it names them.
 surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
-  int triangle = place.numbers + owner * TRIANGLE_NUMBERS;
-  int triangle_whole = place.integers + owner * TRIANGLE_INTEGERS;
-  ivec2 base = ivec2(integers[triangle_whole], integers[triangle_whole + 1]);
-  rvec2 z = coarse_texel(triangle, uv);
 #ifdef EXACT_PARALLAX
   bool beside = false;  // the paper's lookup, which needs no search, or stands in where the search ends
 #else
   bool beside = true;
 #endif
+  int enter = owner;  // the triangle to go on in, at the coarse point over `at`
+  rvec2 at = uv, z = rvec2(0.0);
+  chart c;
   texture_cell cell;
   for (int step = 0; step <= SEARCH_STEPS; ++step) {
-    if (step == 0 || !holds(cell, base, z)) cell = read_cell(fixed_body, map, base, z);
+    if (enter >= 0) {
+      c.numbers = place.numbers + enter * TRIANGLE_NUMBERS;
+      c.integers = place.integers + enter * TRIANGLE_INTEGERS;
+      c.base = ivec2(integers[c.integers], integers[c.integers + 1]);
+      rvec3 x = numbers3(c.numbers + TRIANGLE_TEXEL_X), y = numbers3(c.numbers + TRIANGLE_TEXEL_Y);
+      z = rvec2(x.x + at.x * x.y + at.y * x.z, y.x + at.x * y.y + at.y * y.z);
+      c.det = x.y * y.z - x.z * y.y;
+      c.outside_0 = numbers3(c.numbers + TRIANGLE_OUTSIDE);
+      c.outside_1 = numbers3(c.numbers + TRIANGLE_OUTSIDE + 3);
+      c.outside_2 = numbers3(c.numbers + TRIANGLE_OUTSIDE + 6);
+      enter = -1;
+    }
+    if (step == 0 || !holds(cell, c.base, z)) cell = read_cell(fixed_body, map, c.base, z);
     if (!cell.whole) break;
-    surface_hit h = hit_at(cell, base, z);
+    surface_hit h = hit_at(cell, c.base, z);
     if (beside) return h;
     real det = h.along_x.x * h.along_y.y - h.along_x.y * h.along_y.x;
-    real coarse_det = numbers[triangle + TRIANGLE_TEXEL_X + 1] * numbers[triangle + TRIANGLE_TEXEL_Y + 2] -
-                      numbers[triangle + TRIANGLE_TEXEL_X + 2] * numbers[triangle + TRIANGLE_TEXEL_Y + 1];
-    beside = !(det * coarse_det > real(0.02));  // a fold
+    beside = !(det * c.det > real(0.02));  // a fold
     if (!beside) {
       rvec2 miss = uv - h.point.xy;
       rvec2 dz =
@@ -112,32 +130,23 @@ surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owne
         return h;
       }
       z += dz;
+      rvec3 outside = distances(c, z);
+      int outermost = outside.x <= outside.y && outside.x <= outside.z ? 0 : (outside.y <= outside.z ? 1 : 2);
+      real farthest = min(outside.x, min(outside.y, outside.z));
       beside = step + 1 == SEARCH_STEPS;
-    }
-
-    int weight = triangle + TRIANGLE_WEIGHTS;
-    rvec3 bary = rvec3(affine(weight, z), affine(weight + 3, z), affine(weight + 6, z));
-    rvec3 outside = bary * numbers3(triangle + TRIANGLE_ALTITUDES);
-    int outermost = outside.x <= outside.y && outside.x <= outside.z ? 0 : (outside.y <= outside.z ? 1 : 2);
-    if (!beside && outside[outermost] < real(-1.0)) {
-      int next = integers[triangle_whole + 2 + (outermost + 1) % 3];
-      beside = next < 0;
-      if (!beside) {
-        int corner = triangle + TRIANGLE_CORNERS;
-        rvec2 coarse = bary.x * rvec2(numbers[corner], numbers[corner + 1]) +
-                       bary.y * rvec2(numbers[corner + 2], numbers[corner + 3]) +
-                       bary.z * rvec2(numbers[corner + 4], numbers[corner + 5]);
-        triangle = place.numbers + next * TRIANGLE_NUMBERS;
-        triangle_whole = place.integers + next * TRIANGLE_INTEGERS;
-        base = ivec2(integers[triangle_whole], integers[triangle_whole + 1]);
-        z = coarse_texel(triangle, coarse);
+      if (!beside && farthest < real(-1.0)) {
+        enter = integers[c.integers + 2 + (outermost + 1) % 3];
+        beside = enter < 0;
+        rvec3 bary = outside / numbers3(c.numbers + TRIANGLE_ALTITUDES);
+        int corner = c.numbers + TRIANGLE_CORNERS;
+        at = bary.x * rvec2(numbers[corner], numbers[corner + 1]) +
+             bary.y * rvec2(numbers[corner + 2], numbers[corner + 3]) +
+             bary.z * rvec2(numbers[corner + 4], numbers[corner + 5]);
       }
     }
     if (beside) {
-      triangle = place.numbers + owner * TRIANGLE_NUMBERS;
-      triangle_whole = place.integers + owner * TRIANGLE_INTEGERS;
-      base = ivec2(integers[triangle_whole], integers[triangle_whole + 1]);
-      z = coarse_texel(triangle, uv);
+      enter = owner;
+      at = uv;
     }
   }
   return no_hit();

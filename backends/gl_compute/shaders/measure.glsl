@@ -7,6 +7,7 @@
 layout(local_size_x = GROUP_SIZE) in;
 
 shared real shared_depth[GROUP_SIZE];
+shared real shared_radius2[GROUP_SIZE];
 shared int shared_index[GROUP_SIZE];
 shared int shared_winner;
 shared ivec3 shared_counts[GROUP_SIZE];  // samples, inner samples, bad ones
@@ -14,13 +15,16 @@ shared real shared_inner[GROUP_SIZE];
 
 const real nothing = real(-1e30);
 
-// True where sample (d, i) goes before (e, j): deeper, of equals nearer to the centre, then of lower index.
-bool goes_before(real d, int i, real e, int j) {
-  if (j < 0) return i >= 0;
-  if (i < 0 || d != e) return i >= 0 && d > e;
-  rvec2 p = rvec2(coordinate(i % side), coordinate(i / side)), q = rvec2(coordinate(j % side), coordinate(j / side));
-  real r = dot(p, p), s = dot(q, q);
-  return r < s || (r == s && i < j);
+// A sample's claim to be the deepest: deeper, of equals nearer to the centre, then of lower index.
+struct claim {
+  real depth, radius2;
+  int index;  // -1: none
+};
+
+bool goes_before(claim a, claim b) {
+  if (a.index < 0 || b.index < 0) return a.index >= 0;
+  if (a.depth != b.depth) return a.depth > b.depth;
+  return a.radius2 < b.radius2 || (a.radius2 == b.radius2 && a.index < b.index);
 }
 
 int owner_of(int map, int i) {
@@ -85,8 +89,8 @@ void main() {
   int owners_a = integers[job + JOB_OWNERS_A], owners_b = integers[job + JOB_OWNERS_B];
   bool all_of_b = integers[job + JOB_ALL_OF_B] != 0;
 #ifdef SOFT_MAX
-  int edges_a = integers[job + JOB_EDGES_A], count_a = integers[job + JOB_EDGE_COUNT_A];
-  int edges_b = integers[job + JOB_EDGES_B], count_b = integers[job + JOB_EDGE_COUNT_B];
+  int edges = integers[job + JOB_EDGES], edges_a = integers[job + JOB_EDGE_COUNT_A];
+  int edges_both = edges_a + integers[job + JOB_EDGE_COUNT_B];
   real tau = numbers[header + HEADER_TAU], width = numbers[header + HEADER_TAPER];
   soft_sum soft;
   soft.top = nothing;
@@ -95,8 +99,8 @@ void main() {
 
   int local = int(gl_LocalInvocationID.x);
   int first = int(gl_WorkGroupID.x) * GROUP_SAMPLES;
-  real best = nothing, best_inner = nothing;
-  int best_index = -1;
+  claim best = claim(nothing, real(0.0), -1);
+  real best_inner = nothing;
   ivec2 best_base = ivec2(0);
   rvec2 best_texel = rvec2(0.0);
   ivec3 counts = ivec3(0);
@@ -129,9 +133,9 @@ void main() {
     if (a.kind == hit_none) continue;
     real d = a.height - height_b;
     counts.x += 1;
-    if (goes_before(d, i, best, best_index)) {
-      best = d;
-      best_index = i;
+    claim mine = claim(d, dot(uv, uv), i);
+    if (goes_before(mine, best)) {
+      best = mine;
       best_base = a.base;
       best_texel = a.texel;
     }
@@ -144,22 +148,24 @@ void main() {
     real mu = border_value(uv, width) * numbers[triangle_a + TRIANGLE_FACING] *
               numbers[place_b.numbers + owner_b * TRIANGLE_NUMBERS + TRIANGLE_FACING];
     if (!(mu > real(0.0))) continue;
-    mu *= edges_value(edges_a, count_a, uv, width);
-    mu *= edges_value(edges_b, count_b, uv, width);
+    rvec3 fade_linear = rvec3(0.0), fade_angular = rvec3(0.0);
+    mu *= edges_value(edges, edges_a, edges_both, uv, width, tau, fade_linear, fade_angular);
     if (!(mu > real(SMALLEST_WEIGHT))) continue;
     real effective = d + (mu < real(1.0) ? tau * real(log(float(mu))) : real(0.0));
     if ((effective - soft.top) < real(-40.0) * tau) continue;
     rvec3 linear, angular;
     height_gradient(a, triangle_a, uv, linear, angular);
 #ifdef TAPER_GRADIENT
-    add_log_gradient(triangle_a, edges_a, count_a, uv, width, tau, linear, angular);
+    linear += fade_linear;
+    angular += fade_angular + tau * numbers3(triangle_a + TRIANGLE_FACING_TURN);
 #endif
     add_sample(soft, effective, tau, linear, angular);
 #endif
   }
 
-  shared_depth[local] = best;
-  shared_index[local] = best_index;
+  shared_depth[local] = best.depth;
+  shared_radius2[local] = best.radius2;
+  shared_index[local] = best.index;
   shared_counts[local] = counts;
   shared_inner[local] = best_inner;
 #ifdef SOFT_MAX
@@ -169,10 +175,15 @@ void main() {
   int to = ((first_job + int(gl_WorkGroupID.y)) * int(gl_NumWorkGroups.x) + int(gl_WorkGroupID.x)) * RESULT_NUMBERS;
   if (local == 0) {
     int winner = 0;
+    claim won = best;
     ivec3 sum = ivec3(0);
     real inner = nothing;
     for (int k = 0; k < GROUP_SIZE; ++k) {
-      if (goes_before(shared_depth[k], shared_index[k], shared_depth[winner], shared_index[winner])) winner = k;
+      claim other = claim(shared_depth[k], shared_radius2[k], shared_index[k]);
+      if (goes_before(other, won)) {
+        winner = k;
+        won = other;
+      }
       sum += shared_counts[k];
       inner = max(inner, shared_inner[k]);
     }
@@ -190,8 +201,8 @@ void main() {
 #endif
   barrier();
   if (local == shared_winner) {
-    results[to + RESULT_DEPTH] = best;
-    results[to + RESULT_INDEX] = real(best_index);
+    results[to + RESULT_DEPTH] = best.depth;
+    results[to + RESULT_INDEX] = real(best.index);
     results[to + RESULT_TEXEL] = best_texel.x;
     results[to + RESULT_TEXEL + 1] = best_texel.y;
     results[to + RESULT_BASE] = real(best_base.x);

@@ -26,12 +26,6 @@ fade fade_at(int edge, rvec2 uv, real width) {
   return f;
 }
 
-real edges_value(int edges, int count, rvec2 uv, real width) {
-  real value = real(1.0);
-  for (int i = 0; i < count; ++i) value *= fade_at(edges + i * EDGE_NUMBERS, uv, width).value;
-  return value;
-}
-
 real border_value(rvec2 uv, real width) {
 #ifdef TAPER_WINDOW
   return smooth_step((real(1.0) - abs(uv.x)) / width) * smooth_step((real(1.0) - abs(uv.y)) / width);
@@ -40,16 +34,22 @@ real border_value(rvec2 uv, real width) {
 #endif
 }
 
-// Gradient of the logarithm of the probe's taper by its motion, arms from the window's centre.
-void add_log_gradient(int owner, int edges, int count, rvec2 uv, real width, real tau, inout rvec3 linear,
-                      inout rvec3 angular) {
-  angular += tau * numbers3(owner + TRIANGLE_FACING_TURN);
+// Weight of the edges of both bodies, the probe's first, and the gradient of the logarithm of the probe's part of it by
+// the probe's motion: times tau, arms from the window's centre.
+real edges_value(int edges, int probe_count, int count, rvec2 uv, real width, real tau, inout rvec3 linear,
+                 inout rvec3 angular) {
+  real value = real(1.0);
   for (int i = 0; i < count; ++i) {
     int edge = edges + i * EDGE_NUMBERS;
     fade f = fade_at(edge, uv, width);
     if (f.value >= real(1.0)) continue;
+    value *= f.value;
+#ifdef TAPER_GRADIENT
+    if (i >= probe_count || !(f.value > real(0.0))) continue;
     rvec3 slope = rvec3(f.per_distance * f.away, real(0.0));
     linear -= tau / f.value * slope;
     angular -= tau / f.value * (cross(f.nearest, slope) + (real(1.0) - f.shape) * numbers3(edge + EDGE_TURN));
+#endif
   }
+  return value;
 }

@@ -20,12 +20,11 @@ inline constexpr int triangles_b = 3;
 inline constexpr int triangle_integers_b = 4;
 inline constexpr int owners_a = 5;  ///< which triangle is seen by each sample, two to an integer
 inline constexpr int owners_b = 6;
-inline constexpr int edges_a = 7;
+inline constexpr int edges = 7;  ///< of the probe, then of the fixed body
 inline constexpr int edge_count_a = 8;
-inline constexpr int edges_b = 9;
-inline constexpr int edge_count_b = 10;
-inline constexpr int all_of_b = 11;  ///< 1: look the fixed body up where the probe is not, too, for its bad texels
-inline constexpr int integers = 12;
+inline constexpr int edge_count_b = 9;
+inline constexpr int all_of_b = 10;  ///< 1: look the fixed body up where the probe is not, too, for its bad texels
+inline constexpr int integers = 11;
 
 // Numbers of a job.
 inline constexpr int map_a = 0;
@@ -38,7 +37,7 @@ inline constexpr int header_numbers = 32;
 inline constexpr int texel_x = 0;
 inline constexpr int texel_y = 3;
 inline constexpr int height = 6;
-inline constexpr int weights = 9;
+inline constexpr int outside = 9;  ///< distance from each edge, texels, as affine functions of the texel
 inline constexpr int altitudes = 18;
 inline constexpr int corners = 21;
 inline constexpr int facing = 27;
@@ -81,9 +80,8 @@ inline constexpr int result_numbers = 32;
            {"JOB_TRIANGLE_INTEGERS_B", triangle_integers_b},
            {"JOB_OWNERS_A", owners_a},
            {"JOB_OWNERS_B", owners_b},
-           {"JOB_EDGES_A", edges_a},
+           {"JOB_EDGES", edges},
            {"JOB_EDGE_COUNT_A", edge_count_a},
-           {"JOB_EDGES_B", edges_b},
            {"JOB_EDGE_COUNT_B", edge_count_b},
            {"JOB_ALL_OF_B", all_of_b},
            {"JOB_INTEGERS", integers},
@@ -94,7 +92,7 @@ inline constexpr int result_numbers = 32;
            {"TRIANGLE_TEXEL_X", texel_x},
            {"TRIANGLE_TEXEL_Y", texel_y},
            {"TRIANGLE_HEIGHT", height},
-           {"TRIANGLE_WEIGHTS", weights},
+           {"TRIANGLE_OUTSIDE", outside},
            {"TRIANGLE_ALTITUDES", altitudes},
            {"TRIANGLE_CORNERS", corners},
            {"TRIANGLE_FACING", facing},

@@ -99,9 +99,8 @@ bool job_writer::add(number_list& numbers, integer_list& integers, const contact
     integers.set(job, job::triangle_integers_b, b.integers);
     integers.set(job, job::owners_a, probe.owners);
     integers.set(job, job::owners_b, b.owners);
-    integers.set(job, job::edges_a, probe.edges);
+    integers.set(job, job::edges, probe.edges);
     integers.set(job, job::edge_count_a, probe.edge_count);
-    integers.set(job, job::edges_b, b.edges);
     integers.set(job, job::edge_count_b, b.edge_count);
     integers.set(job, job::all_of_b, all_of_b ? 1 : 0);
     write_header(c, T, T_wb, numbers);
@@ -164,7 +163,10 @@ void job_writer::write_triangle(const side& s, const projected_triangle& t, std:
   add(t.texel_y, base.y, 1.0);
   add(t.height, 0.0, half_m);
   const detail::texel_triangle& chart = index.texels[t.triangle];
-  for (const vec3& w : chart.weight) numbers.add_vector(vec3(w.x + w.y * base.x + w.z * base.y, w.y, w.z));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const vec3& w = chart.weight[k];
+    numbers.add_vector(chart.altitude[k] * vec3(w.x + w.y * base.x + w.z * base.y, w.y, w.z));
+  }
   for (const double altitude : chart.altitude) numbers.add(altitude);
   for (const vec3& corner : t.corner) numbers.add_vector(vec2(corner) / half_m);
   const detail::facing_weight facing{settings_.facing_cosine};
