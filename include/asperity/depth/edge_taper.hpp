@@ -7,6 +7,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "asperity/core/reserve_resident.hpp"
@@ -98,6 +99,18 @@ class edge_taper {
     return out;
   }
 
+  /// The edges that prepare() collected.
+  [[nodiscard]] std::span<const taper_edge> edges() const noexcept { return edges_; }
+
+  /// d facing_weight / d rotation of the body, window axes.
+  [[nodiscard]] vec3 facing_turn(const projected_triangle& t, const surface_index& index, const window_map& map,
+                                 layer which) const noexcept {
+    const double slope = facing_.slope(t.facing);
+    if (slope == 0.0) return vec3(0.0);
+    const vec3 normal = map.direction(index.normal[t.triangle]);
+    return slope * sign(which) * glm::cross(normal, vec3(0.0, 0.0, 1.0));  // d(N . n) = (phi x N) . n = phi . (N x n)
+  }
+
  private:
   struct fade {
     double value = 1.0;         ///< 1 - strength (1 - shape)
@@ -124,15 +137,6 @@ class edge_taper {
     f.per_distance = e.strength * smoothstep_slope(distance / width_m_) / width_m_;
     if (distance > 0.0) f.away = d / distance;
     return f;
-  }
-
-  /// d facing_weight / d rotation of the body, window axes.
-  [[nodiscard]] vec3 facing_turn(const projected_triangle& t, const surface_index& index, const window_map& map,
-                                 layer which) const noexcept {
-    const double slope = facing_.slope(t.facing);
-    if (slope == 0.0) return vec3(0.0);
-    const vec3 normal = map.direction(index.normal[t.triangle]);
-    return slope * sign(which) * glm::cross(normal, vec3(0.0, 0.0, 1.0));  // d(N . n) = (phi x N) . n = phi . (N x n)
   }
 
   std::vector<taper_edge> edges_;

@@ -1,0 +1,17 @@
+# asperity_embed_shaders(TARGET FILE.glsl...): makes a header shaders.hpp for the target in which each file stands as a
+# shader_source of the file's name, FILE_glsl. Nothing looks for shader files at run time.
+function(asperity_embed_shaders target)
+  set(text "// Made from .glsl files by the build.\n#pragma once\n\n#include \"asperity/gl/program.hpp\"\n\nnamespace asperity::gl::shaders {\n")
+  foreach(file IN LISTS ARGN)
+    get_filename_component(path ${file} ABSOLUTE)
+    get_filename_component(name ${file} NAME)
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
+    file(READ ${path} source)
+    string(MAKE_C_IDENTIFIER ${name} identifier)
+    string(APPEND text "\ninline constexpr shader_source ${identifier}{\"${name}\", R\"glsl(${source})glsl\"};\n")
+  endforeach()
+  string(APPEND text "\n}  // namespace asperity::gl::shaders\n")
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders)
+  file(CONFIGURE OUTPUT ${folder}/shaders.hpp CONTENT "${text}" @ONLY)
+  target_include_directories(${target} PRIVATE ${folder})
+endfunction()
