@@ -10,9 +10,11 @@
 //
 //     INSTANTIATE_TYPED_TEST_SUITE_P(MyDepth, DepthBackendContract, my_factory);
 //
-// A backend without a soft maximum adds `static constexpr bool soft_maximum = false;`. Its soft depth is the depth, it
-// tells no curvature, and it is compared with the central differences alone. One that does not sample a grid of the
-// default size adds `static depth_settings reference(gradient_scheme)`: what the CPU backend needs to come near it.
+// A backend that some machines cannot run adds `static std::string unavailable();`: why not here, or nothing where it
+// can. A backend without a soft maximum adds `static constexpr bool soft_maximum = false;`. Its soft depth is the
+// depth, it tells no curvature, and it is compared with the central differences alone. One that does not sample a grid
+// of the default size adds `static depth_settings reference(gradient_scheme)`: what the CPU backend needs to come near
+// it.
 #pragma once
 
 #include <array>
@@ -20,6 +22,7 @@
 #include <gtest/gtest.h>
 #include <random>
 #include <span>
+#include <string>
 
 #include "asperity/depth/cpu_depth.hpp"
 #include "support/height_models.hpp"
@@ -30,6 +33,12 @@ template <class Factory>
 class DepthBackendContract : public ::testing::Test {
  public:
   static_assert(depth_backend<typename Factory::backend>);
+
+  void SetUp() override {
+    if constexpr (requires { Factory::unavailable(); }) {
+      if (const std::string why = Factory::unavailable(); !why.empty()) GTEST_SKIP() << why;
+    }
+  }
   static constexpr bool soft_maximum() {
     if constexpr (requires { Factory::soft_maximum; }) return Factory::soft_maximum;
     return true;
