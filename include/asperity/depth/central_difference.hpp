@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 
 #include "asperity/collision/contact.hpp"
@@ -25,26 +26,53 @@ namespace asperity::detail {
   return 0.0;
 }
 
+/// The paper's ten motions of the probe: +u, -u, +v, -v across the window, then turns about +u, -u, +v, -v, +n, -n.
+inline constexpr std::size_t probe_motions = 10;
+
+/// The probe after motion `i`; turns are about origin_w. @pre i < probe_motions
+[[nodiscard]] inline pose moved_probe(std::size_t i, const contact_window& window, const pose& T_wa,
+                                      const vec3& origin_w, double step_m, double step_rad) noexcept {
+  const std::array axes{window.u_w, window.v_w, window.u_w, window.v_w, window.n_ab_w};
+  const double sign = i % 2 == 0 ? 1.0 : -1.0;
+  const vec3& axis = axes[i / 2];
+  if (i < 4) return {T_wa.rotation, T_wa.position + sign * step_m * axis};
+  return turned(T_wa, sign * step_rad * axis, origin_w);
+}
+
+/// Depth after each motion, nothing where the patches share no sample.
+using moved_depths = std::array<std::optional<double>, probe_motions>;
+
 /// Gradient of a depth by differences of signed depths, about c_A. The component along n is 1 and is not differenced.
-/// Rotations are taken about `origin_w` and transported to c_A: T_c = T_o + (o - c) x F.
-/// @param depth_at  depth with the probe at a pose, nothing where the patches share no sample
-/// @rt as safe as depth_at   @source paper Eqs. 5 and 7; spec section 3.1 for the point of rotation
+/// Turns were about `origin_w` and are transported to c_A: T_c = T_o + (o - c) x F.
+/// @rt safe   @source paper Eqs. 5 and 7; spec section 3.1 for the point of rotation
+[[nodiscard]] inline vec6 gradient_of(const moved_depths& moved, const contact_window& window,
+                                      const vec3& centre_of_mass_w, const vec3& origin_w, double here_m, double step_m,
+                                      double step_rad) noexcept {
+  const auto slope = [&](std::size_t axis, double step) {
+    return quotient(moved[2 * axis], moved[2 * axis + 1], here_m, step);
+  };
+  vec6 g;
+  g.linear = window.n_ab_w;
+  g.linear += slope(0, step_m) * window.u_w;
+  g.linear += slope(1, step_m) * window.v_w;
+  g.angular += slope(2, step_rad) * window.u_w;
+  g.angular += slope(3, step_rad) * window.v_w;
+  g.angular += slope(4, step_rad) * window.n_ab_w;
+  g.angular += glm::cross(origin_w - centre_of_mass_w, g.linear);
+  return g;
+}
+
+/// Both of the above. @param depth_at  depth with the probe at a pose, nothing where the patches share no sample
+/// @rt as safe as depth_at
 template <class DepthAt>
 [[nodiscard]] vec6 central_difference(const contact_window& window, const pose& T_wa, const vec3& centre_of_mass_w,
                                       const vec3& origin_w, double here_m, double step_m, double step_rad,
                                       DepthAt depth_at) noexcept {
-  const auto shifted = [&](const vec3& d) { return depth_at(pose{T_wa.rotation, T_wa.position + d}); };
-  const auto rotated = [&](const vec3& phi) { return depth_at(turned(T_wa, phi, origin_w)); };
-  vec6 g;
-  g.linear = window.n_ab_w;
-  for (const vec3& axis : {window.u_w, window.v_w}) {
-    g.linear += quotient(shifted(step_m * axis), shifted(-step_m * axis), here_m, step_m) * axis;
+  moved_depths moved;
+  for (std::size_t i = 0; i < probe_motions; ++i) {
+    moved[i] = depth_at(moved_probe(i, window, T_wa, origin_w, step_m, step_rad));
   }
-  for (const vec3& axis : {window.u_w, window.v_w, window.n_ab_w}) {
-    g.angular += quotient(rotated(step_rad * axis), rotated(-step_rad * axis), here_m, step_rad) * axis;
-  }
-  g.angular += glm::cross(origin_w - centre_of_mass_w, g.linear);
-  return g;
+  return gradient_of(moved, window, centre_of_mass_w, origin_w, here_m, step_m, step_rad);
 }
 
 }  // namespace asperity::detail

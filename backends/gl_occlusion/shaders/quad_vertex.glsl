@@ -1,0 +1,3 @@
+// A triangle that covers everything: what of it is drawn, the scissor says.
+
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }

@@ -1,0 +1,134 @@
+#include "height_pass.hpp"
+
+#include <utility>
+
+#include "asperity/gl/program.hpp"
+#include "contact_slot.hpp"
+#include "shaders.hpp"
+
+namespace asperity::gl {
+namespace {
+
+constexpr GLuint attributes = sizeof(triangle_record) / (4 * sizeof(float));
+constexpr float no_surface = -1e30F;
+
+}  // namespace
+
+std::string tile_definitions(const context_facts& facts, std::uint32_t depth_bits, bool packed) {
+  const depth_levels levels{depth_bits};
+  std::string text = "#define NO_SURFACE (-1e30)\n#define BAD_TEXEL (-2e30)\n";
+  text += "#define FIRST_LEVEL " + std::to_string(depth_levels::first) + ".0\n";
+  text += "#define TOP_LEVEL " + std::to_string(levels.top()) + ".0\n";
+  if (packed) text += "#define PACKED\n";
+  if (facts.dialect == dialect::es && facts.minor < 2) text += "#define precise\n";
+  return text;
+}
+
+result<height_pass> height_pass::make(const context_ptr& context, const tile_atlas& atlas, bool packed,
+                                      const std::string& definitions, std::array<int, 2> tile_samples,
+                                      std::size_t records) {
+  height_pass out;
+  out.atlas_ = atlas;
+  out.packed_ = packed;
+  out.tile_samples_ = tile_samples;
+  auto heights = make_texture(context, packed ? GL_RGBA32F : GL_R32F, atlas.width(), atlas.height(),
+                              "occlusion depth: the tiles of heights");
+  if (!heights) return heights.error();
+  out.heights_ = *std::move(heights);
+  auto layers = make_texture(context, GL_DEPTH_COMPONENT32F, atlas.width(), atlas.height(),
+                             "occlusion depth: the layers of the heights");
+  if (!layers) return layers.error();
+  out.layers_ = *std::move(layers);
+  const std::size_t lists = out.lists().size();
+  auto memory = mapped_buffer::make(context, lists * records * sizeof(triangle_record), direction::to_device,
+                                    "occlusion depth: triangles");
+  if (!memory) return memory.error();
+  out.records_ = *std::move(memory);
+  for (std::size_t q = 0; q < lists; ++q) {
+    out.lists_[q].memory = out.records_.as<triangle_record>().subspan(q * records, records);
+  }
+
+  const functions& gl = context->gl();
+  out.framebuffer_ = make_name(context, name_kind::framebuffer);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, out.framebuffer_.get());
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, out.heights_.get(), 0);
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, out.layers_.get(), 0);
+  const GLenum complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+  if (complete != GL_FRAMEBUFFER_COMPLETE) {
+    return error{error_code::unsupported, "occlusion depth: " + context->facts().renderer +
+                                              " cannot render to floating-point textures; use another backend"};
+  }
+
+  const std::array stages{shader_stage{GL_VERTEX_SHADER, definitions, {shaders::height_vertex_glsl}},
+                          shader_stage{GL_FRAGMENT_SHADER, definitions, {shaders::height_fragment_glsl}}};
+  auto program = make_program(context, stages, "the heights of the occlusion depth");
+  if (!program) return program.error();
+  out.program_ = *std::move(program);
+  out.atlas_size_ = gl.GetUniformLocation(out.program_.get(), "atlas_size");
+  out.samples_ = gl.GetUniformLocation(out.program_.get(), "tile_samples");
+  out.mirrored_ = gl.GetUniformLocation(out.program_.get(), "mirrored");
+
+  out.vertices_ = make_name(context, name_kind::vertex_array);
+  gl.BindVertexArray(out.vertices_.get());
+  for (GLuint i = 0; i < attributes; ++i) {
+    gl.EnableVertexAttribArray(i);
+    gl.VertexAttribDivisor(i, 1);
+  }
+  gl.BindVertexArray(0);
+  return out;
+}
+
+void height_pass::clear(std::size_t contacts) noexcept {
+  const functions& gl = heights_.owner()->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+  gl.Enable(GL_SCISSOR_TEST);
+  gl.Scissor(0, 0, static_cast<GLsizei>(atlas_.width()), static_cast<GLsizei>(atlas_.used_height(contacts)));
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  const std::array none{no_surface, no_surface, no_surface, no_surface};
+  gl.ClearBufferfv(GL_COLOR, 0, none.data());
+}
+
+void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, GLuint probe_texture,
+                       std::span<const GLuint> fixed_textures) noexcept {
+  if (runs.empty()) return;
+  const functions& gl = heights_.owner()->gl();
+  const std::size_t before_last = (lists().size() - 1) * lists_[0].memory.size();
+  records_.send((before_last + lists().back().used) * sizeof(triangle_record));
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+  gl.Viewport(0, 0, static_cast<GLsizei>(atlas_.width()), static_cast<GLsizei>(atlas_.height()));
+  gl.Enable(GL_SCISSOR_TEST);
+  gl.Scissor(0, 0, static_cast<GLsizei>(atlas_.width()), static_cast<GLsizei>(atlas_.used_height(contacts)));
+  gl.Enable(GL_DEPTH_TEST);
+  gl.DepthFunc(GL_GREATER);
+  gl.DepthMask(GL_TRUE);
+  gl.ClearDepthf(0.0F);
+  gl.UseProgram(program_.get());
+  gl.Uniform2f(atlas_size_, static_cast<float>(atlas_.width()), static_cast<float>(atlas_.height()));
+  gl.Uniform2i(samples_, tile_samples_[0], tile_samples_[1]);
+  gl.ActiveTexture(GL_TEXTURE0);
+  gl.BindTexture(GL_TEXTURE_2D, probe_texture);
+  gl.ActiveTexture(GL_TEXTURE1);
+  gl.BindVertexArray(vertices_.get());
+  gl.BindBuffer(GL_ARRAY_BUFFER, records_.name());
+  for (std::size_t q = 0; q < lists().size(); ++q) {
+    // Each quarter has layers of its own.
+    gl.Clear(GL_DEPTH_BUFFER_BIT);
+    const auto here = [&](std::size_t channel) -> GLboolean { return !packed_ || channel == q ? GL_TRUE : GL_FALSE; };
+    gl.ColorMask(here(0), here(1), here(2), here(3));
+    gl.Uniform2i(mirrored_, static_cast<GLint>(q & 1), static_cast<GLint>(q >> 1));
+    for (const record_run& run : runs) {
+      if (run.quarter != q) continue;
+      gl.BindTexture(GL_TEXTURE_2D, fixed_textures[run.body]);
+      const std::size_t start = (q * lists_[q].memory.size() + run.first) * sizeof(triangle_record);
+      for (GLuint i = 0; i < attributes; ++i) {
+        gl.VertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, sizeof(triangle_record),
+                               reinterpret_cast<const void*>(start + i * 4 * sizeof(float)));
+      }
+      gl.DrawArraysInstanced(GL_TRIANGLE_FAN, 0, 7, static_cast<GLsizei>(run.count));
+    }
+  }
+  gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+}  // namespace asperity::gl

@@ -1,0 +1,19 @@
+// How far a textured surface leaves its coarse triangles: what a depth can be at most, before anything is drawn.
+#pragma once
+
+#include <vector>
+
+#include "asperity/depth/surface_index.hpp"
+#include "asperity/model/textured_model.hpp"
+
+namespace asperity::gl {
+
+/// Box of (fine point - coarse point) over a coarse triangle, body frame, m.
+struct relief_box {
+  vec3 low{0.0}, high{0.0};
+};
+
+/// A box per coarse triangle, over every texel that a lookup inside of it can touch.
+[[nodiscard]] std::vector<relief_box> relief_bounds(const textured_model& model, const detail::surface_index& index);
+
+}  // namespace asperity::gl

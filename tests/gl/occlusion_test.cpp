@@ -1,0 +1,4 @@
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace asperity { namespace {} }
