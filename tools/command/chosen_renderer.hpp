@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "asperity/render/renderer.hpp"
+#include "gpu_use.hpp"
 
 namespace asperity::command {
 
@@ -17,6 +18,11 @@ class chosen_renderer {
   template <class Finder, class Depth, class Force>
   explicit chosen_renderer(basic_renderer<Finder, Depth, Force> r)
       : kind_(std::make_unique<held<basic_renderer<Finder, Depth, Force>>>(std::move(r))) {}
+  template <class Finder, class Depth, class Force>
+  chosen_renderer(basic_renderer<Finder, Depth, Force> r, std::shared_ptr<gpu_use> gpu)
+      : chosen_renderer(std::move(r)) {
+    gpu_ = std::move(gpu);
+  }
 
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept { return kind_->step(at, out); }
   [[nodiscard]] const asperity::scene& scene() const noexcept { return kind_->scene(); }
@@ -25,6 +31,8 @@ class chosen_renderer {
   [[nodiscard]] std::optional<double> depth_at_most_m(std::size_t contact) noexcept {
     return kind_->depth_at_most_m(contact);
   }
+  /// What it does with a GPU; null where it uses none.
+  [[nodiscard]] const std::shared_ptr<gpu_use>& gpu() const noexcept { return gpu_; }
 
  private:
   struct any_kind {
@@ -51,6 +59,7 @@ class chosen_renderer {
   };
 
   std::unique_ptr<any_kind> kind_;
+  std::shared_ptr<gpu_use> gpu_;
 };
 
 }  // namespace asperity::command

@@ -2,12 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 #include <random>
 #include <utility>
 
 #include "approach.hpp"
 #include "asperity/bake/bake.hpp"
 #include "asperity/io/textured_model_file.hpp"
+#include "backend_report.hpp"
 #include "benchmark_models.hpp"
 #include "cli.hpp"
 #include "cpu_clock.hpp"
@@ -31,6 +33,10 @@ struct bench_command {
   std::string models;
   std::size_t poses = 2000;
   std::uint64_t seed = 1;
+  std::optional<std::string> backend;  ///< given: compare depth backends instead
+  std::optional<std::string> gpu;
+  std::optional<std::uint32_t> grid;
+  std::optional<std::size_t> repeats;
 };
 
 /// Poses of a probe that scrubs over the place where it first touched, pressed in by a little.
@@ -211,10 +217,38 @@ answer report(const scene& bodies, const bench_command& options, const measured&
   return out;
 }
 
+result<void> check(const bench_command& options) {
+  const char* const of_backends = options.gpu       ? "--gpu"
+                                  : options.grid    ? "--grid"
+                                  : options.repeats ? "--repeats"
+                                                    : nullptr;
+  if (options.backend || of_backends == nullptr) return {};
+  return error{error_code::invalid_argument,
+               std::string(of_backends) + " is for comparing depth backends: add --backend all"};
+}
+
+result<answer> compare_backends(const scene& bodies, const bench_command& options, const common_options& common,
+                                progress_line& progress) {
+#ifdef ASPERITY_HAS_GL
+  backend_bench wanted{.backend = *options.backend, .gpu = options.gpu, .seed = options.seed};
+  wanted.grid = options.grid.value_or(wanted.grid);
+  wanted.repeats = options.repeats.value_or(wanted.repeats);
+  const result<bench_of_backends> timed = time_backends(bodies, wanted, progress);
+  if (!timed) return timed.error();
+  return report(bodies, wanted, *timed, common.quiet);
+#else
+  static_cast<void>(bodies), static_cast<void>(options), static_cast<void>(common), static_cast<void>(progress);
+  return error{error_code::unsupported,
+               "OpenGL is not part of this build, so that there are no depth backends to compare: leave out --backend"};
+#endif
+}
+
 result<answer> bench(const bench_command& options, const common_options& common) {
+  if (const result<void> ok = check(options); !ok) return ok.error();
   progress_line progress(common.quiet);
   const result<scene> bodies = bench_scene(options, progress);
   if (!bodies) return bodies.error();
+  if (options.backend) return compare_backends(*bodies, options, common, progress);
   const result<measured> m = measure(*bodies, options, progress);
   if (!m) return m.error();
   return report(*bodies, options, *m);
@@ -239,6 +273,16 @@ void add_bench(command_line& line) {
   sub.add_option("--seed", o->seed, "Seed of the path")
       ->check(whole_number_error, "WHOLE NUMBER")
       ->capture_default_str();
+  sub.add_option("--backend", o->backend, "Compare depth backends on a GPU with the CPU instead: all, or one of them")
+      ->check(CLI::IsMember({"all", "gl-occlusion", "gl-compute"}));
+  sub.add_option("--gpu", o->gpu, "GPU to measure, an index or a part of a name; see `asperity devices --gpu`")
+      ->type_name("DEVICE");
+  sub.add_option("--grid", o->grid, "Samples per side of a contact's window, with --backend")
+      ->check(CLI::Range(std::uint32_t{2}, depth_settings::max_grid))
+      ->default_str("64");
+  sub.add_option("--repeats", o->repeats, "Times that each is measured, with --backend")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{10000}))
+      ->default_str("10");
 }
 
 }  // namespace asperity::command

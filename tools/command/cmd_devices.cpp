@@ -1,8 +1,11 @@
 // asperity devices: what a session can be felt with.
 #include <array>
+#include <memory>
+#include <utility>
 
 #include "asperity/hal/simulated/simulated_device.hpp"
 #include "cli.hpp"
+#include "gpu_devices.hpp"
 #include "model_report.hpp"
 #include "text.hpp"
 
@@ -46,11 +49,32 @@ result<answer> list_devices() {
   return out;
 }
 
+result<answer> with_gpus(answer devices) {
+#ifdef ASPERITY_HAS_GL
+  result<answer> gpus = list_gpus();
+  if (!gpus) return gpus.error();
+  devices.document["gpus"] = gpus->document["gpus"];
+  devices.text = gpus->text;
+  return devices;
+#else
+  static_cast<void>(devices);
+  return error{error_code::unsupported,
+               "OpenGL is not part of this build: configure with -DASPERITY_BUILD_GL=ON and its headers (Debian: "
+               "libegl-dev, libgl-dev)"};
+#endif
+}
+
 }  // namespace
 
 void add_devices(command_line& line) {
-  line.add("devices", "List the devices that a session can be felt with",
-           [](const common_options&) { return list_devices(); });
+  const auto gpus = std::make_shared<bool>(false);
+  CLI::App& sub =
+      line.add("devices", "List the devices that a session can be felt with, or the GPUs that can calculate",
+               [gpus](const common_options&) -> result<answer> {
+                 result<answer> devices = list_devices();
+                 return *gpus && devices ? with_gpus(std::move(devices).value()) : devices;
+               });
+  sub.add_flag("--gpu", *gpus, "List the GPUs that --backend gl-compute and gl-occlusion can use");
 }
 
 }  // namespace asperity::command

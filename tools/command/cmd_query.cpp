@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cli.hpp"
+#include "gpu_report.hpp"
 #include "model_report.hpp"
 #include "poses.hpp"
 #include "render_options.hpp"
@@ -84,20 +85,23 @@ answer report(const query_command& options, chosen_renderer& feel, const tick& f
                   {"backend", options.render.backend},
                   {"formulation", formulation_name(options.render)},
                   {"gradient_scheme", gradient_name(options.render)},
+                  {"lookup", lookup_json(options.render)},
                   {"status", to_string(answered)},
                   {"dropped_contacts", found.dropped_contacts},
                   {"units", "SI"}};
+  if (feel.gpu()) out.document["gpu"] = command::to_json(*feel.gpu());
   if (found.contacts.empty()) out.text += row("contacts", "none");
   out.text += row("force on the probe", brief(w.force.x) + ", " + brief(w.force.y) + ", " + brief(w.force.z) + " N");
   out.text += row("torque on the probe", brief(w.torque.x) + ", " + brief(w.torque.y) + ", " + brief(w.torque.z) +
                                              " N m, about its centre of mass");
+  if (feel.gpu()) out.text += to_text(*feel.gpu());
   if (found.dropped_contacts > 0) {
     out.text += "  warning: " + std::to_string(found.dropped_contacts) + " contacts did not fit and were left out\n";
   }
   return out;
 }
 
-result<answer> query(const query_command& options) {
+result<answer> query(const query_command& options, const common_options& common) {
   const result<pose> T_wa = read_pose("--probe-pose", options.probe_pose);
   if (!T_wa) return T_wa.error();
   const result<pose> T_wb = read_pose("--fixed-pose", options.fixed_pose);
@@ -108,8 +112,10 @@ result<answer> query(const query_command& options) {
   result<chosen_renderer> made = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!made) return made.error();
 
+  if (made->gpu() && !common.quiet) warn(*made->gpu());
   tick found;
   const status answered = made->step({*T_wa, {&*T_wb, 1}}, found);
+  if (answered == status::backend_failed && made->gpu()) return gpu_failed(*made->gpu());
   if (answered != status::ok && answered != status::capacity_reached) {
     return error{error_code::unsupported, std::string("the contact could not be computed at these poses (") +
                                               to_string(answered) + "): inspect both models"};
@@ -122,7 +128,7 @@ result<answer> query(const query_command& options) {
 void add_query(command_line& line) {
   const auto o = std::make_shared<query_command>();
   CLI::App& sub = line.add("query", "Compute contacts and the wrench at given poses",
-                           [o](const common_options&) { return query(*o); });
+                           [o](const common_options& common) { return query(*o, common); });
   sub.add_option("--probe", o->probe, "Textured model that moves (.glb)")->required();
   sub.add_option("--fixed", o->fixed, "Textured model that stays (.glb)")->required();
   sub.add_option("--probe-pose", o->probe_pose, "Pose of the probe in the world, \"x y z qx qy qz qw\" (m)")

@@ -8,6 +8,7 @@
 
 #include "approach.hpp"
 #include "cli.hpp"
+#include "gpu_report.hpp"
 #include "model_report.hpp"
 #include "options.hpp"
 #include "poses.hpp"
@@ -174,10 +175,11 @@ std::string loop_text(const loop_times& times, const time_summary& measured) {
          std::to_string(times.skipped) + " skipped; " + to_text(measured);
 }
 
-/// What a session holds in memory, bytes.
+/// What a session holds in memory, bytes, and on a GPU.
 struct memory_use {
   std::size_t models = 0;
   std::size_t renderer = 0;
+  std::shared_ptr<gpu_use> gpu{};  ///< null where no GPU is used
 };
 
 answer report(const run_command& options, const given_poses& poses, const session_outcome& ended,
@@ -199,12 +201,14 @@ answer report(const run_command& options, const given_poses& poses, const sessio
                   {"backend", options.render.backend},
                   {"formulation", formulation_name(options.render)},
                   {"gradient_scheme", gradient_name(options.render)},
-                  {"grid", grid_json(options.render)}};
+                  {"grid", grid_json(options.render)},
+                  {"lookup", lookup_json(options.render)}};
   out.document.update(summary.to_json());
   out.document["contact_loop"] = loop_json(ended.contact, contact);
   out.document["device_loop"] = loop_json(ended.device, device);
   out.document["tick_time_is"] = options.clock == "virtual" ? "cpu" : "wall";
   out.document["memory"] = {{"models", memory.models}, {"renderer", memory.renderer}};
+  if (memory.gpu) out.document["gpu"] = command::to_json(*memory.gpu);
   out.document["rejected_samples"] = ended.rejected_samples;
   out.document["lost_records"] = ended.lost_records;
   out.document["fault"] = to_string(ended.fault);
@@ -218,6 +222,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
   out.text += row("contact loop", loop_text(ended.contact, contact));
   out.text += row("device loop", loop_text(ended.device, device));
   out.text += row("memory", memory_text(memory.models) + " models, " + memory_text(memory.renderer) + " renderer");
+  if (memory.gpu) out.text += to_text(*memory.gpu);
   out.text += row("faults", to_string(ended.fault));
   if (!options.record.empty()) out.text += row("recording", options.record);
   if (!options.plot.empty()) out.text += row("plot", options.plot);
@@ -238,6 +243,22 @@ answer report(const run_command& options, const given_poses& poses, const sessio
   return out;
 }
 
+// The first tick on a GPU compiles; the session shall not wait for that. Afterwards the thread of the contact loop
+// takes the context.
+result<void> make_ready(chosen_renderer& feel, const given_poses& poses) {
+  tick unused;
+  const status answered = feel.step({*poses.T_wa, poses.T_wb}, unused);
+  feel.gpu()->leave_thread();
+  if (answered == status::backend_failed) return gpu_failed(*feel.gpu());
+  return {};
+}
+
+error gpu_lost(const session_record& tick) {
+  return {error_code::unsupported, "the GPU gave no answer after " + brief(1e-9 * static_cast<double>(tick.time_ns)) +
+                                       " s, the wrench went to zero: its driver lost the context or reports an error; "
+                                       "add --fallback to let the CPU answer, or use --backend cpu"};
+}
+
 result<answer> run_session(const run_command& options, const common_options& common) {
   if (const result<void> ok = check(options.render); !ok) return ok.error();
   if (options.render.backend == "exact" && options.clock == "real") {
@@ -256,13 +277,19 @@ result<answer> run_session(const run_command& options, const common_options& com
   simulated_config device{.seed = options.seed, .motion = motion_of(options, *bodies)};
   result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!feel) return feel.error();
+  const std::shared_ptr<gpu_use> gpu = feel->gpu();
+  if (gpu && !common.quiet) warn(*gpu);
   if (!poses->T_wa) {
     const result<pose> start = start_above(options, *feel, poses->T_wb);
+    if (gpu && gpu->failed > 0) return gpu_failed(*gpu);
     if (!start) return start.error();
     poses->T_wa = *start;
   }
+  if (gpu) {
+    if (const result<void> ready = make_ready(*feel, *poses); !ready) return ready.error();
+  }
 
-  const memory_use memory{memory_bytes(feel->scene()), feel->memory_bytes()};
+  const memory_use memory{memory_bytes(feel->scene()), feel->memory_bytes(), gpu};
   session_summary summary;
   control_config control;
   control.map = map_of(*poses->T_wa, shape.centre_of_mass);
@@ -275,11 +302,11 @@ result<answer> run_session(const run_command& options, const common_options& com
                    .clock = options.clock == "real" ? session_clock::real_time : session_clock::virtual_time,
                    .seconds = options.seconds,
                    .contact_period_ns = std::llround(1e9 / options.contact_rate_hz),
-                   .on_tick =
-                       [&](const session_record& tick) {
-                         summary.add(tick);
-                         return files->add(tick);
-                       }},
+                   .on_tick = [&](const session_record& tick) -> result<void> {
+                     summary.add(tick);
+                     if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
+                     return files->add(tick);
+                   }},
                   progress);
   if (!ended) return ended.error();
   if (const result<void> closed = files->close(options, summary); !closed) return closed.error();

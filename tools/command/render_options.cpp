@@ -12,20 +12,36 @@
 namespace asperity::command {
 namespace {
 
+/// How a backend takes the depth of the paper's contacts.
+enum class depth_kind : std::uint8_t {
+  searched,   ///< not on a grid of samples: --gradient, --grid and --lookup mean nothing
+  sampled,    ///< on a grid, both gradients and both lookups
+  as_printed  ///< on a grid, by central differences of the paper's lookup alone
+};
+
 /// A value of --backend.
 struct backend_choice {
   const char* name;
   renderer_maker* shared;  ///< with --contacts shared; null: the backend has none, and implies --contacts paper
   renderer_maker* paper;   ///< with --contacts paper; both null: not part of this build
-  bool on_grid;            ///< the paper's depth is sampled: --gradient and --grid mean something
+  depth_kind depth;
+  bool on_gpu;
 };
 
+#ifdef ASPERITY_HAS_GL
+constexpr renderer_maker* gl_compute = make_paper_with_gl_compute;
+constexpr renderer_maker* gl_occlusion = make_paper_with_gl_occlusion;
+#else
+constexpr renderer_maker* gl_compute = nullptr;
+constexpr renderer_maker* gl_occlusion = nullptr;
+#endif
+
 constexpr std::array backends{
-    backend_choice{"cpu", make_shared_on_cpu, make_paper_on_cpu, true},
-    backend_choice{"exact", nullptr, make_paper_with_exact, false},
-    backend_choice{"cpu-simd", nullptr, nullptr, true},
-    backend_choice{"gl-occlusion", nullptr, nullptr, true},
-    backend_choice{"gl-compute", nullptr, nullptr, true},
+    backend_choice{"cpu", make_shared_on_cpu, make_paper_on_cpu, depth_kind::sampled, false},
+    backend_choice{"exact", nullptr, make_paper_with_exact, depth_kind::searched, false},
+    backend_choice{"cpu-simd", nullptr, nullptr, depth_kind::sampled, false},
+    backend_choice{"gl-occlusion", nullptr, gl_occlusion, depth_kind::as_printed, true},
+    backend_choice{"gl-compute", nullptr, gl_compute, depth_kind::sampled, true},
 };
 
 /// @pre the name is one of them: the command line lets no other through
@@ -41,6 +57,44 @@ std::vector<std::string> backend_names() {
   return names;
 }
 
+error contradiction(std::string what) { return {error_code::invalid_argument, std::move(what)}; }
+
+bool on_grid(const render_options& options) {
+  return formulation_name(options) == "paper" && backend_of(options).depth != depth_kind::searched;
+}
+
+std::string lookup_name(const render_options& options) {
+  return options.lookup.value_or(backend_of(options).depth == depth_kind::as_printed ? "paper" : "exact");
+}
+
+/// The first of the options given that belong to depths on a grid, or nothing.
+const char* given_for_grid(const render_options& options) {
+  return options.gradient ? "--gradient" : options.grid ? "--grid" : options.lookup ? "--lookup" : nullptr;
+}
+
+result<void> check_gpu(const backend_choice& backend, const render_options& options) {
+  if (backend.on_gpu) return {};
+  if (options.gpu) return contradiction("--gpu chooses among GPUs: add --backend gl-compute or gl-occlusion");
+  if (options.fallback) {
+    return contradiction("--fallback is for a GPU that fails: add --backend gl-compute or gl-occlusion");
+  }
+  return {};
+}
+
+result<void> check_as_printed(const render_options& options) {
+  if (options.gradient == "soft") {
+    return contradiction(
+        "--gradient soft needs the depth of every sample, and a query tells the largest alone: with "
+        "--backend " +
+        options.backend + " leave it out");
+  }
+  if (options.lookup == "exact") {
+    return contradiction("--lookup exact is not how --backend " + options.backend +
+                         " draws: leave it out, or use --backend gl-compute");
+  }
+  return {};
+}
+
 }  // namespace
 
 void add_render_options(CLI::App& sub, render_options& options) {
@@ -49,16 +103,26 @@ void add_render_options(CLI::App& sub, render_options& options) {
       ->check(CLI::IsMember({"shared", "paper"}))
       ->default_str("shared");
   sub.add_option("--backend", options.backend,
-                 "Depth backend. exact searches the maximum itself, for work at a desk, and implies --contacts paper")
+                 "Depth backend. All but cpu imply --contacts paper. exact searches the maximum itself, for work at a "
+                 "desk; gl-compute and gl-occlusion calculate on a GPU")
       ->check(CLI::IsMember(backend_names()))
       ->capture_default_str();
   sub.add_option("--gradient", options.gradient,
                  "Gradient of the depth with --contacts paper: a soft maximum, or the paper's central differences")
       ->check(CLI::IsMember({"central", "soft"}))
-      ->default_str("soft");
+      ->default_str("soft; with gl-occlusion, central");
   sub.add_option("--grid", options.grid, "Samples per side of a contact's window with --contacts paper")
       ->check(CLI::Range(std::uint32_t{2}, depth_settings::max_grid))
       ->default_str(std::to_string(depth_settings{}.grid));
+  sub.add_option("--lookup", options.lookup,
+                 "Fine point of a sample with --contacts paper: the one over it, or the paper's, of the coarse hit")
+      ->check(CLI::IsMember({"exact", "paper"}))
+      ->default_str("exact; with gl-occlusion, paper");
+  sub.add_option("--gpu", options.gpu,
+                 "GPU of gl-compute and gl-occlusion, an index or a part of a name; see `asperity devices --gpu`")
+      ->type_name("DEVICE");
+  sub.add_flag("--fallback", options.fallback,
+               "Where the GPU fails, let the CPU answer in the same tick, and count it; an error without it");
   sub.add_flag("--allow-scale-mismatch", options.allow_scale_mismatch,
                "Accept bodies whose sizes differ more than 500 times");
 }
@@ -68,13 +132,23 @@ std::string formulation_name(const render_options& options) {
 }
 
 std::string gradient_name(const render_options& options) {
-  const bool sampled = formulation_name(options) == "paper" && backend_of(options).on_grid;
-  return sampled ? options.gradient.value_or("soft") : "exact";
+  if (!on_grid(options)) return "exact";
+  return options.gradient.value_or(backend_of(options).depth == depth_kind::as_printed ? "central" : "soft");
 }
 
 json grid_json(const render_options& options) {
-  const bool sampled = formulation_name(options) == "paper" && backend_of(options).on_grid;
-  return sampled ? json(options.grid.value_or(depth_settings{}.grid)) : json();
+  return on_grid(options) ? json(options.grid.value_or(depth_settings{}.grid)) : json();
+}
+
+json lookup_json(const render_options& options) { return on_grid(options) ? json(lookup_name(options)) : json(); }
+
+depth_settings grid_settings(const render_options& options) {
+  depth_settings settings;
+  settings.gradient =
+      gradient_name(options) == "central" ? gradient_scheme::central_difference : gradient_scheme::soft_max;
+  settings.parallax = lookup_name(options) == "paper" ? parallax_mode::paper_lookup : parallax_mode::exact;
+  if (options.grid) settings.grid = *options.grid;
+  return settings;
 }
 
 result<void> check(const render_options& options) {
@@ -83,20 +157,18 @@ result<void> check(const render_options& options) {
     return error{error_code::unsupported,
                  "the depth backend " + options.backend + " is not part of this build: use --backend cpu"};
   }
-  const auto contradiction = [](std::string what) { return error{error_code::invalid_argument, std::move(what)}; };
   if (backend.shared == nullptr && options.contacts == "shared") {
     return contradiction("--backend " + options.backend +
                          " looks into the windows of the paper's contacts: leave out --contacts shared");
   }
-  if (!options.gradient && !options.grid) return {};
-  const std::string option = options.gradient ? "--gradient" : "--grid";
-  if (formulation_name(options) == "shared") {
-    return contradiction(option + " belongs to the paper's contacts: add --contacts paper");
+  if (const result<void> ok = check_gpu(backend, options); !ok) return ok;
+  if (const char* const given = given_for_grid(options); given != nullptr && !on_grid(options)) {
+    return contradiction(given +
+                         (formulation_name(options) == "shared"
+                              ? std::string(" belongs to the paper's contacts: add --contacts paper")
+                              : " belongs to depths on a grid: leave it out with --backend " + options.backend));
   }
-  if (!backend.on_grid) {
-    return contradiction(option + " belongs to depths on a grid: leave it out with --backend " + options.backend);
-  }
-  return {};
+  return backend.depth == depth_kind::as_printed ? check_as_printed(options) : result<void>();
 }
 
 result<chosen_renderer> make_chosen_renderer(scene bodies, const render_options& options) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "asperity/core/status.hpp"
+#include "asperity/depth/settings.hpp"
 #include "asperity/model/scene.hpp"
 #include "chosen_renderer.hpp"
 #include "cli.hpp"
@@ -17,16 +18,23 @@ struct render_options {
   std::string backend = "cpu";
   std::optional<std::string> gradient;  ///< of the paper's contacts on grids only
   std::optional<std::uint32_t> grid;    ///< of the paper's contacts on grids only
+  std::optional<std::string> lookup;    ///< of the paper's contacts on grids only
+  std::optional<std::string> gpu;       ///< index of a GPU or part of its name; of backends on a GPU only
+  bool fallback = false;                ///< of backends on a GPU only
   bool allow_scale_mismatch = false;
 };
 
-/// --contacts, --backend, --gradient, --grid and --allow-scale-mismatch.
+/// --contacts, --backend, --gradient, --grid, --lookup, --gpu, --fallback and --allow-scale-mismatch.
 void add_render_options(CLI::App& sub, render_options& options);
 
 /// What the options come to, for documents and captions.
 [[nodiscard]] std::string formulation_name(const render_options& options);
 [[nodiscard]] std::string gradient_name(const render_options& options);
 [[nodiscard]] json grid_json(const render_options& options);
+[[nodiscard]] json lookup_json(const render_options& options);
+
+/// What the options come to for a depth backend on grids.
+[[nodiscard]] depth_settings grid_settings(const render_options& options);
 
 /// Says what does not go together; asked before models are loaded, which takes longer.
 /// @return unsupported (a backend that is not part of this build) | invalid_argument

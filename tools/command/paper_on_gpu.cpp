@@ -1,0 +1,88 @@
+#include "paper_on_gpu.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "asperity/depth/fallback_depth.hpp"
+#include "asperity/render/default_renderer.hpp"
+
+namespace asperity::command {
+namespace {
+
+/// A depth backend whose ticks are counted for the report.
+template <class Depth>
+class counted_depth {
+ public:
+  using policy_tag = depth_tag;
+
+  counted_depth(Depth depth, std::shared_ptr<gpu_use> use) : depth_(std::move(depth)), use_(std::move(use)) {}
+
+  [[nodiscard]] status measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept {
+    const status s = depth_.measure(at, contacts, out);
+    ++use_->ticks;
+    if (s == status::backend_failed) ++use_->failed;
+    if constexpr (requires { depth_.counted(); }) use_->fallbacks = depth_.counted().fallbacks;
+    return s;
+  }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return depth_.heap_bytes(); }
+
+ private:
+  Depth depth_;
+  std::shared_ptr<gpu_use> use_;
+};
+
+/// Stands for a GPU that could not be opened.
+struct absent_depth {
+  using policy_tag = depth_tag;
+  [[nodiscard]] status measure(const scene_pose&, const contact_set&, std::span<penetration>) noexcept {
+    return status::backend_failed;
+  }
+};
+
+result<any_depth> open(const scene& bodies, const render_options& options, const depth_settings& settings,
+                       const contact_limits& limits, gpu_depth_maker* make_depth, gpu_use& use) {
+  const result<gl::context_ptr> context = gl::open_context({.device = options.gpu.value_or("")});
+  if (!context) return context.error();
+  result<any_depth> made = make_depth(*context, bodies, settings, limits);
+  if (!made) return made.error();
+  const gl::context_facts& facts = (*context)->facts();
+  use.device = facts.renderer;
+  use.version = facts.version;
+  use.software = facts.software;
+  use.device_bytes = (*context)->device_bytes();
+  use.leave_thread = [c = *context] { c->release(); };
+  return made;
+}
+
+bool is_the_gpu_s(error_code code) { return code == error_code::unsupported || code == error_code::limit_exceeded; }
+
+}  // namespace
+
+result<chosen_renderer> make_paper_on_gpu(scene bodies, const render_options& options, gpu_depth_maker* make_depth) {
+  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
+  const paper_settings settings{.depth = grid_settings(options)};
+  result<cpu_depth> cpu = make_cpu_depth(bodies, settings.depth);  // refuses what no backend can use
+  if (!cpu) return cpu.error();
+  const auto use = std::make_shared<gpu_use>();
+  use->fallback = options.fallback;
+  result<any_depth> gpu = open(bodies, options, settings.depth, settings.limits, make_depth, *use);
+  if (!gpu && !(options.fallback && is_the_gpu_s(gpu.error().code))) {
+    error why = gpu.error();
+    if (is_the_gpu_s(why.code)) why.message += "; or use --backend cpu, or --fallback";
+    return why;
+  }
+  if (!gpu) use->problem = gpu.error().message;
+  any_depth first = gpu ? std::move(gpu).value() : any_depth(absent_depth{});
+  any_depth depth =
+      options.fallback
+          ? any_depth(counted_depth(
+                fallback_depth<any_depth, any_depth>(std::move(first), any_depth(std::move(cpu).value())), use))
+          : any_depth(counted_depth(std::move(first), use));
+  convex_piece_finder finder(bodies, settings.finder);
+  using gpu_renderer = basic_renderer<convex_piece_finder, any_depth, gradient_penalty>;
+  return chosen_renderer(gpu_renderer(std::move(bodies), std::move(finder), std::move(depth),
+                                      gradient_penalty(settings.force), settings.limits),
+                         use);
+}
+
+}  // namespace asperity::command

@@ -1,0 +1,24 @@
+// What the backends on a GPU have in common: their device, their fallback, their counts.
+#pragma once
+
+#include "asperity/depth/any_depth.hpp"
+#include "asperity/depth/settings.hpp"
+#include "asperity/gl/context.hpp"
+#include "render_kinds.hpp"
+
+namespace asperity::command {
+
+using gpu_depth_maker = result<any_depth>(const gl::context_ptr& context, const scene& bodies,
+                                          const depth_settings& settings, const contact_limits& limits);
+
+gpu_depth_maker make_gl_compute_depth;    // paper_with_gl_compute.cpp
+gpu_depth_maker make_gl_occlusion_depth;  // paper_with_gl_occlusion.cpp
+
+/// The paper's renderer with a depth backend that `make_depth` makes on the GPU that the options ask for. Its ticks are
+/// compiled here, once for all such backends.
+/// With --fallback a GPU that cannot be used from the start is a GPU that fails in every tick.
+/// @return invalid_argument | bad_mesh | bad_texture | without --fallback also unsupported, limit_exceeded
+[[nodiscard]] result<chosen_renderer> make_paper_on_gpu(scene bodies, const render_options& options,
+                                                        gpu_depth_maker* make_depth);
+
+}  // namespace asperity::command
