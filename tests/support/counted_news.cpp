@@ -6,9 +6,13 @@
 namespace {
 thread_local std::size_t news = 0;
 
-void* take(std::size_t bytes) {
+void* take(std::size_t bytes) noexcept {
   ++news;
-  if (void* const p = std::malloc(bytes == 0 ? 1 : bytes)) return p;
+  return std::malloc(bytes == 0 ? 1 : bytes);
+}
+
+void* take_or_throw(std::size_t bytes) {
+  if (void* const p = take(bytes)) return p;
   throw std::bad_alloc();
 }
 }  // namespace
@@ -18,8 +22,10 @@ std::size_t news_in_this_thread() noexcept { return news; }
 }  // namespace asperity::test_support
 
 // Aligned forms call neither of these; nothing under test has over-aligned members.
-void* operator new(std::size_t bytes) { return take(bytes); }
-void* operator new[](std::size_t bytes) { return take(bytes); }
+void* operator new(std::size_t bytes) { return take_or_throw(bytes); }
+void* operator new[](std::size_t bytes) { return take_or_throw(bytes); }
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept { return take(bytes); }
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept { return take(bytes); }
 void operator delete(void* p) noexcept { std::free(p); }
 void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }

@@ -61,6 +61,7 @@ struct compute_depth::parts {
   mapped_buffer numbers, integers, results;
   std::vector<contact_jobs> placed;
   compute_counters counters;
+  bool overdue = false;  ///< the device has not answered yet, and may still read and write the buffers
 
   parts(context_ptr c, const scene& s, const depth_settings& settings, const compute_options& o)
       : context(std::move(c)), writer(s, settings), options(o) {}
@@ -180,6 +181,10 @@ status compute_depth::parts::measure(const contact_set& contacts, std::span<pene
   if (contacts.size() == 0) return status::ok;
   if (contacts.size() > options.contacts) return status::capacity_reached;
   if (context->make_current() != status::ok) return status::backend_failed;
+  if (overdue) {
+    if (wait_for_device(context->gl(), options.timeout_ns) != status::ok) return status::backend_failed;
+    overdue = false;
+  }
 
   const std::size_t jobs_each = writer.jobs_per_contact();
   number_list to_numbers = list(numbers);
@@ -223,7 +228,8 @@ status compute_depth::parts::measure(const contact_set& contacts, std::span<pene
   counters.contacts += contacts.size();
   const std::size_t result_bytes =
       placed.size() * jobs_each * groups * job::result_numbers * (doubles ? sizeof(double) : sizeof(float));
-  if (wait_for_device(gl, options.timeout_ns) != status::ok) return status::backend_failed;
+  overdue = wait_for_device(gl, options.timeout_ns) != status::ok;
+  if (overdue) return status::backend_failed;
   if (results.receive(result_bytes) != status::ok || context->check() != status::ok || gl.GetError() != GL_NO_ERROR) {
     return status::backend_failed;
   }
