@@ -60,7 +60,7 @@ worst_of run(const char* name, const context_ptr& context, const occlusion_optio
       const double half = c.window.half_size_m;
       // Where levels are finer than single precision, that is the quantum.
       const double range = made->quantum_m(0) * std::pow(2.0, options.depth_bits);
-      const double quantum = std::max(made->quantum_m(0), 1e-6 * (half + range));
+      const double quantum = std::max(made->quantum_m(0), 3e-7 * (half + range));
       const vec3 centre = centre_of_mass_w(s.bodies, s.T_wa[i]);
       const vec6 off = about_window(p.gradient - q.gradient, c.window.centre_w, centre);
       const auto note = [](double& to, double error) { to = std::max(to, error); };

@@ -83,7 +83,7 @@ struct occlusion_tiles {
 /// Agreement with cpu_depth, measured over 2000 contacts (tests/gl): the same flags and samples, depth_m within one
 /// quantum of the contact's depth buffer, and the gradient within two quanta of both depths that it is a difference of:
 /// 2 quantum_m / step_m across n, 2 quantum_m / step_rad about the rotation's origin. With 24 bits single precision is
-/// what limits: 1e-6 of the window's half size and the depth range together stand for the quantum where that is more.
+/// what limits: 3e-7 of the window's half size and the depth range together stand for the quantum where that is more.
 /// With moved_heights::reused turns about n are other than the CPU backend's.
 ///
 /// What the paper's backend cannot know is left as follows: soft_depth_m is depth_m and there is no curvature;
