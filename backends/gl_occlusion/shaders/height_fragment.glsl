@@ -2,8 +2,7 @@
 // hit, projected onto n (paper, Eq. 8).
 
 flat in vec2 tile;
-flat in vec4 edge_0, edge_1, edge_2, texel_x, texel_y, axis;
-flat in vec3 near_centre, rest_of_centre;
+flat in vec4 edge_0, edge_1, edge_2, texel_x, texel_y, axis, near_centre;
 
 layout(location = 0) out vec4 height;
 
@@ -13,13 +12,6 @@ uniform ivec2 tile_samples;  // samples per side of a tile, and of its margin
 uniform ivec2 mirrored;      // which quarter of the tile is drawn; 0 where tiles are not packed
 
 vec4 texel_of(bool probe, ivec2 at) { return probe ? texelFetch(texture_a, at, 0) : texelFetch(texture_b, at, 0); }
-
-// A texel's position along n. Texels and `near_centre` are single precision: their difference loses nothing.
-float height_of(vec3 texel) {
-  precise vec3 to_near = texel - near_centre;
-  precise vec3 to_centre = to_near - rest_of_centre;
-  return dot(axis.xyz, to_centre);
-}
 
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy) - ivec2(tile);
@@ -44,7 +36,9 @@ void main() {
   float along_x = dot(axis.xyz, t10.xyz - t00.xyz);
   float along_y = dot(axis.xyz, t01.xyz - t00.xyz);
   float twist = dot(axis.xyz, (t11.xyz - t01.xyz) - (t10.xyz - t00.xyz));
-  float h = height_of(t00.xyz) + f.x * (along_x + f.y * twist) + f.y * along_y;
+  // Texels and near_centre are single precision: their difference loses nothing. What near_centre is off the window's
+  // centre comes as a height, because as a vector it would be lost to a compiler that sums up the two first.
+  float h = dot(axis.xyz, t00.xyz - near_centre.xyz) - near_centre.w + f.x * (along_x + f.y * twist) + f.y * along_y;
   bool whole = t00.w * t10.w * t01.w * t11.w > 0.5;
   height = vec4(whole ? h : BAD_TEXEL);
 

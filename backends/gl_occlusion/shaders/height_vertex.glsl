@@ -13,12 +13,10 @@ layout(location = 6) in vec4 in_edge_2;      // and 1 for the probe, -1 for the 
 layout(location = 7) in vec4 in_texel_x;     // and the coarse height at the window's centre
 layout(location = 8) in vec4 in_texel_y;     // and by u
 layout(location = 9) in vec4 in_axis;        // and by v
-layout(location = 10) in vec4 in_near;
-layout(location = 11) in vec4 in_rest;
+layout(location = 10) in vec4 in_near;  // and the height that rounding it left over
 
 flat out vec2 tile;
-flat out vec4 edge_0, edge_1, edge_2, texel_x, texel_y, axis;
-flat out vec3 near_centre, rest_of_centre;
+flat out vec4 edge_0, edge_1, edge_2, texel_x, texel_y, axis, near_centre;
 
 uniform vec2 atlas_size;  // pixels
 
@@ -37,7 +35,6 @@ void main() {
   texel_x = in_texel_x;
   texel_y = in_texel_y;
   axis = in_axis;
-  near_centre = in_near.xyz;
-  rest_of_centre = in_rest.xyz;
+  near_centre = in_near;
   gl_Position = vec4((tile + corner) / atlas_size * 2.0 - 1.0, 0.0, 1.0);
 }

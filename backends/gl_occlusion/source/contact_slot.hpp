@@ -26,7 +26,7 @@ inline constexpr std::size_t searches = configurations + 1;
 struct contact_slot {
   std::uint32_t contact = 0;    ///< index in the call
   double half_m = 0.0;          ///< half size of its window
-  height_range a{}, b{};            ///< heights that the tiles can hold
+  height_range a{}, b{};        ///< heights that the tiles can hold
   bool visible = false;         ///< something may be seen of both bodies
   std::uint32_t outermost = 0;  ///< rings of samples, from the window's border, until one has a sample of both bodies
   std::uint32_t samples = 0;    ///< that both bodies have; 0: no overlap

@@ -14,13 +14,12 @@ constexpr float no_surface = -1e30F;
 
 }  // namespace
 
-std::string tile_definitions(const context_facts& facts, std::uint32_t depth_bits, bool packed) {
+std::string tile_definitions(std::uint32_t depth_bits, bool packed) {
   const depth_levels levels{depth_bits};
   std::string text = "#define NO_SURFACE (-1e30)\n#define BAD_TEXEL (-2e30)\n";
   text += "#define FIRST_LEVEL " + std::to_string(depth_levels::first) + ".0\n";
   text += "#define TOP_LEVEL " + std::to_string(levels.top()) + ".0\n";
   if (packed) text += "#define PACKED\n";
-  if (facts.dialect == dialect::es && facts.minor < 2) text += "#define precise\n";
   return text;
 }
 

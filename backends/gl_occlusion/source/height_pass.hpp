@@ -19,7 +19,7 @@ struct record_run {
 };
 
 /// Definitions that the stages share.
-[[nodiscard]] std::string tile_definitions(const context_facts& facts, std::uint32_t depth_bits, bool packed);
+[[nodiscard]] std::string tile_definitions(std::uint32_t depth_bits, bool packed);
 
 class height_pass {
  public:

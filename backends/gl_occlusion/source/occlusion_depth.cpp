@@ -84,7 +84,7 @@ result<void> occlusion_depth::parts::set_up() {
                      std::to_string(contacts) + " contacts do not fit into a texture of this device, " +
                      std::to_string(side) + " pixels per side; ask for fewer contacts or a smaller grid"};
   }
-  const std::string definitions = tile_definitions(context->facts(), options.depth_bits, options.packed);
+  const std::string definitions = tile_definitions(options.depth_bits, options.packed);
   // Every triangle may be drawn at rest and after every motion.
   const std::size_t records = options.triangles * (height_tiles() - 1);
   auto h = height_pass::make(context, for_heights, options.packed, definitions, tile_samples(), records);

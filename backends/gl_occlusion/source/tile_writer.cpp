@@ -108,10 +108,8 @@ height_range tile_writer::add(std::span<record_list> lists, std::size_t body_ind
   const vec3 axis = map.n_b / half;
   const vec3 centre_b = glm::conjugate(T_w_body.rotation) * (window.centre_w - T_w_body.position);
   const glm::vec3 near(centre_b);
-  const vec3 rest = centre_b - vec3(near);
   common.axis = narrow(axis.x, axis.y, axis.z, 0.0);
-  common.near = narrow(near.x, near.y, near.z, 0.0);
-  common.rest = narrow(rest.x, rest.y, rest.z, 0.0);
+  common.near = narrow(near.x, near.y, near.z, glm::dot(axis, centre_b - vec3(near)));
 
   height_range range;
   const double reach = half * tile_samples() / settings_.grid;

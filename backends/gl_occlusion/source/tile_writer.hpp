@@ -20,9 +20,9 @@ namespace asperity::gl {
 struct triangle_record {
   std::array<std::array<float, 2>, 7> corner;  ///< outline within the tile, pixels
   std::array<float, 2> tile;                   ///< first pixel of the tile
-  std::array<float, 4> edge_0, edge_1, edge_2, texel_x, texel_y, axis, near, rest;
+  std::array<float, 4> edge_0, edge_1, edge_2, texel_x, texel_y, axis, near;
 };
-static_assert(sizeof(triangle_record) == 12 * 4 * sizeof(float));
+static_assert(sizeof(triangle_record) == 11 * 4 * sizeof(float));
 
 /// Records of triangles in mapped memory. Writing past the end is counted, not done.
 struct record_list {

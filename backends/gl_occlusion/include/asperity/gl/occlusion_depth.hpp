@@ -80,10 +80,11 @@ struct occlusion_tiles {
 
 /// Directional penetration depth and its eleven-pose gradient, as cpu_depth with the same settings has them.
 ///
-/// Agreement with cpu_depth, measured over 2000 contacts (tests/gl): depth_m within one quantum of the contact's depth
-/// range; the gradient's components across n within quantum_m / step, its angular ones about the rotation's origin
-/// within quantum_m / angle. With 24 bits single precision is what limits: 1e-6 of the window's half size stands for
-/// the quantum where that is more. With moved_heights::reused only depth and forces keep these bounds.
+/// Agreement with cpu_depth, measured over 2000 contacts (tests/gl): the same flags and samples, depth_m within one
+/// quantum of the contact's depth buffer, and the gradient within two quanta of both depths that it is a difference of:
+/// 2 quantum_m / step_m across n, 2 quantum_m / step_rad about the rotation's origin. With 24 bits single precision is
+/// what limits: 3e-7 of the window's half size and the depth range together stand for the quantum where that is more.
+/// With moved_heights::reused turns about n are other than the CPU backend's.
 ///
 /// What the paper's backend cannot know is left as follows: soft_depth_m is depth_m and there is no curvature;
 /// witness_w is the window's centre, because a query tells that a sample is deep but not which. `samples` and `area_m2`
