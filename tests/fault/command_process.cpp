@@ -52,6 +52,7 @@ struct scratch_folder {
     const rlimit limit{*options.file_size_limit, *options.file_size_limit};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   std::vector<char*> argv;
   std::string command = ASPERITY_COMMAND;
   argv.push_back(command.data());

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace fault {
@@ -21,9 +22,10 @@ struct outcome {
 };
 
 struct process_options {
-  std::optional<unsigned long> file_size_limit;    ///< bytes; a fuller disk than any real one
-  std::optional<std::filesystem::path> stdout_to;  ///< instead of outcome::out
-  std::optional<double> interrupt_after_s;         ///< SIGINT this long after the command can take one
+  std::optional<unsigned long> file_size_limit;                    ///< bytes; a fuller disk than any real one
+  std::optional<std::filesystem::path> stdout_to;                  ///< instead of outcome::out
+  std::optional<double> interrupt_after_s;                         ///< SIGINT this long after the command can take one
+  std::vector<std::pair<std::string, std::string>> environment{};  ///< variables set beside the test's own
 };
 
 /// Runs `asperity ARGS...` to its end.
