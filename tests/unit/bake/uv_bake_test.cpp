@@ -16,14 +16,14 @@ const shapes::wavy_slab slab;
 constexpr double gap_m = 0.002, margin_m = 0.001;
 
 const triangle_mesh& original() {
-  static const triangle_mesh mesh = slab.fine_mesh(96);
+  static const triangle_mesh mesh = slab.fine_mesh(88);
   return mesh;
 }
 
 bake_options keeping(triangle_mesh coarse) {
   bake_options out;
   out.name = "slab";
-  out.texture_size = 416;
+  out.texture_size = 352;
   out.threads = 2;
   out.keep_uvs = true;
   out.coarse = std::move(coarse);
@@ -66,13 +66,15 @@ TEST(KeptUvs, BakeAsWellAsAnAtlasThatIsMade) {
   const auto made = bake(original(), making);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_NE(made->mesh.triangles[0].uv, kept().mesh.triangles[0].uv);
-  EXPECT_LT(shapes::slab_miss(slab, kept()), 0.03);
+  // What both miss is mostly the facets of the original.
+  EXPECT_LT(shapes::slab_miss(slab, kept()), 0.05);
+  EXPECT_NEAR(shapes::slab_miss(slab, kept()), shapes::slab_miss(slab, *made), 0.005);
   // Errors go with the texel's size squared.
   const double texels = kept().report.quality->texel_m / made->report.quality->texel_m;
   EXPECT_LT(kept().report.rms_error_m, 1.3 * texels * texels * made->report.rms_error_m);
   EXPECT_LT(kept().report.max_error_m, 0.1 * slab.amplitude_m);
   EXPECT_EQ(kept().report.quality->lost_share, 0.0);
-  EXPECT_NEAR(kept().report.quality->texel_m, (0.08 + gap_m + 2.0 * margin_m) / 416, 1e-8);
+  EXPECT_NEAR(kept().report.quality->texel_m, (0.08 + gap_m + 2.0 * margin_m) / 352, 1e-8);
 }
 
 TEST(KeptUvs, FeelLikeTheSurface) { shapes::expect_slab_feel(slab, kept(), 0.05, 0.05); }
@@ -90,13 +92,13 @@ TEST(KeptUvs, FeelTheSameWhereTexelsAreStretched) {
   for (auto& t : mesh.uvs)
     for (vec2& p : t) p.y = 0.25 + 0.5 * p.y + 0.1 * p.x;
   bake_options options = keeping(mesh);
-  options.texture_size = 640;
+  options.texture_size = 576;
   std::string said;
   options.remark = [&](std::string_view sentence) { said += sentence; };
   const auto model = bake(original(), options);
   ASSERT_TRUE(model) << model.error().message;
   shapes::expect_slab_feel(slab, *model, 0.05, 0.05);
-  EXPECT_LT(shapes::slab_miss(slab, *model), 0.03);
+  EXPECT_NEAR(shapes::slab_miss(slab, *model), shapes::slab_miss(slab, kept()), 0.01);
   EXPECT_NE(said.find("stretch the texels"), std::string::npos) << said;
 }
 
@@ -122,6 +124,7 @@ TEST(KeptUvs, StayAtTheirCornersWhenTrianglesAreTurned) {
 TEST(KeptUvs, OfAMeshThatIsItsOwnCoarseMesh) {
   bake_options options = keeping(low());
   options.coarse.reset();
+  options.texture_size = 240;
   options.relief.height_m = [](const relief_point& p) {
     return std::abs(p.normal.z) > 0.5 ? slab.height(p.position.x, p.position.y) : 0.0;
   };
