@@ -22,14 +22,13 @@
 #include "bake/stage_monitor.hpp"
 #include "bake/stitch.hpp"
 #include "bake/triangle_bvh.hpp"
+#include "bake/uv_atlas.hpp"
 #include "bake/winding.hpp"
 
 namespace asperity::bake {
 namespace {
 
 constexpr std::size_t fewest_triangles = 4;
-constexpr std::uint32_t smallest_texture = 16;
-constexpr std::uint32_t largest_texture = 8192;
 
 // Rays go a little past the measured distance between the surfaces: along a slanted normal the way is longer.
 constexpr double range_per_cage = 2.0;
@@ -52,6 +51,19 @@ result<void> check_options(const bake_options& options) {
   if (options.pieces && *options.pieces == 0)
     return error{error_code::invalid_argument, "a model of no convex pieces cannot be touched; ask for 1 or more"};
   return {};
+}
+
+// What can be told of texture coordinates that are to be kept before any work is done.
+result<void> check_kept_uvs(const triangle_mesh& full, const bake_options& options) {
+  if (!options.keep_uvs) return {};
+  if (options.coarse) return check_uvs(*options.coarse, options.texture_size);
+  if (full.triangles.size() > options.triangles)
+    return error{error_code::invalid_argument,
+                 "the mesh has " + std::to_string(full.triangles.size()) + " triangles, and simplifying it to " +
+                     std::to_string(options.triangles) +
+                     " would lose its texture coordinates; to keep them give a coarse mesh that has some, or ask for "
+                     "as many triangles as the mesh has"};
+  return check_uvs(full, options.texture_size);
 }
 
 // The coarse mesh that the user gives, checked, or one made by simplifying.
@@ -118,8 +130,10 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
 
   if (!monitor.begin("check")) return cancelled();
   if (const auto sound = check_options(options); !sound) return sound.error();
-  const auto full = check(full_mesh);
+  if (const auto sound = check_kept_uvs(full_mesh, options); !sound) return sound.error();
+  auto full = check(full_mesh);
   if (!full) return full.error();
+  if (!options.relief.reads_uvs && !options.keep_uvs) full->mesh.uvs = {};
   if (full->turned_triangles > 0) remark(options, winding_remark(full->turned_triangles));
   if (full->flipped) remark(options, "the mesh was inside-out and has been turned");
   const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles);
@@ -132,21 +146,18 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);
   if (!coarse) return coarse.error();
   remark(options, coarse->note);
-  if (options.relief && full->turned_triangles > 0)
-    return error{error_code::bad_mesh,
-                 "in the mesh " + std::to_string(full->turned_triangles) +
-                     " of the triangles wind against their neighbours; a relief lies on triangles "
-                     "as they come, so let their normals agree first"};
-  const added_relief added{options.relief, full->mesh, full->flipped};
+  const added_relief added{options.relief, full->mesh};
   if (const auto sound = check_relief(added, diagonal); !sound) return sound.error();
   if (!monitor.begin("compare")) return cancelled();
   const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
   if (!cage) return cage.error();
 
   if (!monitor.begin("atlas")) return cancelled();
-  const auto charts = make_atlas(coarse->mesh, options.texture_size);
+  const auto charts = options.keep_uvs ? atlas_from_uvs(coarse->mesh, options.texture_size)
+                                       : make_atlas(coarse->mesh, options.texture_size);
   if (!charts) return charts.error();
-  remark(options, too_coarse_remark(options.relief, charts->texel_m, options.texture_size));
+  remark(options, distortion_remark(*charts));
+  remark(options, too_coarse_remark(options.relief, charts->wide_m, options.texture_size));
 
   if (!monitor.begin("project")) return cancelled();
   const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);

@@ -27,8 +27,8 @@ struct checked_mesh {
 };
 
 /// Checks a mesh and turns it the right way out, triangle by triangle where neighbours disagree. Several components are
-/// allowed, each closed; one inside another is a cavity and then faces inwards. Texture coordinates are dropped: the
-/// bake makes its own.
+/// allowed, each closed; one inside another is a cavity and then faces inwards. Triangles keep their order, and texture
+/// coordinates stay at their corners; they are not looked at.
 /// @param what names the mesh in messages: "the mesh", "the coarse mesh"
 /// @return bad_mesh with the fault, its place (triangle and coordinates) and the mend; limit_exceeded
 [[nodiscard]] result<checked_mesh> check(const triangle_mesh& mesh, std::string_view what = "the mesh");

@@ -96,15 +96,17 @@ double height_at(const solved_surface& s, const vec3& p) {
 
 }  // namespace
 
-result<normal_map_relief> integrate_normal_map(const triangle_mesh& mesh, const map_image& map,
+result<normal_map_relief> integrate_normal_map(const triangle_mesh& given, const map_image& map,
                                                const normal_map_settings& settings) {
-  if (mesh.uvs.size() != mesh.triangles.size() || mesh.triangles.empty())
+  if (given.uvs.size() != given.triangles.size() || given.triangles.empty())
     return error{error_code::bad_mesh,
                  "the mesh has no texture coordinates, so a map cannot be laid on it; export it with its UVs (OBJ, "
                  "glTF)"};
   if (!std::isfinite(settings.scale))
     return error{error_code::invalid_argument, "the scale of a normal map has to be a finite number"};
-  if (const auto sound = check(mesh); !sound) return sound.error();
+  const auto sound = check(given);
+  if (!sound) return sound.error();
+  const triangle_mesh& mesh = sound->mesh;  // its normals point outwards, whatever the winding was
   const auto slopes = slopes_of(map, settings);
   if (!slopes) return slopes.error();
   normal_map_relief out;

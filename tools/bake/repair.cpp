@@ -109,7 +109,7 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
                                            " more than two triangles; remove duplicate or inner faces first"};
   }
   hole_report report;
-  std::vector<index_triangle> wound = mesh.triangles;
+  triangle_mesh wound{{}, mesh.triangles, mesh.uvs};
   if (around.misoriented_edges.count != 0) {
     const auto turned = make_winding_consistent(wound);
     if (!turned) {
@@ -117,10 +117,10 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
                    "cannot close holes: the surface has only one side, as a Moebius band has; cut it or remove faces"};
     }
     report.triangles_turned = *turned;
-    around = connect(wound, mesh.positions.size());
+    around = connect(wound.triangles, mesh.positions.size());
   }
 
-  const auto holes = find_holes(wound, around);
+  const auto holes = find_holes(wound.triangles, around);
   for (const auto& hole : holes) {
     if (hole.size() > largest_hole_edges) {
       return error{error_code::bad_mesh, "cannot close holes: one has " + std::to_string(hole.size()) +
@@ -128,7 +128,8 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
                                              "; close it in a mesh editor, where its shape can be chosen"};
     }
   }
-  mesh.triangles = std::move(wound);
+  mesh.triangles = std::move(wound.triangles);
+  mesh.uvs = std::move(wound.uvs);
   report.holes = holes.size();
   const std::size_t before = mesh.triangles.size();
   for (const auto& hole : holes) {
@@ -138,7 +139,7 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
     report.largest_m = std::max(report.largest_m, widest_distance(mesh.positions, hole));
   }
   report.triangles_added = mesh.triangles.size() - before;
-  if (report.holes + report.triangles_turned != 0) mesh.uvs.clear();
+  if (report.holes != 0) mesh.uvs.clear();
   return report;
 }
 
