@@ -73,8 +73,8 @@ TEST(close_holes, does_not_fold_a_patch_onto_what_is_there) {
   EXPECT_EQ(report->holes, 1U);
   EXPECT_EQ(report->triangles_added, 3U);
   EXPECT_TRUE(is_closed_and_oriented(m));
-  const double sloping = 0.5 * std::sqrt(2.0), beside = 0.5 * std::sqrt(1.25);
-  EXPECT_NEAR(report->area_added_m2, sloping + 2 * beside, 1e-12);
+  const double flat = 0.5, standing = 0.75, beside = 0.5 * std::sqrt(1.25);  // from a far corner of the rim
+  EXPECT_NEAR(report->area_added_m2, flat + standing + beside, 1e-12);
   EXPECT_GT(report->area_added_m2, 1.0 + 0.5) << "the folded patch is smaller";
 }
 
