@@ -121,7 +121,9 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     scale_to_metres(*options.units, *coarse);
     settings.coarse = std::move(coarse).value();
   }
-  const result<textured_model> model = bake::bake(*full, settings);
+  // A mesh that the picture does not need is not kept twice.
+  const result<textured_model> model =
+      drawing && !settings.relief ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
   if (!model) return model.error();
 
   json picture;

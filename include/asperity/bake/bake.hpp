@@ -45,6 +45,6 @@ struct bake_options {
 /// @return bad_mesh | bad_texture (relief) | invalid_argument | limit_exceeded | cancelled, with the fault, its place
 /// and
 ///         the mend
-[[nodiscard]] result<textured_model> bake(const triangle_mesh& full, const bake_options& options);
+[[nodiscard]] result<textured_model> bake(triangle_mesh full, const bake_options& options);
 
 }  // namespace asperity::bake
