@@ -1,5 +1,7 @@
 #include "render_options.hpp"
 
+#include "asperity/depth/settings.hpp"
+
 namespace asperity::command {
 
 void add_render_options(CLI::App& sub, render_options& options) {
@@ -27,32 +29,6 @@ std::string gradient_name(const render_options& options) {
 
 json grid_json(const render_options& options) {
   return options.contacts == "shared" ? json() : json(options.grid.value_or(depth_settings{}.grid));
-}
-
-result<void> check(const render_options& options) {
-  if (options.backend != "cpu") {
-    return error{error_code::unsupported,
-                 "the depth backend " + options.backend + " is not part of this build: use --backend cpu"};
-  }
-  if (options.contacts == "shared" && (options.gradient || options.grid)) {
-    return error{error_code::invalid_argument, std::string(options.gradient ? "--gradient" : "--grid") +
-                                                   " belongs to the paper's contacts: add --contacts paper"};
-  }
-  return {};
-}
-
-result<chosen_renderer> make_chosen_renderer(scene bodies, const render_options& options) {
-  if (const result<void> ok = check(options); !ok) return ok.error();
-  const auto chosen = [](auto made) -> result<chosen_renderer> {
-    if (!made) return made.error();
-    return chosen_renderer(std::move(made).value());
-  };
-  if (options.contacts == "shared") return chosen(make_renderer(std::move(bodies)));
-  paper_settings settings;
-  settings.depth.gradient =
-      options.gradient.value_or("soft") == "central" ? gradient_scheme::central_difference : gradient_scheme::soft_max;
-  if (options.grid) settings.depth.grid = *options.grid;
-  return chosen(make_paper_renderer(std::move(bodies), settings));
 }
 
 }  // namespace asperity::command
