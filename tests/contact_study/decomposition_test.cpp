@@ -6,7 +6,6 @@
 #include <optional>
 #include <vector>
 
-#include "asperity/asperity.hpp"
 #include "contact_study/study_models.hpp"
 #include "contact_study/touching_pose.hpp"
 
@@ -58,11 +57,11 @@ TEST(decomposition, the_wrench_is_the_same_however_a_model_was_cut) {
   ASSERT_GT(halves.probe->pieces.size(), as_baked.probe->pieces.size());
   ASSERT_GT(triangles.probe->pieces.size(), halves.probe->pieces.size());
 
-  auto baked = make_renderer(as_baked);
-  auto finer = make_renderer(halves);
-  auto finest = make_renderer(triangles);
-  auto paper_baked = make_paper_renderer(as_baked);
-  auto paper_finest = make_paper_renderer(triangles);
+  auto baked = build_renderer(as_baked);
+  auto finer = build_renderer(halves);
+  auto finest = build_renderer(triangles);
+  auto paper_baked = build_paper_renderer(as_baked);
+  auto paper_finest = build_paper_renderer(triangles);
   ASSERT_TRUE(baked && finer && finest && paper_baked && paper_finest);
 
   const std::array<pose, 1> T_wb{};

@@ -17,7 +17,7 @@ pair_of_renderers& renderers() {
 
 const std::vector<double>& exact_spectrum() {
   static const std::vector<double> made =
-      amplitude_spectrum(exact_on_slide(renderers().shared().force().settings().stiffness_n_per_m));
+      amplitude_spectrum(exact_on_slide(renderers().shared().settings().stiffness_n_per_m));
   return made;
 }
 
@@ -50,7 +50,7 @@ constexpr double textures_limit = 1e-3, above_limit = 2e-5;
 
 TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
   for (const std::uint32_t box_texture : {768U, 384U}) {
-    renderer made = make_renderer(uniform_slide::bodies(box_texture)).value();
+    built_renderer made = build_renderer(uniform_slide::bodies(box_texture)).value();
     const excess more = excess_of(felt_on_slide(feel_with(made)));
     std::printf("box of %u texels: %.2g in the textures' band, %.2g above\n", box_texture, more.textures, more.above);
     EXPECT_LT(more.textures, textures_limit) << box_texture;
@@ -62,8 +62,8 @@ TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
 TEST(UniformSlide, AHardMaximumOverTheSameSamplesRings) {
   const scene bodies = uniform_slide::bodies(384);
   renderer_settings settings;
-  settings.shared.tau_m = make_renderer(bodies).value().force().settings().tau_m / 32.0;
-  renderer hard = make_renderer(bodies, settings).value();
+  settings.shared.tau_m = build_renderer(bodies).value().settings().tau_m / 32.0;
+  built_renderer hard = build_renderer(bodies, settings).value();
   const excess more = excess_of(felt_on_slide(feel_with(hard)));
   std::printf("hard: %.2g in the textures' band, %.2g above\n", more.textures, more.above);
   EXPECT_GT(more.above, 2.0 * above_limit);
@@ -71,7 +71,7 @@ TEST(UniformSlide, AHardMaximumOverTheSameSamplesRings) {
 
 // The exact depth is the measure of the above: it has to be one.
 TEST(UniformSlide, IsFeltAsDeepAsItIs) {
-  const shared_settings& s = renderers().shared().force().settings();
+  const shared_settings& s = renderers().shared().settings();
   const feel_function feel = feel_with(renderers().shared());
   for (std::size_t i = 0; i < uniform_slide::ticks; i += 256) {
     const pose T = uniform_slide::at(i);

@@ -100,7 +100,7 @@ void rest_everywhere(double seconds) {
       renderer_settings settings = scene_settings();
       settings.cells.sample_pitch_m = 0.8 * mm;  // half as fine as elsewhere: a minute is many ticks
       const auto make = [&] { return make_scene_renderer(place.scene, settings); };
-      renderer feel = make();
+      built_renderer feel = make();
       const vec3 centre = feel.scene().probe->mass.centre_of_mass;
       const restlessness r = rest(std::move(feel), place, centre, period_ns, seconds);
       const bool slow = period_ns == 5'000'000;

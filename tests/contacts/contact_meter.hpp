@@ -10,10 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/render/default_renderer.hpp"
 #include "contact_scenes.hpp"
+#include "support/built_renderers.hpp"
 
 namespace asperity::contacts_test {
+
+using test_support::build_paper_renderer;
+using test_support::build_renderer;
+using test_support::built_paper_renderer;
+using test_support::built_renderer;
 
 inline constexpr double stiffness_n_per_m = 2000.0;
 inline constexpr double tau_m = 0.02 * mm;
@@ -39,9 +44,9 @@ template <class T>
   return std::move(made).value();
 }
 
-[[nodiscard]] inline renderer make_scene_renderer(const contact_scene& s, const renderer_settings& settings,
-                                                  const model_plan& plan = {}) {
-  return value_of(make_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}, settings));
+[[nodiscard]] inline built_renderer make_scene_renderer(const contact_scene& s, const renderer_settings& settings,
+                                                        const model_plan& plan = {}) {
+  return value_of(build_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}, settings));
 }
 
 /// Wrench on the probe, fixed body at the origin.
@@ -148,14 +153,14 @@ template <class Renderer>
 }
 
 /// A renderer of the scene, plain or with waves on both bodies.
-[[nodiscard]] inline renderer make_waved_renderer(const contact_scene& s, bool textured,
-                                                  const renderer_settings& settings) {
+[[nodiscard]] inline built_renderer make_waved_renderer(const contact_scene& s, bool textured,
+                                                        const renderer_settings& settings) {
   model_plan probe, fixed;
   if (textured) {
     probe.height = waves(3.7 * mm);
     fixed.height = waves(4.3 * mm);
   }
-  return value_of(make_renderer({make_model(s.probe, probe), {make_model(s.fixed, fixed)}}, settings));
+  return value_of(build_renderer({make_model(s.probe, probe), {make_model(s.fixed, fixed)}}, settings));
 }
 
 }  // namespace asperity::contacts_test

@@ -19,7 +19,7 @@ struct allowance {
 
 void expect_no_jump(const contact_scene& s, const allowance& allowed) {
   SCOPED_TRACE(s.name);
-  renderer r = make_scene_renderer(s, scene_settings(allowed.tau_m));
+  built_renderer r = make_scene_renderer(s, scene_settings(allowed.tau_m));
   double most_n = 0.0;
   for (double t = 0.0; t <= 1.0; t += 0.05) most_n = std::max(most_n, glm::length(wrench_at(r, s.path(t)).force));
   EXPECT_GT(most_n, 0.5);  // nothing changes where nothing is felt
@@ -56,7 +56,7 @@ TEST(Continuity, TexturedSlide) {
   renderer_settings settings = scene_settings();
   settings.cells.sample_pitch_m = 0.6 * mm;
   contact_scene s = slide();
-  renderer r = make_waved_renderer(s, true, settings);
+  built_renderer r = make_waved_renderer(s, true, settings);
   const continuity c = measure_continuity(r, s, 20);
   std::printf("textured slide               : |dF| %6.3f at 1 kHz, %6.3f at 10 kHz; |dT| %6.3f, %6.3f\n", c.slow.force,
               c.fast.force, c.slow.torque, c.fast.torque);
@@ -70,7 +70,7 @@ TEST(Continuity, TexturedSlide) {
 continuity of_the_paper(const contact_scene& s) {
   model_plan plan;
   plan.halvings = 1;
-  paper_renderer r = value_of(make_paper_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
+  built_paper_renderer r = value_of(build_paper_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
   const continuity c = measure_continuity(r, s, 1000);
   std::printf("%-14s the paper's:  |dF| %6.3f at 1 kHz, %6.3f at 10 kHz\n", s.name.c_str(), c.slow.force, c.fast.force);
   return c;
@@ -90,7 +90,7 @@ TEST(Continuity, ThePapersClustersJump) {
 // A face that slides off presses harder before it lets go: its samples fade while the edge takes over.
 TEST(Continuity, SlideOffPressesLittleHarder) {
   const contact_scene s = slide_off();
-  renderer r = make_scene_renderer(s, scene_settings());
+  built_renderer r = make_scene_renderer(s, scene_settings());
   const double on_the_face = glm::length(wrench_at(r, s.path(0.0)).force);
   double most = 0.0;
   for (double t = 0.0; t < 1.1; t += 0.002) most = std::max(most, glm::length(wrench_at(r, s.path(t)).force));
@@ -105,7 +105,7 @@ TEST(Continuity, SlideOffPressesLittleHarder) {
 TEST(Continuity, APullNearEdgesIsSmall) {
   const contact_scene s = stepped_block();
   for (const double tau : {0.02 * mm, 0.05 * mm}) {
-    renderer r = make_scene_renderer(s, scene_settings(tau));
+    built_renderer r = make_scene_renderer(s, scene_settings(tau));
     constexpr int ticks = 1000;
     double push_n = 0.0, pull_n = 0.0;
     int pulling = 0;

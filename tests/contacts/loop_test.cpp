@@ -45,7 +45,7 @@ TEST(Loop, ClosedLoopsDoNoWork) {
   for (const contact_scene& s : {slide(), concave_corner(), v_groove(), stepped_block(), peg_in_hole()}) {
     for (const bool textured : {false, true}) {
       SCOPED_TRACE(s.name);
-      renderer r = make_waved_renderer(s, textured, settings);
+      built_renderer r = make_waved_renderer(s, textured, settings);
       const double part = loop_work(r, s.path(0.37), 1000);
       std::printf("%-14s %-8s loop work %.1e of the work exchanged\n", s.name.c_str(), textured ? "textured" : "plain",
                   part);
@@ -58,7 +58,7 @@ TEST(Loop, ThePapersClustersDoWorkInALoop) {
   const contact_scene s = v_groove();
   model_plan plan;
   plan.halvings = 1;
-  paper_renderer r = value_of(make_paper_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
+  built_paper_renderer r = value_of(build_paper_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
   const double part = loop_work(r, s.path(0.37), 1000);
   std::printf("%-14s the paper's: loop work %.1e\n", s.name.c_str(), part);
   EXPECT_GT(part, 1e-3);

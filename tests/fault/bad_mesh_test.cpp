@@ -1,4 +1,6 @@
 // Meshes that cannot become a textured model.
+#include <sstream>
+
 #include "command_process.hpp"
 
 namespace fault {
@@ -131,6 +133,30 @@ TEST_F(bad_mesh, a_speck_is_asked_about_too) {
   EXPECT_NE(message.find("173 um"), std::string::npos) << message;
   EXPECT_NE(message.find("--units m "), std::string::npos) << message;
   EXPECT_EQ(message.find("--units mm"), std::string::npos) << message;
+}
+
+TEST_F(bad_mesh, texture_coordinates_that_cannot_be_kept) {
+  write("bare.obj", std::string(cube_vertices) + cube_without_lid + "f 5 6 7 8\n");
+  const std::vector<std::string> bake{"bake", path("bare.obj"), "--keep-uvs", "--texture", "64", "-o", path("out.glb")};
+  const std::string none = expect_failure(bake, 1, "bad_mesh");
+  EXPECT_NE(none.find("no texture coordinates to keep"), std::string::npos) << none;
+  std::string stacked = std::string(cube_vertices) + "vt 0.1 0.1\nvt 0.9 0.1\nvt 0.9 0.9\nvt 0.1 0.9\n";
+  for (const char* face : {"4 3 2 1", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8", "5 6 7 8"}) {
+    std::istringstream corners(face);
+    std::string vertex;
+    stacked += "f";
+    for (int k = 1; corners >> vertex; ++k) stacked += ' ' + vertex + '/' + std::to_string(k);
+    stacked += '\n';
+  }
+  write("stacked.obj", stacked);
+  const std::string overlap = expect_failure(
+      {"bake", path("stacked.obj"), "--keep-uvs", "--texture", "64", "-o", path("out.glb")}, 1, "bad_mesh");
+  EXPECT_NE(overlap.find("triangles 0 and 2 of the coarse mesh overlap"), std::string::npos) << overlap;
+  write("open.obj", std::string(cube_vertices) + cube_without_lid);
+  const std::string closed = expect_failure(
+      {"bake", path("open.obj"), "--keep-uvs", "--close-holes", "--texture", "64", "-o", path("out.glb")}, 1,
+      "invalid_argument");
+  EXPECT_NE(closed.find("have no texture coordinates"), std::string::npos) << closed;
 }
 
 TEST_F(bad_mesh, coarse_mesh_is_checked_too) {

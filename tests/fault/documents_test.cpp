@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 #include "command_process.hpp"
 
@@ -107,6 +108,68 @@ TEST_F(documents, scale_changes_units_and_inspect_warns) {
   const json seen = expect_document({"inspect", path("huge.glb")}, "asperity.inspect/1");
   ASSERT_FALSE(seen["warnings"].empty());
   EXPECT_NE(seen["warnings"][0].get<std::string>().find("--scale"), std::string::npos);
+}
+
+// A cube of 50 mm, drawn in millimetres, each face with a place of its own in the image.
+std::string unwrapped_cube() {
+  std::string out = "v 0 0 0\nv 50 0 0\nv 50 50 0\nv 0 50 0\nv 0 0 50\nv 50 0 50\nv 50 50 50\nv 0 50 50\n";
+  const char* const faces[] = {"4 3 2 1", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8", "5 6 7 8"};
+  std::string lines;
+  for (int f = 0; f < 6; ++f) {
+    const double u = 0.05 + 0.3 * (f % 3), v = 0.1 + 0.4 * (f / 3);
+    std::istringstream corners(faces[f]);
+    lines += "f";
+    for (int k = 0; k < 4; ++k) {
+      const double side = 0.25;
+      out += "vt " + std::to_string(u + (k == 1 || k == 2 ? side : 0.0)) + ' ' +
+             std::to_string(v + (k >= 2 ? side : 0.0)) + '\n';
+      std::string vertex;
+      corners >> vertex;
+      lines += ' ' + vertex + '/' + std::to_string(4 * f + k + 1);
+    }
+    lines += '\n';
+  }
+  return out + lines;
+}
+
+TEST_F(documents, a_bake_keeps_texture_coordinates) {
+  write("low.obj", unwrapped_cube());
+  write("full.obj", unwrapped_cube());
+  const json made = expect_document(
+      {"bake", path("full.obj"), "--units", "mm", "--texture", "96", "-o", path("made.glb")}, "asperity.bake/1");
+  EXPECT_EQ(made["uvs"], "made");
+  const json kept = expect_document({"bake", path("full.obj"), "--coarse", path("low.obj"), "--keep-uvs", "--units",
+                                     "mm", "--texture", "96", "-o", path("kept.glb")},
+                                    "asperity.bake/1");
+  EXPECT_EQ(kept["uvs"], "kept");
+  EXPECT_EQ(kept["warnings"], json::array());
+  EXPECT_NEAR(kept["texture"]["texel"], 0.05 / (0.25 * 96), 1e-8);
+  EXPECT_NEAR(kept["texture"]["utilisation"], 6 * 0.25 * 0.25, 1e-6);
+  EXPECT_NE(read("kept.glb"), read("made.glb"));
+  // A mesh that is its own coarse mesh keeps them too.
+  const json alone = expect_document({"bake", path("low.obj"), "--keep-uvs", "--units", "mm", "--texture", "96",
+                                      "--name", "full", "-o", path("alone.glb")},
+                                     "asperity.bake/1");
+  EXPECT_EQ(alone["uvs"], "kept");
+  EXPECT_EQ(read("alone.glb"), read("kept.glb"));
+}
+
+TEST_F(documents, inspect_takes_the_original_in_its_own_units) {
+  write("cube.obj", unwrapped_cube());
+  ASSERT_EQ(run({"bake", path("cube.obj"), "--units", "mm", "--texture", "64", "-o", path("cube.glb")}).exit_status, 0);
+  const std::vector<std::string> inspect{"inspect",        path("cube.glb"), "--original",
+                                         path("cube.obj"), "--picture",      path("cube.png")};
+  const auto with = [&](std::initializer_list<const char*> more) {
+    std::vector<std::string> args = inspect;
+    args.insert(args.end(), more.begin(), more.end());
+    return args;
+  };
+  for (const auto& said : {with({"--units", "mm"}), with({"--scale", "0.001"})}) {
+    const json seen = expect_document(said, "asperity.inspect/1");
+    EXPECT_LT(seen["picture"]["largest"], 1e-6);
+  }
+  const std::string message = expect_failure(inspect, 1, "invalid_argument");
+  EXPECT_NE(message.find("--units mm (86.6 mm)"), std::string::npos) << message;
 }
 
 class query_document : public documents, public testing::WithParamInterface<const char*> {};

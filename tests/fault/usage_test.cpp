@@ -70,6 +70,7 @@ TEST_F(usage, options_of_a_picture_need_a_picture) {
                                                                  {"--turn", "30"},
                                                                  {"--picture", path("model.jpg")},
                                                                  {"--picture", path("model.png"), "--scale", "0.001"},
+                                                                 {"--picture", path("model.png"), "--units", "mm"},
                                                                  {"--picture", path("model.png"), "--up", "w"}}) {
     arguments args{"inspect", path("model.glb")};
     args.insert(args.end(), alone.begin(), alone.end());
@@ -79,6 +80,9 @@ TEST_F(usage, options_of_a_picture_need_a_picture) {
 
 TEST_F(usage, options_that_exclude_each_other) {
   expect_failure({"bake", path("mesh.ply"), "-o", path("model.glb"), "--triangles", "500", "--coarse", path("low.ply")},
+                 2, "usage");
+  expect_failure({"inspect", path("model.glb"), "--picture", path("model.png"), "--original", path("mesh.obj"),
+                  "--units", "mm", "--scale", "0.001"},
                  2, "usage");
 }
 

@@ -91,7 +91,7 @@ TEST(BakeMemory, TenMillionTrianglesAreRefusedWithinFourTimesTheFile) {
   EXPECT_LE(got.peak_bytes, times_the_file * bytes + plus_bytes);
 }
 
-// Not a promise in terms of the file, but a figure to hold: a bake that goes to its end keeps trees and queues.
+// What the system counts; memory_count holds what the allocator is asked for to 160.
 TEST(BakeMemory, AWholeBakeTakesABoundedNumberOfBytesPerTriangle) {
   const test_support::scratch_folder folder;
   const fs::path file = folder.file("big.ply");
@@ -99,7 +99,7 @@ TEST(BakeMemory, AWholeBakeTakesABoundedNumberOfBytesPerTriangle) {
   const probe_outcome got = run_probe("bake", file, {.cpu_s = 60});
   print("100,000 triangles to the end", fs::file_size(file), got);
   EXPECT_EQ(got.said, "loaded");
-  EXPECT_LE(got.peak_bytes, std::size_t{100'000} * 500 + plus_bytes);
+  EXPECT_LE(got.peak_bytes, std::size_t{100'000} * 200 + plus_bytes);
 }
 
 }  // namespace

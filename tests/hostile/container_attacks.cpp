@@ -83,7 +83,9 @@ std::vector<attack> container_attacks() {
   add_text(out, "A11_2_million_nodes", "holds more than 200000 JSON items, the last at byte ",
            [] { return R"({"asset":{"version":"2.0"},"nodes":[)" + repeated("{}", 2'000'000) + "]}"; });
   out.push_back(of_bytes("JSON_of_17_MiB", " bytes of JSON, more than the limit of 16777216; ", [] {
-    return glb(with_extras('"' + std::string(17U << 20, 'x') + '"'), tetrahedron_bytes());
+    std::string quoted((17U << 20) + 2, 'x');
+    quoted.front() = quoted.back() = '"';
+    return glb(with_extras(quoted), tetrahedron_bytes());
   }));
   add_text(out, "name_twice", "holds JSON with the name 'byteLength' twice in one object; ", [] {
     return std::string(R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":4,"byteLength":99999}]})");

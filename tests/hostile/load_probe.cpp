@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 #include <tiny_gltf.h>
+#include <utility>
 
 #include "asperity/bake/bake.hpp"
 #include "asperity/io/image_file.hpp"
@@ -34,13 +35,13 @@ std::string load_mesh(const char* file) {
 }
 
 std::string load_and_bake(const char* file) {
-  const auto mesh = asperity::io::load_mesh(file);
+  auto mesh = asperity::io::load_mesh(file);
   if (!mesh) return mesh.error().message;
   asperity::bake::bake_options options;
   options.triangles = 200;
   options.texture_size = 128;
   options.threads = 1;
-  const auto model = asperity::bake::bake(*mesh, options);
+  const auto model = asperity::bake::bake(std::move(*mesh), options);
   return model ? "loaded" : model.error().message;
 }
 

@@ -8,7 +8,7 @@
 
 #include "asperity/io/image_file.hpp"
 #include "asperity/model/validate.hpp"
-#include "asperity/render/default_renderer.hpp"
+#include "support/built_renderers.hpp"
 
 namespace asperity::hostile {
 namespace {
@@ -84,12 +84,13 @@ std::optional<std::string> complaint(const result<textured_model>& loaded) {
   if (!loaded) return complaint(loaded.error());
   if (const auto valid = validate(*loaded); !valid) return "an invalid model: " + valid.error().message;
   const auto model = std::make_shared<const textured_model>(*loaded);
-  if (auto bad = complaint_of_tick(make_paper_renderer({model, {model}}, small_settings()), *model)) return bad;
+  if (auto bad = complaint_of_tick(test_support::build_paper_renderer({model, {model}}, small_settings()), *model))
+    return bad;
   // Cutting in cells takes longer than all the rest; one model in 64, the first among them, is enough of it.
   static std::uint64_t models = 0;
   if (models++ % 64 != 0) return std::nullopt;
   const near_limits few{.cells = 64, .tiles = 4096, .edges = 64};
-  auto shared = make_renderer({model, {model}}, {.limits = few});
+  auto shared = test_support::build_renderer({model, {model}}, {.limits = few});
   // A relief map that would be too large is refused, with its reason.
   if (!shared && shared.error().code == error_code::invalid_argument) return complaint(shared.error());
   return complaint_of_tick(std::move(shared), *model);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "oracle/brute_force.hpp"
+#include "support/built_renderers.hpp"
 
 namespace asperity::oracle {
 namespace {
@@ -43,7 +44,7 @@ comparison compare_with_originals(const original_and_bake& a, const original_and
   comparison out;
   paper_settings settings;
   settings.depth.grid = comparison_grid;
-  auto made = make_paper_renderer({a.model, {b.model}}, settings);
+  auto made = test_support::build_paper_renderer({a.model, {b.model}}, settings);
   if (!made) {
     ADD_FAILURE() << made.error().message;
     return out;

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "asperity/asperity.hpp"
+#include "asperity/control/contact_loop.hpp"
 #include "asperity/model/triangle_mesh.hpp"
 
 namespace asperity::oracle {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "asperity/asperity.hpp"
 #include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
+#include "support/built_renderers.hpp"
 
 namespace {
 
@@ -72,9 +72,9 @@ TEST(brute_force_models, a_single_contact_of_the_shared_potential_is_as_deep_as_
     const original_and_bake a = oracle::load_benchmark_body(which.probe);
     const original_and_bake b = oracle::load_benchmark_body(which.fixed);
     ASSERT_TRUE(a.model && b.model);
-    auto made = make_renderer({a.model, {b.model}});
+    auto made = test_support::build_renderer({a.model, {b.model}});
     ASSERT_TRUE(made) << made.error().message;
-    const double tau_m = made->depth().settings().tau_m;
+    const double tau_m = made->settings().tau_m;
     const std::array<pose, 1> fixed{};
     std::mt19937_64 rng(which.seed);
     std::vector<double> errors_m;

@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 #include <span>
 
-#include "asperity/asperity.hpp"
 #include "asperity/render/exact_renderer.hpp"
 #include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
+#include "support/built_renderers.hpp"
 
 namespace {
 
@@ -34,7 +34,7 @@ tally undersampling(const std::string& probe_name, const std::string& fixed_name
   const scene bodies{a.model, {b.model}};
   paper_settings settings;
   settings.depth.grid = grid;
-  auto made = make_paper_renderer(bodies, settings);
+  auto made = test_support::build_paper_renderer(bodies, settings);
   if (!made) {
     ADD_FAILURE() << made.error().message;
     return out;

@@ -9,7 +9,7 @@
 // - page faults cannot be caught, because nobody is asked; they are counted.
 // Invisible: a time-stamp counter read by its instruction, and a spin lock made of atomics.
 //
-// Link tick_trap.cpp into the test's program.
+// Link the objects of tick_trap into the test's program.
 #pragma once
 
 #include <cstdint>

@@ -7,9 +7,11 @@
 #include <sys/prctl.h>
 
 #include "approach.hpp"
-#include "asperity/asperity.hpp"
+#include "asperity/control/virtual_session.hpp"
+#include "asperity/hal/simulated/simulated_device.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "rt/tick_trap.hpp"
+#include "support/built_renderers.hpp"
 
 namespace {
 
@@ -99,12 +101,12 @@ void trap_file_on_cad_part(std::uint64_t steady_ticks, Make&& make) {
 
 TEST(benchmark_ticks, file_on_cad_part_does_nothing_that_a_tick_must_not_do) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part(99'000, [](const scene& bodies) { return make_renderer(bodies); });
+  trap_file_on_cad_part(99'000, [](const scene& bodies) { return test_support::build_renderer(bodies); });
 }
 
 TEST(benchmark_ticks, nor_does_it_with_the_contacts_of_the_paper) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part(24'000, [](const scene& bodies) { return make_paper_renderer(bodies); });
+  trap_file_on_cad_part(24'000, [](const scene& bodies) { return test_support::build_paper_renderer(bodies); });
 }
 
 }  // namespace

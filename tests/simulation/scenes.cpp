@@ -5,13 +5,15 @@
 #include <cstdlib>
 #include <utility>
 
-#include "asperity/render/default_renderer.hpp"
+#include "support/built_renderers.hpp"
 #include "support/height_models.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity::simulation {
 namespace {
 
+using test_support::build_renderer;
+using test_support::built_renderer;
 using test_support::make_flat_box;
 using test_support::make_textured_box;
 using test_support::plate_builder;
@@ -48,11 +50,11 @@ const std::array<textured_bodies, textured_scene_count>& all_bodies() {
 
 class rendered_scene final : public touched_scene {
  public:
-  explicit rendered_scene(renderer r) : renderer_(std::move(r)) {}
+  explicit rendered_scene(built_renderer r) : renderer_(std::move(r)) {}
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept override { return renderer_.step(at, out); }
 
  private:
-  renderer renderer_;
+  built_renderer renderer_;
 };
 
 }  // namespace
@@ -63,7 +65,7 @@ std::unique_ptr<touched_scene> make_textured_scene(std::size_t i, double stiffne
   const textured_bodies& bodies = all_bodies()[i];
   renderer_settings settings;
   settings.shared.stiffness_n_per_m = stiffness_n_per_m;
-  result<renderer> made = make_renderer({bodies.probe, {bodies.fixed}}, settings);
+  result<built_renderer> made = build_renderer({bodies.probe, {bodies.fixed}}, settings);
   if (!made) {
     std::fprintf(stderr, "simulation: %s\n", made.error().message.c_str());
     std::abort();

@@ -8,7 +8,8 @@ namespace {
 
 using namespace asperity::simulation;
 
-// A short run of what simulation_long_test does, for builds without optimisation and under sanitizers.
+// The first of the sessions that simulation_long_test goes on with, few enough for builds without optimisation and
+// under sanitizers.
 TEST(simulation, every_invariant_holds_in_every_tick_of_every_session) {
   const summary all = check_every_session({1, 200});
   if (all.sessions < 200) return;

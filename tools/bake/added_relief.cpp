@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <utility>
 #include <vector>
 
 #include "bake/cage.hpp"
@@ -28,13 +27,15 @@ double added_relief::at(std::uint32_t t, const vec3& p) const {
   const double whole = glm::dot(up, up);
   const double b1 = std::clamp(glm::dot(up, glm::cross(p - c[0], c[2] - c[0])) / whole, 0.0, 1.0);
   const double b2 = std::clamp(glm::dot(up, glm::cross(c[1] - c[0], p - c[0])) / whole, 0.0, 1.0 - b1);
-  relief_point at{p, glm::normalize(up), t, {1.0 - b1 - b2, b1, b2}};
-  if (reversed) std::swap(at.barycentric[1], at.barycentric[2]);
-  return heights.height_m(at);
+  return heights.height_m({p, glm::normalize(up), t, uv_on(original, t, {1.0 - b1 - b2, b1, b2})});
 }
 
 result<void> check_relief(const added_relief& added, double diagonal_m) {
   if (!added.heights) return {};
+  if (added.heights.reads_uvs && added.original.uvs.empty())
+    return error{error_code::bad_mesh,
+                 "the mesh has no texture coordinates, so the relief's map cannot be laid on it; export it with its "
+                 "UVs (OBJ, glTF)"};
   double highest = 0.0;
   for (const relief_point& p : spread_points(added.original, relief_samples)) {
     const double h = std::abs(added.at(p.triangle, p.position));

@@ -13,15 +13,14 @@ namespace asperity::bake {
 /// A relief over the original, and the original itself.
 struct added_relief {
   const relief& heights;
-  const triangle_mesh& original;
-  bool reversed = false;  ///< the relief knows the original with every second and third corner swapped
+  const triangle_mesh& original;  ///< checked; its texture coordinates are those that the relief reads
 
   /// Height over the point of triangle t that is nearest to p. @pre there is a relief
   [[nodiscard]] double at(std::uint32_t t, const vec3& p) const;
 };
 
 /// Refuses heights that cannot be meant, before any work is done on them.
-/// @return bad_texture (not finite, or a shape rather than a relief)
+/// @return bad_texture (not finite, or a shape rather than a relief) | bad_mesh (no texture coordinates to read)
 [[nodiscard]] result<void> check_relief(const added_relief& added, double diagonal_m);
 
 /// The sentence that says that texels are too coarse for the relief; empty where they are not.

@@ -154,6 +154,13 @@ double pack(std::vector<chart>& charts, double side, double area) {
 
 }  // namespace
 
+result<void> check_room(double texels, std::size_t triangles, std::uint32_t texture_size) {
+  if (texels >= least_texels_per_triangle * static_cast<double>(triangles)) return {};
+  return error{error_code::invalid_argument, "a texture of " + std::to_string(texture_size) +
+                                                 " texels is too small for " + std::to_string(triangles) +
+                                                 " coarse triangles; ask for a larger texture or fewer triangles"};
+}
+
 result<atlas> make_atlas(const triangle_mesh& coarse, std::uint32_t texture_size) {
   double area = 0.0;
   for (const index_triangle& t : coarse.triangles) area += 0.5 * glm::length(area_normal(corners(coarse.positions, t)));
@@ -161,16 +168,12 @@ result<atlas> make_atlas(const triangle_mesh& coarse, std::uint32_t texture_size
   const double side = texture_size;
   const double scale = pack(charts, side, area);
   const double texels = area * scale * scale;
-  if (texels < least_texels_per_triangle * static_cast<double>(coarse.triangles.size()))
-    return error{error_code::invalid_argument, "a texture of " + std::to_string(texture_size) +
-                                                   " texels is too small for " +
-                                                   std::to_string(coarse.triangles.size()) +
-                                                   " coarse triangles; ask for a larger texture or fewer triangles"};
+  if (const auto enough = check_room(texels, coarse.triangles.size(), texture_size); !enough) return enough.error();
   atlas out;
   out.uv.resize(coarse.triangles.size());
   out.chart.resize(coarse.triangles.size());
   out.charts = charts.size();
-  out.texel_m = 1.0 / scale;
+  out.texel_m = out.narrow_m = out.wide_m = 1.0 / scale;
   out.utilisation = texels / (side * side);
   for (std::size_t i = 0; i < charts.size(); ++i)
     for (std::size_t j = 0; j < charts[i].triangles.size(); ++j) {

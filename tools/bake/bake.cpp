@@ -22,14 +22,13 @@
 #include "bake/stage_monitor.hpp"
 #include "bake/stitch.hpp"
 #include "bake/triangle_bvh.hpp"
+#include "bake/uv_atlas.hpp"
 #include "bake/winding.hpp"
 
 namespace asperity::bake {
 namespace {
 
 constexpr std::size_t fewest_triangles = 4;
-constexpr std::uint32_t smallest_texture = 16;
-constexpr std::uint32_t largest_texture = 8192;
 
 // Rays go a little past the measured distance between the surfaces: along a slanted normal the way is longer.
 constexpr double range_per_cage = 2.0;
@@ -54,16 +53,23 @@ result<void> check_options(const bake_options& options) {
   return {};
 }
 
+// What can be told of texture coordinates that are to be kept before any work is done.
+result<void> check_kept_uvs(const triangle_mesh& full, const bake_options& options) {
+  if (!options.keep_uvs) return {};
+  if (options.coarse) return check_uvs(*options.coarse, options.texture_size);
+  if (full.triangles.size() > options.triangles)
+    return error{error_code::invalid_argument,
+                 "the mesh has " + std::to_string(full.triangles.size()) + " triangles, and simplifying it to " +
+                     std::to_string(options.triangles) +
+                     " would lose its texture coordinates; to keep them give a coarse mesh that has some, or ask for "
+                     "as many triangles as the mesh has"};
+  return check_uvs(full, options.texture_size);
+}
+
 // The coarse mesh that the user gives, checked, or one made by simplifying.
-result<simplified_mesh> coarse_of(const checked_mesh& full, const triangle_bvh& full_tree, const bake_options& options,
-                                  unsigned threads, stage_monitor& monitor) {
-  if (!options.coarse) {
-    auto made = simplify(full, options.triangles, threads, monitor);
-    const double diagonal = bounds_of(full.mesh.positions).diagonal();
-    if (made && made->mesh.triangles.size() < full.mesh.triangles.size())
-      fit_to_relief(made->mesh, full_tree, widest_cage_in_diagonals * diagonal);
-    return made;
-  }
+result<simplified_mesh> coarse_of(const checked_mesh& full, const bake_options& options, unsigned threads,
+                                  stage_monitor& monitor) {
+  if (!options.coarse) return simplify(full, options.triangles, threads, monitor);
   triangle_mesh rounded = *options.coarse;
   round_to_float32(rounded);
   auto given = check(rounded, "the coarse mesh");
@@ -112,41 +118,43 @@ bake_quality quality_of(const surface_error& errors, const atlas& charts, const 
 
 }  // namespace
 
-result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& options) {
+result<textured_model> bake(triangle_mesh full_mesh, const bake_options& options) {
   stage_monitor monitor(options.progress);
   const unsigned threads = resolve_threads(options.threads);
 
   if (!monitor.begin("check")) return cancelled();
   if (const auto sound = check_options(options); !sound) return sound.error();
-  const auto full = check(full_mesh);
+  if (const auto sound = check_kept_uvs(full_mesh, options); !sound) return sound.error();
+  auto full = check(std::move(full_mesh));
   if (!full) return full.error();
+  if (!options.relief.reads_uvs && !options.keep_uvs) full->mesh.uvs = {};
   if (full->turned_triangles > 0) remark(options, winding_remark(full->turned_triangles));
   if (full->flipped) remark(options, "the mesh was inside-out and has been turned");
-  const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles);
   const double diagonal = bounds_of(full->mesh.positions).diagonal();
+
+  if (!monitor.begin("simplify")) return cancelled();
+  auto coarse = coarse_of(*full, options, threads, monitor);
+  if (!coarse) return coarse.error();
+  // Only now: simplifying is what takes the most memory.
+  const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles, threads);
+  if (!options.coarse && coarse->mesh.triangles.size() < full->mesh.triangles.size())
+    fit_to_relief(coarse->mesh, full_tree, widest_cage_in_diagonals * diagonal, threads);
+  if (!monitor.begin("compare")) return cancelled();
   const auto crossings = find_self_crossings(full->mesh, full_tree, threads, monitor);
   if (!crossings) return cancelled();
   if (crossings->pairs > 0) remark(options, crossing_remark(*crossings));
-
-  if (!monitor.begin("simplify")) return cancelled();
-  const auto coarse = coarse_of(*full, full_tree, options, threads, monitor);
-  if (!coarse) return coarse.error();
   remark(options, coarse->note);
-  if (options.relief && full->turned_triangles > 0)
-    return error{error_code::bad_mesh,
-                 "in the mesh " + std::to_string(full->turned_triangles) +
-                     " of the triangles wind against their neighbours; a relief lies on triangles "
-                     "as they come, so let their normals agree first"};
-  const added_relief added{options.relief, full->mesh, full->flipped};
+  const added_relief added{options.relief, full->mesh};
   if (const auto sound = check_relief(added, diagonal); !sound) return sound.error();
-  if (!monitor.begin("compare")) return cancelled();
   const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
   if (!cage) return cage.error();
 
   if (!monitor.begin("atlas")) return cancelled();
-  const auto charts = make_atlas(coarse->mesh, options.texture_size);
+  const auto charts = options.keep_uvs ? atlas_from_uvs(coarse->mesh, options.texture_size)
+                                       : make_atlas(coarse->mesh, options.texture_size);
   if (!charts) return charts.error();
-  remark(options, too_coarse_remark(options.relief, charts->texel_m, options.texture_size));
+  remark(options, distortion_remark(*charts));
+  remark(options, too_coarse_remark(options.relief, charts->wide_m, options.texture_size));
 
   if (!monitor.begin("project")) return cancelled();
   const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
@@ -163,13 +171,13 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   if (options.pieces && pieces->size() != *options.pieces)
     remark(options, "made " + std::to_string(pieces->size()) + " convex pieces, not the " +
                         std::to_string(*options.pieces) + " asked for");
-  const auto fit = measure_fit(coarse->mesh, *pieces, fit_spacing_in_diagonals * diagonal, monitor);
+  const auto fit = measure_fit(coarse->mesh, *pieces, fit_spacing_in_diagonals * diagonal, monitor, threads);
   if (!fit) return cancelled();
 
   // What the textured surface should be: the mesh, or the mesh with its relief.
   const triangle_mesh raised = options.relief ? raise(added, charts->texel_m) : triangle_mesh{};
   std::optional<triangle_bvh> raised_tree;
-  if (options.relief) raised_tree.emplace(raised.positions, raised.triangles);
+  if (options.relief) raised_tree.emplace(raised.positions, raised.triangles, threads);
   const triangle_mesh& original = options.relief ? raised : full->mesh;
   const triangle_bvh& original_tree = raised_tree ? *raised_tree : full_tree;
 
@@ -177,7 +185,7 @@ result<textured_model> bake(const triangle_mesh& full_mesh, const bake_options& 
   out.name = options.name;
   out.mesh = with_uvs(coarse->mesh, *charts);
   out.texture = std::move(projected->texture);
-  stitch(out.mesh, original_tree, widest_gap_texels * charts->texel_m, out.texture);
+  stitch(out.mesh, original_tree, widest_gap_texels * charts->texel_m, out.texture, threads);
   out.pieces = std::move(*pieces);
   out.mass = compute_mass_properties(out.mesh);
   out.box = bounds_of(out.mesh.positions);

@@ -44,7 +44,7 @@ result<double> measure_cage(const triangle_mesh& full, const triangle_bvh& full_
     for (std::size_t v = begin; v < end; ++v)
       of_block[block].take(coarse_tree.closest(full.positions[v]).distance_m, full.positions[v]);
   };
-  if (!parallel_blocks(full.positions.size(), threads, monitor, 0.0, 1.0, visit))
+  if (!parallel_blocks(full.positions.size(), threads, monitor, 0.5, 1.0, visit))
     return error{error_code::cancelled, "the bake was cancelled"};
   for (const farthest& f : of_block) worst.take(f.distance_m, f.at);
 

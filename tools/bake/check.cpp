@@ -4,6 +4,7 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/geometry.hpp"
@@ -57,21 +58,21 @@ std::optional<error> check_numbers(const triangle_mesh& mesh, std::string_view w
   return std::nullopt;
 }
 
-// The mesh without unused vertices and without texture coordinates.
-triangle_mesh compact(const triangle_mesh& mesh) {
+// The mesh without unused vertices, and without texture coordinates that are not there for all triangles, in place.
+void compact(triangle_mesh& mesh) {
+  if (mesh.uvs.size() != mesh.triangles.size()) mesh.uvs = {};
   std::vector<std::uint32_t> number(mesh.positions.size(), no_halfedge);
-  triangle_mesh out;
-  out.triangles = mesh.triangles;
-  for (index_triangle& t : out.triangles)
-    for (std::uint32_t& v : t) number[v] = 0;
+  for (const index_triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) number[v] = 0;
+  std::uint32_t used = 0;
   for (std::size_t v = 0; v < number.size(); ++v)
     if (number[v] == 0) {
-      number[v] = static_cast<std::uint32_t>(out.positions.size());
-      out.positions.push_back(mesh.positions[v]);
+      mesh.positions[used] = mesh.positions[v];
+      number[v] = used++;
     }
-  for (index_triangle& t : out.triangles)
+  mesh.positions.resize(used);
+  for (index_triangle& t : mesh.triangles)
     for (std::uint32_t& v : t) v = number[v];
-  return out;
 }
 
 std::optional<error> check_size(const triangle_mesh& mesh, std::string_view what) {
@@ -183,7 +184,7 @@ std::optional<error> orient(checked_mesh& out, const connectivity& net, std::str
     return bad(what, "encloses no volume", "give a surface that bounds a solid");
   if (volume < 0.0) {
     out.flipped = true;
-    for (index_triangle& t : out.mesh.triangles) std::swap(t[1], t[2]);
+    for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t) turn(out.mesh, t);
     for (component_extent& part : parts) part.volume_m3 = -part.volume_m3;
   }
   for (const component_extent& part : parts) {
@@ -202,15 +203,16 @@ std::optional<error> orient(checked_mesh& out, const connectivity& net, std::str
 
 }  // namespace
 
-result<checked_mesh> check(const triangle_mesh& mesh, std::string_view what) {
+result<checked_mesh> check(triangle_mesh mesh, std::string_view what) {
   if (auto fault = check_numbers(mesh, what)) return *fault;
   checked_mesh out;
-  out.mesh = compact(mesh);
+  out.mesh = std::move(mesh);
+  compact(out.mesh);
   if (auto fault = check_size(out.mesh, what)) return *fault;
   if (auto fault = check_areas(out.mesh, what)) return *fault;
   connectivity net = connect(out.mesh.triangles, out.mesh.positions.size());
   if (net.misoriented_edges.count > 0 && net.open_edges.count + net.non_manifold_edges.count == 0) {
-    if (const auto turned = make_winding_consistent(out.mesh.triangles)) {
+    if (const auto turned = make_winding_consistent(out.mesh)) {
       out.turned_triangles = *turned;
       net = connect(out.mesh.triangles, out.mesh.positions.size());
     }

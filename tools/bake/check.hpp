@@ -14,7 +14,7 @@ inline constexpr double smallest_diagonal_m = 1e-5;
 inline constexpr double largest_diagonal_m = 1e3;
 /// Texels are float32: beyond this many diagonals from the origin their step exceeds 0.001 % of the object.
 inline constexpr double farthest_in_diagonals = 160.0;
-/// A bake takes some 370 bytes of memory a triangle: this many take 3 GB, and more are refused.
+/// A bake takes some 160 bytes of memory a triangle, reading an STL 190: this many take 1.5 GB, and more are refused.
 inline constexpr std::size_t most_triangles = 8'000'000;
 
 /// A closed, 2-manifold, outward oriented mesh without unused vertices.
@@ -27,10 +27,10 @@ struct checked_mesh {
 };
 
 /// Checks a mesh and turns it the right way out, triangle by triangle where neighbours disagree. Several components are
-/// allowed, each closed; one inside another is a cavity and then faces inwards. Texture coordinates are dropped: the
-/// bake makes its own.
+/// allowed, each closed; one inside another is a cavity and then faces inwards. Triangles keep their order, and texture
+/// coordinates stay at their corners; they are not looked at.
 /// @param what names the mesh in messages: "the mesh", "the coarse mesh"
 /// @return bad_mesh with the fault, its place (triangle and coordinates) and the mend; limit_exceeded
-[[nodiscard]] result<checked_mesh> check(const triangle_mesh& mesh, std::string_view what = "the mesh");
+[[nodiscard]] result<checked_mesh> check(triangle_mesh mesh, std::string_view what = "the mesh");
 
 }  // namespace asperity::bake

@@ -13,11 +13,6 @@ namespace {
 // Compressed images return greys that differ by a step or two between the channels.
 constexpr float grey_tolerance = 2.5F / 255.0F;
 
-struct mapped_surface {
-  std::vector<std::array<vec2, 3>> uvs;
-  map_lookup<double> heights_m;
-};
-
 error bad_map(std::string what) { return {error_code::bad_texture, "the height map " + std::move(what)}; }
 
 }  // namespace
@@ -48,9 +43,7 @@ result<relief> height_map_relief(const triangle_mesh& mesh, const map_image& map
   if (!std::isfinite(settings.offset_m) || !std::isfinite(settings.scale_m))
     return error{error_code::invalid_argument, "the heights of black and white have to be finite numbers of metres"};
 
-  auto surface = std::make_shared<mapped_surface>();
-  surface->uvs = mesh.uvs;
-  surface->heights_m = {map.width, map.height, settings.wrap_u, settings.wrap_v, std::vector<double>(pixels)};
+  map_lookup<double> heights_m{map.width, map.height, settings.wrap_u, settings.wrap_v, std::vector<double>(pixels)};
   for (std::size_t i = 0; i < pixels; ++i) {
     const float* at = &map.samples[i * map.channels];
     const std::string place = std::to_string(i % map.width) + ", row " + std::to_string(i / map.width);
@@ -58,12 +51,13 @@ result<relief> height_map_relief(const triangle_mesh& mesh, const map_image& map
       return bad_map("has colours, at column " + place + ": a height map is grey; for a normal map use --normal-map");
     const double h = settings.offset_m + settings.scale_m * static_cast<double>(at[0]);
     if (!std::isfinite(h)) return bad_map("has a height that is not finite, at column " + place + "; export it again");
-    surface->heights_m.pixels[i] = h;
+    heights_m.pixels[i] = h;
   }
   relief out;
   out.finest_m = mean_texel_m(mesh, map.width, map.height);
-  out.height_m = [shared = std::shared_ptr<const mapped_surface>(std::move(surface))](const relief_point& p) {
-    return shared->heights_m(mixed(shared->uvs[p.triangle], p.barycentric));
+  out.reads_uvs = true;
+  out.height_m = [shared = std::make_shared<const map_lookup<double>>(std::move(heights_m))](const relief_point& p) {
+    return (*shared)(p.uv);
   };
   return out;
 }

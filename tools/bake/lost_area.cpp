@@ -5,6 +5,17 @@
 #include "bake/geometry.hpp"
 
 namespace asperity::bake {
+namespace {
+
+// What a triangle of the original has lost.
+struct losing_triangle {
+  std::uint32_t triangle;
+  double area = 0.0;
+  vec3 moment{0.0};  // area times place
+  std::uint32_t part = no_halfedge;
+};
+
+}  // namespace
 
 std::vector<char> find_lost(const fine_points& original, const std::vector<double>& distance,
                             const triangle_bvh& textured, double reach_m, unsigned threads, stage_monitor& monitor) {
@@ -24,8 +35,8 @@ lost_area measure_lost(const triangle_mesh& full, const fine_points& original, c
   if (std::find(lost.begin(), lost.end(), char{1}) == lost.end()) return out;
   double whole = 0.0;
   double sum = 0.0;
-  std::vector<double> of_source(full.triangles.size(), 0.0);
-  std::vector<vec3> moment(full.triangles.size(), vec3(0.0));
+  std::vector<losing_triangle> losing;  // in the order of the original's triangles
+  std::vector<std::uint32_t> number(full.triangles.size(), no_halfedge);
   for (std::size_t i = 0; i < original.mesh.triangles.size(); ++i) {
     const index_triangle& t = original.mesh.triangles[i];
     const double third = glm::length(area_normal(corners(original.mesh.positions, t))) / 6.0;
@@ -33,36 +44,42 @@ lost_area measure_lost(const triangle_mesh& full, const fine_points& original, c
     for (const std::uint32_t v : t) {
       if (!lost[v]) continue;
       sum += third;
-      of_source[original.source[i]] += third;
-      moment[original.source[i]] += third * original.mesh.positions[v];
+      const std::uint32_t source = original.source[i];
+      if (number[source] == no_halfedge) {
+        number[source] = static_cast<std::uint32_t>(losing.size());
+        losing.push_back({source});
+      }
+      losing[number[source]].area += third;
+      losing[number[source]].moment += third * original.mesh.positions[v];
     }
   }
   if (!(sum > 0.0)) return out;
   out.share = sum / whole;
 
   // Flood over edges between triangles that have lost something.
-  const connectivity net = connect(full.triangles, full.positions.size());
-  std::vector<std::uint32_t> part(full.triangles.size(), no_halfedge);
+  const std::vector<std::uint32_t> across = connect(full.triangles, full.positions.size()).mate;
+  const auto is_open = [&](const losing_triangle& t) { return t.area > 0.0 && t.part == no_halfedge; };
   std::vector<double> area;
   std::vector<vec3> centre;
   std::vector<std::uint32_t> open;
-  for (std::uint32_t seed = 0; seed < part.size(); ++seed) {
-    if (!(of_source[seed] > 0.0) || part[seed] != no_halfedge) continue;
-    const auto number = static_cast<std::uint32_t>(area.size());
+  for (std::uint32_t seed = 0; seed < losing.size(); ++seed) {
+    if (!is_open(losing[seed])) continue;
+    const auto part = static_cast<std::uint32_t>(area.size());
     area.push_back(0.0);
     centre.emplace_back(0.0);
-    part[seed] = number;
+    losing[seed].part = part;
     open.push_back(seed);
     while (!open.empty()) {
-      const std::uint32_t t = open.back();
+      const losing_triangle t = losing[open.back()];
       open.pop_back();
-      area[number] += of_source[t];
-      centre[number] += moment[t];
+      area[part] += t.area;
+      centre[part] += t.moment;
       for (std::uint32_t k = 0; k < 3; ++k) {
-        const std::uint32_t mate = net.mate[3 * t + k];
-        if (mate == no_halfedge || !(of_source[mate / 3] > 0.0) || part[mate / 3] != no_halfedge) continue;
-        part[mate / 3] = number;
-        open.push_back(mate / 3);
+        const std::uint32_t mate = across[3 * t.triangle + k];
+        const std::uint32_t beside = mate == no_halfedge ? no_halfedge : number[mate / 3];
+        if (beside == no_halfedge || !is_open(losing[beside])) continue;
+        losing[beside].part = part;
+        open.push_back(beside);
       }
     }
   }
@@ -71,7 +88,8 @@ lost_area measure_lost(const triangle_mesh& full, const fine_points& original, c
   out.part_centre = centre[largest] / area[largest];
   std::vector<vec3> points;
   for (std::size_t i = 0; i < original.mesh.triangles.size(); ++i) {
-    if (part[original.source[i]] != largest) continue;
+    const std::uint32_t source = number[original.source[i]];
+    if (source == no_halfedge || losing[source].part != largest) continue;
     for (const std::uint32_t v : original.mesh.triangles[i])
       if (lost[v]) points.push_back(original.mesh.positions[v]);
   }

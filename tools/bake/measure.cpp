@@ -118,7 +118,7 @@ result<surface_error> measure(const triangle_mesh& full, const triangle_bvh& ful
   if (!measure_one_way(textured, full_tree, threads, monitor, 0.0, forth)) return cancelled;
   out.to_original = forth.spread;
   out.to_original_rms_m = forth.rms;
-  const triangle_bvh textured_tree(textured.mesh.positions, textured.mesh.triangles);
+  const triangle_bvh textured_tree(textured.mesh.positions, textured.mesh.triangles, threads);
   const fine_points original = sample_mesh(full, original_step_texels * texel_m);
   one_way back;
   if (!measure_one_way(original, textured_tree, threads, monitor, 0.45, back)) return cancelled;

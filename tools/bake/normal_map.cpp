@@ -76,10 +76,18 @@ tangent_frame frame_of(const std::array<vec3, 3>& c, const std::array<vec2, 3>& 
 }
 
 struct solved_surface {
-  triangle_bvh tree;
   std::vector<vec3> positions;
   std::vector<index_triangle> triangles;
   std::vector<double> heights_m;  // per position
+  triangle_bvh tree;              // looks at positions: it has to stay where they are
+
+  solved_surface(const refined_mesh& fine, std::vector<double> heights)
+      : positions(fine.positions),
+        triangles(fine.triangles),
+        heights_m(std::move(heights)),
+        tree(positions, triangles) {}
+  solved_surface(const solved_surface&) = delete;
+  solved_surface& operator=(const solved_surface&) = delete;
 };
 
 double height_at(const solved_surface& s, const vec3& p) {
@@ -96,15 +104,17 @@ double height_at(const solved_surface& s, const vec3& p) {
 
 }  // namespace
 
-result<normal_map_relief> integrate_normal_map(const triangle_mesh& mesh, const map_image& map,
+result<normal_map_relief> integrate_normal_map(const triangle_mesh& given, const map_image& map,
                                                const normal_map_settings& settings) {
-  if (mesh.uvs.size() != mesh.triangles.size() || mesh.triangles.empty())
+  if (given.uvs.size() != given.triangles.size() || given.triangles.empty())
     return error{error_code::bad_mesh,
                  "the mesh has no texture coordinates, so a map cannot be laid on it; export it with its UVs (OBJ, "
                  "glTF)"};
   if (!std::isfinite(settings.scale))
     return error{error_code::invalid_argument, "the scale of a normal map has to be a finite number"};
-  if (const auto sound = check(mesh); !sound) return sound.error();
+  const auto sound = check(given);
+  if (!sound) return sound.error();
+  const triangle_mesh& mesh = sound->mesh;  // its normals point outwards, whatever the winding was
   const auto slopes = slopes_of(map, settings);
   if (!slopes) return slopes.error();
   normal_map_relief out;
@@ -154,10 +164,9 @@ result<normal_map_relief> integrate_normal_map(const triangle_mesh& mesh, const 
   out.fit.points = fine.positions.size();
   out.fit.iterations = solved.iterations;
 
-  auto surface = std::make_shared<solved_surface>(solved_surface{
-      triangle_bvh(fine.positions, fine.triangles), fine.positions, fine.triangles, std::move(solved.heights_m)});
+  auto surface = std::make_shared<const solved_surface>(fine, std::move(solved.heights_m));
   out.heights.finest_m = out.fit.texel_m;
-  out.heights.height_m = [shared = std::shared_ptr<const solved_surface>(std::move(surface))](const relief_point& p) {
+  out.heights.height_m = [shared = std::move(surface)](const relief_point& p) {
     return height_at(*shared, p.position);
   };
   return out;

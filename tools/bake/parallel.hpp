@@ -23,35 +23,44 @@ inline constexpr std::size_t block_size = 1024;
   return asked != 0 ? asked : std::max(1U, std::thread::hardware_concurrency());
 }
 
-/// Calls body(block, begin, end) for every block of [0, items). Blocks run in any order and at the same time: they must
-/// not write to the same place. The calling thread works too, and reports progress in [from, to] of the stage.
-/// @return false where the bake was cancelled; some blocks have not run then
+/// Calls body(i) for every i below `tasks`, in any order and at the same time: the calls must not write to the same
+/// place. The calling thread works too, and reports progress in [from, to] of the stage.
+/// @return false where the bake was cancelled; some tasks have not run then
 template <class Body>
-[[nodiscard]] bool parallel_blocks(std::size_t items, unsigned threads, stage_monitor& monitor, double from, double to,
-                                   const Body& body) {
-  const std::size_t blocks = block_count(items);
+[[nodiscard]] bool parallel_tasks(std::size_t tasks, unsigned threads, stage_monitor& monitor, double from, double to,
+                                  const Body& body) {
   std::atomic<std::size_t> next{0};
   std::atomic<bool> stop{false};
   const auto run_one = [&] {
-    const std::size_t block = next.fetch_add(1, std::memory_order_relaxed);
-    if (block >= blocks || stop.load(std::memory_order_relaxed)) return false;
-    body(block, block * block_size, std::min(items, (block + 1) * block_size));
+    const std::size_t task = next.fetch_add(1, std::memory_order_relaxed);
+    if (task >= tasks || stop.load(std::memory_order_relaxed)) return false;
+    body(task);
     return true;
   };
   {
     std::vector<std::jthread> helpers;
-    for (std::size_t i = 1; i < std::min<std::size_t>(threads, blocks); ++i) {
+    for (std::size_t i = 1; i < std::min<std::size_t>(threads, tasks); ++i) {
       helpers.emplace_back([&] {
         while (run_one()) {
         }
       });
     }
     while (run_one()) {
-      const auto claimed = static_cast<double>(std::min(next.load(std::memory_order_relaxed), blocks));
-      if (!monitor.at(from + (to - from) * claimed / static_cast<double>(blocks))) stop.store(true);
+      const auto claimed = static_cast<double>(std::min(next.load(std::memory_order_relaxed), tasks));
+      if (!monitor.at(from + (to - from) * claimed / static_cast<double>(tasks))) stop.store(true);
     }
   }
   return !monitor.cancelled();
+}
+
+/// Calls body(block, begin, end) for every block of [0, items), as parallel_tasks() does.
+template <class Body>
+[[nodiscard]] bool parallel_blocks(std::size_t items, unsigned threads, stage_monitor& monitor, double from, double to,
+                                   const Body& body) {
+  const auto run_block = [&](std::size_t block) {
+    body(block, block * block_size, std::min(items, (block + 1) * block_size));
+  };
+  return parallel_tasks(block_count(items), threads, monitor, from, to, run_block);
 }
 
 }  // namespace asperity::bake

@@ -1,9 +1,11 @@
 #include "bake/piece_fit.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "bake/geometry.hpp"
+#include "bake/parallel.hpp"
 #include "bake/solid.hpp"
 
 namespace asperity::bake {
@@ -24,28 +26,36 @@ void sample(const std::array<vec3, 3>& c, double spacing_m, const Visit& visit) 
     }
 }
 
+void raise(std::atomic<double>& largest, double x) noexcept {
+  double before = largest.load(std::memory_order_relaxed);
+  while (x > before && !largest.compare_exchange_weak(before, x, std::memory_order_relaxed)) {
+  }
+}
+
 }  // namespace
 
 std::optional<piece_fit> measure_fit(const triangle_mesh& mesh, const std::vector<convex_piece>& pieces,
-                                     double spacing_m, stage_monitor& monitor) {
+                                     double spacing_m, stage_monitor& monitor, unsigned threads) {
   const solid body(mesh);
-  piece_fit out;
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    if (!monitor.at(static_cast<double>(i) / static_cast<double>(pieces.size()))) return std::nullopt;
+  std::atomic<double> surface_to_hull{0.0};
+  std::atomic<double> bridged_air{0.0};
+  const auto measure_piece = [&](std::size_t i) {
     const convex_piece& piece = pieces[i];
     const triangle_bvh hull(piece.vertices, piece.hull);
+    double deepest = 0.0;
     for (const std::uint32_t t : piece.triangles)
-      sample(corners(mesh.positions, mesh.triangles[t]), spacing_m, [&](const vec3& p) {
-        out.surface_to_hull_max_m = std::max(out.surface_to_hull_max_m, hull.closest(p).distance_m);
-      });
+      sample(corners(mesh.positions, mesh.triangles[t]), spacing_m,
+             [&](const vec3& p) { deepest = std::max(deepest, hull.closest(p).distance_m); });
+    raise(surface_to_hull, deepest);
     for (const index_triangle& f : piece.hull)
       sample(corners(piece.vertices, f), spacing_m, [&](const vec3& p) {
-        // Nearer than the worst so far, the side does not matter.
+        // Nearer than the worst so far, of whichever piece, the side does not matter.
         const double distance = body.surface().closest(p).distance_m;
-        if (distance > out.bridged_air_max_m && !body.holds(p)) out.bridged_air_max_m = distance;
+        if (distance > bridged_air.load(std::memory_order_relaxed) && !body.holds(p)) raise(bridged_air, distance);
       });
-  }
-  return out;
+  };
+  if (!parallel_tasks(pieces.size(), threads, monitor, 0.0, 1.0, measure_piece)) return std::nullopt;
+  return piece_fit{surface_to_hull.load(), bridged_air.load()};
 }
 
 }  // namespace asperity::bake

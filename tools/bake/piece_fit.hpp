@@ -20,6 +20,6 @@ struct piece_fit {
 /// apart and finer on small ones. @pre spacing_m > 0; every triangle is in exactly one piece
 /// @return empty where the bake was cancelled
 [[nodiscard]] std::optional<piece_fit> measure_fit(const triangle_mesh& mesh, const std::vector<convex_piece>& pieces,
-                                                   double spacing_m, stage_monitor& monitor);
+                                                   double spacing_m, stage_monitor& monitor, unsigned threads = 1);
 
 }  // namespace asperity::bake

@@ -7,49 +7,13 @@
 #include <vector>
 
 #include "bake/geometry.hpp"
+#include "bake/image_triangle.hpp"
 #include "bake/parallel.hpp"
 
 namespace asperity::bake {
 namespace {
 
 using barycentric = std::array<double, 3>;
-
-// A coarse triangle in the image, in texels.
-struct image_triangle {
-  std::array<vec2, 3> c;
-  double twice_area;  // signed
-
-  image_triangle(const std::array<vec2, 3>& uv, double side) : c{side * uv[0], side * uv[1], side * uv[2]} {
-    twice_area = cross(c[1] - c[0], c[2] - c[0]);
-  }
-
-  static double cross(const vec2& a, const vec2& b) noexcept { return a.x * b.y - a.y * b.x; }
-
-  [[nodiscard]] barycentric coordinates(const vec2& p) const noexcept {
-    const double b1 = cross(p - c[0], c[2] - c[0]) / twice_area;
-    const double b2 = cross(c[1] - c[0], p - c[0]) / twice_area;
-    return {1.0 - b1 - b2, b1, b2};
-  }
-
-  // Point of the triangle nearest to p: p itself where it is inside.
-  [[nodiscard]] vec2 clamp(const vec2& p) const noexcept {
-    const barycentric b = coordinates(p);
-    if (b[0] >= 0.0 && b[1] >= 0.0 && b[2] >= 0.0) return p;
-    vec2 best = c[0];
-    double best2 = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const vec2 d = c[(k + 1) % 3] - c[k];
-      const double s = std::clamp(glm::dot(p - c[k], d) / glm::dot(d, d), 0.0, 1.0);
-      const vec2 q = c[k] + s * d;
-      const double q2 = glm::dot(p - q, p - q);
-      if (q2 < best2) {
-        best2 = q2;
-        best = q;
-      }
-    }
-    return best;
-  }
-};
 
 struct owner {
   std::uint32_t triangle = no_halfedge;
@@ -64,8 +28,8 @@ std::vector<owner> assign_texels(const atlas& charts, std::uint32_t size) {
   };
   for (std::uint32_t t = 0; t < charts.uv.size(); ++t) {
     const image_triangle triangle(charts.uv[t], size);
-    const vec2 low = glm::min(glm::min(triangle.c[0], triangle.c[1]), triangle.c[2]) - gutter_texels;
-    const vec2 high = glm::max(glm::max(triangle.c[0], triangle.c[1]), triangle.c[2]) + gutter_texels;
+    const vec2 low = triangle.low() - gutter_texels;
+    const vec2 high = triangle.high() + gutter_texels;
     for (std::uint32_t j = clamp_index(low.y); j <= clamp_index(high.y); ++j)
       for (std::uint32_t i = clamp_index(low.x); i <= clamp_index(high.x); ++i) {
         const vec2 p{i + 0.5, j + 0.5};

@@ -10,6 +10,6 @@ namespace asperity::bake {
 /// around each of them. Undoes the inset that smoothing and chords across curved surfaces leave, and so keeps
 /// displacements and parallax small. Positions stay exact in float32. A step that would fold the mesh is not taken.
 /// @param range_m how far along the normal the original is looked for
-void fit_to_relief(triangle_mesh& coarse, const triangle_bvh& full, double range_m);
+void fit_to_relief(triangle_mesh& coarse, const triangle_bvh& full, double range_m, unsigned threads = 1);
 
 }  // namespace asperity::bake

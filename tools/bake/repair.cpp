@@ -20,9 +20,8 @@ std::uint32_t next_along_border(std::uint32_t h, const std::vector<std::uint32_t
   return g;
 }
 
-// Vertices of every hole, in the order in which the triangles around it run along its border.
-std::vector<std::vector<std::uint32_t>> find_holes(const std::vector<index_triangle>& triangles,
-                                                   const connectivity& around) {
+// The open halfedges of every hole, in the order in which the triangles around it run along its border.
+std::vector<std::vector<std::uint32_t>> find_holes(const connectivity& around) {
   std::vector<std::vector<std::uint32_t>> holes;
   std::vector<bool> seen(around.mate.size(), false);
   for (std::uint32_t start = 0; start < around.mate.size(); ++start) {
@@ -30,23 +29,29 @@ std::vector<std::vector<std::uint32_t>> find_holes(const std::vector<index_trian
     auto& hole = holes.emplace_back();
     for (std::uint32_t h = start; !seen[h]; h = next_along_border(h, around.mate)) {
       seen[h] = true;
-      hole.push_back(origin_of(triangles, h));
+      hole.push_back(h);
     }
   }
   return holes;
 }
 
-// Least-area triangulation of a closed polygon: best(i, k) over the corners between i and k, by increasing distance.
-class least_area_triangulation {
+// Triangulation of a hole that folds back onto itself or onto the triangles around as rarely as it can, and of those
+// the one of least area: best(i, k) over the corners between i and k, by increasing distance. Area alone is not enough:
+// where a rim is ragged, the least of it may lie back to back with the surface.
+class smallest_fill {
  public:
-  least_area_triangulation(const std::vector<vec3>& positions, const std::vector<std::uint32_t>& polygon)
-      : positions_(positions), polygon_(polygon), n_(polygon.size()), area_(n_ * n_, 0.0), split_(n_ * n_, 0) {
+  smallest_fill(const triangle_mesh& mesh, const std::vector<std::uint32_t>& hole)
+      : positions_(mesh.positions), n_(hole.size()), best_(n_ * n_) {
+    for (const std::uint32_t h : hole) {
+      polygon_.push_back(origin_of(mesh.triangles, h));
+      rim_.push_back(unit_normal(corners(mesh.positions, mesh.triangles[h / 3])));
+    }
     for (std::size_t gap = 2; gap < n_; ++gap) {
       for (std::size_t i = 0; i + gap < n_; ++i) find_best_split(i, i + gap);
     }
   }
 
-  [[nodiscard]] double area() const { return area_[n_ - 1]; }
+  [[nodiscard]] double area() const { return best_[n_ - 1].area; }
 
   void append_to(std::vector<index_triangle>& out) const {
     std::vector<std::pair<std::size_t, std::size_t>> open{{0, n_ - 1}};
@@ -54,7 +59,7 @@ class least_area_triangulation {
       const auto [i, k] = open.back();
       open.pop_back();
       if (k - i < 2) continue;
-      const std::size_t j = split_[i * n_ + k];
+      const std::size_t j = best_[i * n_ + k].split;
       // The hole's border runs against the new triangles: its neighbours already run along it this way.
       out.push_back({polygon_[k], polygon_[j], polygon_[i]});
       open.emplace_back(i, j);
@@ -63,33 +68,48 @@ class least_area_triangulation {
   }
 
  private:
-  void find_best_split(std::size_t i, std::size_t k) {
-    double best = std::numeric_limits<double>::infinity();
-    for (std::size_t j = i + 1; j < k; ++j) {
-      const double a = area_[i * n_ + j] + area_[j * n_ + k] + triangle_area(i, j, k);
-      if (a < best) {
-        best = a;
-        split_[i * n_ + k] = j;
-      }
-    }
-    area_[i * n_ + k] = best;
+  static constexpr double folded_cosine = -0.866;  // two triangles that leave less than 30 degrees between them
+
+  // The fill between corner i and corner k, and of it the triangle at the edge from i to k.
+  struct fill {
+    int folds = 0;
+    double area = 0.0;
+    std::size_t split = 0;
+    vec3 normal{0.0};
+  };
+
+  [[nodiscard]] const vec3& normal_across(std::size_t i, std::size_t k) const {
+    return k - i == 1 ? rim_[i] : best_[i * n_ + k].normal;
   }
 
-  [[nodiscard]] double triangle_area(std::size_t i, std::size_t j, std::size_t k) const {
-    return 0.5 * glm::length(area_normal(corners(positions_, {polygon_[i], polygon_[j], polygon_[k]})));
+  void find_best_split(std::size_t i, std::size_t k) {
+    fill best{std::numeric_limits<int>::max(), 0.0, 0, vec3(0.0)};
+    for (std::size_t j = i + 1; j < k; ++j) {
+      const vec3 across = area_normal(corners(positions_, {polygon_[k], polygon_[j], polygon_[i]}));
+      const fill& before = best_[i * n_ + j];
+      const fill& after = best_[j * n_ + k];
+      fill here{before.folds + after.folds, before.area + after.area + 0.5 * glm::length(across), j,
+                normalised(across)};
+      const auto fold = [&](const vec3& beside) { return glm::dot(here.normal, beside) < folded_cosine ? 1 : 0; };
+      here.folds += fold(normal_across(i, j)) + fold(normal_across(j, k));
+      if (k - i == n_ - 1) here.folds += fold(rim_[n_ - 1]);
+      if (std::pair(here.folds, here.area) < std::pair(best.folds, best.area)) best = here;
+    }
+    best_[i * n_ + k] = best;
   }
 
   const std::vector<vec3>& positions_;
-  const std::vector<std::uint32_t>& polygon_;
   std::size_t n_;
-  std::vector<double> area_;
-  std::vector<std::size_t> split_;
+  std::vector<std::uint32_t> polygon_;
+  std::vector<vec3> rim_;  // normal of the triangle at the edge from each corner to the next
+  std::vector<fill> best_;
 };
 
-double widest_distance(const std::vector<vec3>& positions, const std::vector<std::uint32_t>& polygon) {
+double widest_distance(const triangle_mesh& mesh, const std::vector<std::uint32_t>& hole) {
+  const auto at = [&](std::uint32_t h) { return mesh.positions[origin_of(mesh.triangles, h)]; };
   double widest = 0.0;
-  for (const std::uint32_t a : polygon) {
-    for (const std::uint32_t b : polygon) widest = std::max(widest, glm::length(positions[a] - positions[b]));
+  for (const std::uint32_t a : hole) {
+    for (const std::uint32_t b : hole) widest = std::max(widest, glm::length(at(a) - at(b)));
   }
   return widest;
 }
@@ -109,7 +129,7 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
                                            " more than two triangles; remove duplicate or inner faces first"};
   }
   hole_report report;
-  std::vector<index_triangle> wound = mesh.triangles;
+  triangle_mesh wound{{}, mesh.triangles, mesh.uvs};
   if (around.misoriented_edges.count != 0) {
     const auto turned = make_winding_consistent(wound);
     if (!turned) {
@@ -117,10 +137,10 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
                    "cannot close holes: the surface has only one side, as a Moebius band has; cut it or remove faces"};
     }
     report.triangles_turned = *turned;
-    around = connect(wound, mesh.positions.size());
+    around = connect(wound.triangles, mesh.positions.size());
   }
 
-  const auto holes = find_holes(wound, around);
+  const auto holes = find_holes(around);
   for (const auto& hole : holes) {
     if (hole.size() > largest_hole_edges) {
       return error{error_code::bad_mesh, "cannot close holes: one has " + std::to_string(hole.size()) +
@@ -128,17 +148,18 @@ result<hole_report> close_holes(triangle_mesh& mesh) {
                                              "; close it in a mesh editor, where its shape can be chosen"};
     }
   }
-  mesh.triangles = std::move(wound);
+  mesh.triangles = std::move(wound.triangles);
+  mesh.uvs = std::move(wound.uvs);
   report.holes = holes.size();
   const std::size_t before = mesh.triangles.size();
   for (const auto& hole : holes) {
-    const least_area_triangulation fill(mesh.positions, hole);
+    const smallest_fill fill(mesh, hole);
     fill.append_to(mesh.triangles);
     report.area_added_m2 += fill.area();
-    report.largest_m = std::max(report.largest_m, widest_distance(mesh.positions, hole));
+    report.largest_m = std::max(report.largest_m, widest_distance(mesh, hole));
   }
   report.triangles_added = mesh.triangles.size() - before;
-  if (report.holes + report.triangles_turned != 0) mesh.uvs.clear();
+  if (report.holes != 0) mesh.uvs.clear();
   return report;
 }
 

@@ -79,7 +79,7 @@ std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, con
       });
     }
   };
-  if (!parallel_blocks(mesh.triangles.size(), threads, monitor, 0.5, 1.0, body)) return std::nullopt;
+  if (!parallel_blocks(mesh.triangles.size(), threads, monitor, 0.0, 0.5, body)) return std::nullopt;
   self_crossings out;
   for (const self_crossings& found : of_block) {
     if (out.pairs == 0) out.first = found.first;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/collapse.hpp"
@@ -78,7 +79,7 @@ result<simplified_mesh> simplify(const checked_mesh& full, std::size_t triangles
         smooth(full.mesh, static_cast<std::size_t>(std::lround(a.smoothing * passes)), threads, monitor);
     if (monitor.cancelled()) return error{error_code::cancelled, "the bake was cancelled"};
     const auto target = static_cast<std::size_t>(std::lround(a.triangles * static_cast<double>(triangles)));
-    auto reduced = collapse_edges(smoothed, target, monitor);
+    auto reduced = collapse_edges(std::move(smoothed), target, monitor, threads);
     if (!reduced) return error{error_code::cancelled, "the bake was cancelled"};
     out.mesh = std::move(*reduced);
     round_to_float32(out.mesh);

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "bake/halfedges.hpp"
+#include "bake/parallel.hpp"
+#include "bake/stage_monitor.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -52,6 +54,17 @@ struct seam {
     return (1.0 - s) * ends[0] + s * ends[1];
   }
 
+  // Never false where a lookup along one seam reads a texel that one along the other reads.
+  [[nodiscard]] bool shares_texels(const seam& other, const haptic_texture& texture) const {
+    const vec2 reach = 3.0 / vec2(texture.width, texture.height);  // two texels of each lookup, and one to be safe
+    for (const auto* a : {&here, &there})
+      for (const auto* b : {&other.here, &other.there})
+        if (glm::all(glm::lessThanEqual(glm::min((*a)[0], (*a)[1]) - reach, glm::max((*b)[0], (*b)[1]))) &&
+            glm::all(glm::lessThanEqual(glm::min((*b)[0], (*b)[1]) - reach, glm::max((*a)[0], (*a)[1]))))
+          return true;
+    return false;
+  }
+
   [[nodiscard]] double gap(const haptic_texture& texture) const {
     double largest = 0.0;
     for (int i = 0; i <= samples; ++i) {
@@ -78,7 +91,8 @@ struct seam {
 
 }  // namespace
 
-std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double limit_m, haptic_texture& texture) {
+std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double limit_m, haptic_texture& texture,
+                   unsigned threads) {
   std::vector<index_triangle> triangles;
   for (const coarse_triangle& t : coarse.triangles) triangles.push_back(t.vertex);
   const connectivity net = connect(triangles, coarse.positions.size());
@@ -95,13 +109,22 @@ std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double l
     seams.push_back(s);
   }
   // Closing a seam moves texels that its neighbours use at their ends: those may open, and are then closed in turn.
+  // Only they are looked at again: most seams share no texel with one that is closed.
+  std::vector<double> gap(seams.size());
+  stage_monitor no_one;
+  const auto look = [&](std::size_t i) { gap[i] = seams[i].gap(texture); };
+  (void)parallel_tasks(seams.size(), threads, no_one, 0.0, 1.0, look);
+  std::vector<bool> stale(seams.size(), false);
   std::vector<bool> touched(seams.size(), false);
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     bool open = false;
     for (std::size_t i = 0; i < seams.size(); ++i) {
-      if (seams[i].gap(texture) <= limit_m) continue;
+      if (stale[i]) look(i);
+      stale[i] = false;
+      if (gap[i] <= limit_m) continue;
       open = touched[i] = true;
       seams[i].close(full, texture);
+      for (std::size_t j = 0; j < seams.size(); ++j) stale[j] = stale[j] || seams[i].shares_texels(seams[j], texture);
     }
     if (!open) break;
   }

@@ -16,6 +16,7 @@ namespace asperity::bake {
 /// Stops after a fixed number of rounds: a gap may stay where neighbouring points ask the same texels for different
 /// things. largest_crack() tells.
 /// @return how many edges were worked on
-std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double limit_m, haptic_texture& texture);
+std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double limit_m, haptic_texture& texture,
+                   unsigned threads = 1);
 
 }  // namespace asperity::bake

@@ -2,18 +2,25 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "asperity/bake/relief.hpp"
 #include "bake/geometry.hpp"
+#include "bake/map_lookup.hpp"
 
 namespace asperity::bake {
+
+/// Texture coordinates at barycentric coordinates b of triangle t; zero where the mesh has none.
+[[nodiscard]] inline vec2 uv_on(const triangle_mesh& mesh, std::uint32_t t, const std::array<double, 3>& b) noexcept {
+  return t < mesh.uvs.size() ? mixed(mesh.uvs[t], b) : vec2(0.0);
+}
 
 /// The point of a triangle with barycentric coordinates b.
 [[nodiscard]] inline relief_point point_on(const triangle_mesh& mesh, std::uint32_t t, const std::array<double, 3>& b) {
   const auto c = corners(mesh.positions, mesh.triangles[t]);
-  return {b[0] * c[0] + b[1] * c[1] + b[2] * c[2], unit_normal(c), t, b};
+  return {b[0] * c[0] + b[1] * c[1] + b[2] * c[2], unit_normal(c), t, uv_on(mesh, t, b)};
 }
 
 /// Point at a share of the area of one triangle, from two numbers in [0, 1).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <thread>
 #include <utility>
 
 #include "bake/geometry.hpp"
@@ -10,7 +11,16 @@ namespace asperity::bake {
 namespace {
 
 constexpr std::size_t leaf_size = 4;
+constexpr std::size_t least_shared_items = 4096;  // fewer are not worth another thread
 constexpr std::size_t stack_size = 64;  // the tree is balanced: its depth is the logarithm of the triangle count
+
+// Nodes of the tree over n items. At depth d the halves have n / 2^d items, rounded down or up, and n % 2^d of them up.
+std::size_t node_count(std::size_t n) noexcept {
+  std::size_t d = 0;
+  while ((n >> d) > leaf_size) ++d;
+  const std::size_t larger = (n >> d) == leaf_size ? n & ((std::size_t{1} << d) - 1) : 0;  // these have two leaves
+  return 2 * ((std::size_t{1} << d) + larger) - 1;
+}
 
 float below(double x) noexcept {
   const auto f = static_cast<float>(x);
@@ -98,42 +108,43 @@ struct triangle_bvh::item {
   std::uint32_t triangle;
 };
 
-triangle_bvh::triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles) {
+triangle_bvh::triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles, unsigned threads)
+    : positions_(positions) {
   std::vector<item> items(triangles.size());
-  corners_.resize(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    corners_[t] = corners(positions, triangles[t]);
-    const vec3 centre = (corners_[t][0] + corners_[t][1] + corners_[t][2]) / 3.0;
+    const auto c = corners(positions, triangles[t]);
+    const vec3 centre = (c[0] + c[1] + c[2]) / 3.0;
     items[t] = {{static_cast<float>(centre.x), static_cast<float>(centre.y), static_cast<float>(centre.z)},
                 static_cast<std::uint32_t>(t)};
   }
-  nodes_.reserve(triangles.size());
-  build(items, 0);
-  std::vector<std::array<vec3, 3>> in_leaf_order(items.size());
+  nodes_.resize(node_count(items.size()));
+  build(triangles, items, 0, 0, threads);
   triangle_.resize(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    triangle_[i] = items[i].triangle;
-    in_leaf_order[i] = corners_[items[i].triangle];
-  }
-  corners_ = std::move(in_leaf_order);
+  for (std::size_t i = 0; i < items.size(); ++i) triangle_[i] = items[i].triangle;
+  items = std::vector<item>();
+  corners_.resize(triangle_.size());
+  for (std::size_t i = 0; i < triangle_.size(); ++i) corners_[i] = triangles[triangle_[i]];
 }
 
-std::uint32_t triangle_bvh::build(std::span<item> items, std::size_t first) {
-  const auto index = static_cast<std::uint32_t>(nodes_.size());
-  nodes_.emplace_back();
-  if (items.size() <= leaf_size) {
-    bounds box{corners_[items[0].triangle][0], corners_[items[0].triangle][0]};
-    for (const item& i : items)
-      for (const vec3& p : corners_[i.triangle]) {
-        box.low = glm::min(box.low, p);
-        box.high = glm::max(box.high, p);
-      }
-    nodes_[index] = {{below(box.low.x), below(box.low.y), below(box.low.z)},
-                     {above(box.high.x), above(box.high.y), above(box.high.z)},
-                     static_cast<std::uint32_t>(first),
-                     static_cast<std::uint32_t>(items.size())};
-    return index;
-  }
+void triangle_bvh::make_leaf(std::span<const index_triangle> triangles, std::span<const item> items, std::size_t first,
+                             node& out) {
+  const vec3& start = positions_[triangles[items[0].triangle][0]];
+  bounds box{start, start};
+  for (const item& i : items)
+    for (const std::uint32_t v : triangles[i.triangle]) {
+      box.low = glm::min(box.low, positions_[v]);
+      box.high = glm::max(box.high, positions_[v]);
+    }
+  out = {{below(box.low.x), below(box.low.y), below(box.low.z)},
+         {above(box.high.x), above(box.high.y), above(box.high.z)},
+         static_cast<std::uint32_t>(first),
+         static_cast<std::uint32_t>(items.size())};
+}
+
+// The number of items alone tells where the nodes of each half go, so that both halves can be built at the same time.
+void triangle_bvh::build(std::span<const index_triangle> triangles, std::span<item> items, std::size_t first,
+                         std::size_t index, unsigned threads) {
+  if (items.size() <= leaf_size) return make_leaf(triangles, items, first, nodes_[index]);
   std::array<float, 3> low = items[0].centre;
   std::array<float, 3> high = items[0].centre;
   for (const item& i : items)
@@ -149,17 +160,25 @@ std::uint32_t triangle_bvh::build(std::span<item> items, std::size_t first) {
                    [axis](const item& a, const item& b) {
                      return std::pair(a.centre[axis], a.triangle) < std::pair(b.centre[axis], b.triangle);
                    });
-  build(items.first(half), first);
-  const std::uint32_t right = build(items.subspan(half), first + half);
-  const node& l = nodes_[index + 1];
+  const std::size_t left = index + 1;
+  const std::size_t right = left + node_count(half);
+  const auto build_left = [&](unsigned with) { build(triangles, items.first(half), first, left, with); };
+  const auto build_right = [&](unsigned with) { build(triangles, items.subspan(half), first + half, right, with); };
+  if (threads > 1 && items.size() >= least_shared_items) {
+    const std::jthread helper(build_left, threads / 2);
+    build_right(threads - threads / 2);
+  } else {
+    build_left(1);
+    build_right(1);
+  }
+  const node& l = nodes_[left];
   const node& r = nodes_[right];
-  node merged{l.low, l.high, right, 0};
+  node merged{l.low, l.high, static_cast<std::uint32_t>(right), 0};
   for (std::size_t k = 0; k < 3; ++k) {
     merged.low[k] = std::min(l.low[k], r.low[k]);
     merged.high[k] = std::max(l.high[k], r.high[k]);
   }
   nodes_[index] = merged;
-  return index;
 }
 
 triangle_bvh::nearest triangle_bvh::closest(const vec3& p, double within) const noexcept {
@@ -181,7 +200,7 @@ triangle_bvh::nearest triangle_bvh::closest(const vec3& p, double within) const 
       continue;
     }
     for (std::uint32_t i = n.right_or_first; i < n.right_or_first + n.count; ++i) {
-      const vec3 q = closest_on_triangle(p, corners_[i]);
+      const vec3 q = closest_on_triangle(p, corners_at(i));
       const double q2 = glm::dot(p - q, p - q);
       if (q2 > best2 || (q2 == best2 && best.triangle != no_halfedge)) continue;
       best2 = q2;
@@ -206,8 +225,8 @@ bool triangle_bvh::has_facing(const vec3& p, const vec3& n, double within) const
       continue;
     }
     for (std::uint32_t i = here.right_or_first; i < here.right_or_first + here.count; ++i) {
-      if (!(glm::dot(area_normal(corners_[i]), n) > 0.0)) continue;
-      const vec3 q = closest_on_triangle(p, corners_[i]);
+      if (!(glm::dot(area_normal(corners_at(i)), n) > 0.0)) continue;
+      const vec3 q = closest_on_triangle(p, corners_at(i));
       if (glm::dot(p - q, p - q) <= within2) return true;
     }
   }
@@ -235,7 +254,7 @@ std::optional<triangle_bvh::crossing> triangle_bvh::nearest_front_crossing(const
       continue;
     }
     for (std::uint32_t i = n.right_or_first; i < n.right_or_first + n.count; ++i) {
-      const double s = front_crossing(p, d, corners_[i]);
+      const double s = front_crossing(p, d, corners_at(i));
       if (!(std::abs(s) <= reach) || (best && std::abs(s) == reach)) continue;
       reach = std::abs(s);
       best = crossing{p + s * d, s, triangle_[i]};

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
+#include <span>
 #include <vector>
+
+#include "bake/halfedges.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -59,7 +61,8 @@ std::vector<std::uint32_t> spread(std::uint32_t seed, std::span<const index_tria
 
 }  // namespace
 
-std::optional<std::size_t> make_winding_consistent(std::span<index_triangle> triangles) {
+std::optional<std::size_t> make_winding_consistent(triangle_mesh& mesh) {
+  const std::span<const index_triangle> triangles = mesh.triangles;
   const std::vector<std::uint32_t> across = pair_across_edges(triangles);
   std::vector<side> sides(triangles.size(), side::unseen);
   std::vector<std::uint32_t> to_turn;
@@ -71,7 +74,7 @@ std::optional<std::size_t> make_winding_consistent(std::span<index_triangle> tri
     const side fewer = 2 * static_cast<std::size_t>(turned) <= surface.size() ? side::turned : side::kept;
     std::ranges::copy_if(surface, std::back_inserter(to_turn), [&](std::uint32_t t) { return sides[t] == fewer; });
   }
-  for (const std::uint32_t t : to_turn) std::swap(triangles[t][1], triangles[t][2]);
+  for (const std::uint32_t t : to_turn) turn(mesh, t);
   return to_turn.size();
 }
 

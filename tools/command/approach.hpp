@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 
-#include "asperity/asperity.hpp"
+#include "asperity/render/renderer.hpp"
 
 namespace asperity::command {
 

@@ -1,8 +1,6 @@
 // asperity bake: from a full-resolution mesh to a textured model.
-#include <array>
-#include <chrono>
-#include <cmath>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,10 +9,11 @@
 #include "asperity/bake/repair.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
+#include "bake_document.hpp"
 #include "cli.hpp"
 #include "interrupt.hpp"
+#include "mesh_units.hpp"
 #include "model_drawing.hpp"
-#include "model_report.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -35,77 +34,12 @@ struct bake_command {
   std::size_t triangles = 600;
   std::uint32_t texture = 1024;
   unsigned threads = 0;
-  std::optional<double> scale;  // metres per unit, by --scale
-  std::optional<std::string> units;
   std::optional<std::size_t> pieces;
+  bool keep_uvs = false;
   bool close_holes = false;
+  std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
   std::shared_ptr<relief_options> relief = std::make_shared<relief_options>();
 };
-
-// Wall time of each stage, told apart by the names that the work reports.
-class stage_clock {
- public:
-  void enter(std::string_view stage) {
-    if (!stages_.empty() && stages_.back().first == stage) return;
-    leave();
-    stages_.emplace_back(std::string(stage), 0.0);
-    since_ = std::chrono::steady_clock::now();
-  }
-  void leave() {
-    if (stages_.empty() || stages_.back().second != 0.0) return;
-    stages_.back().second = std::chrono::duration<double>(std::chrono::steady_clock::now() - since_).count();
-  }
-  [[nodiscard]] const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
-
- private:
-  std::vector<std::pair<std::string, double>> stages_;
-  std::chrono::steady_clock::time_point since_;
-};
-
-struct length_unit {
-  const char* name;
-  double metres;
-};
-constexpr std::array<length_unit, 4> length_units{{{"m", 1.0}, {"cm", 1e-2}, {"mm", 1e-3}, {"in", 0.0254}}};
-
-double metres_per_unit(const bake_command& options) {
-  if (options.scale) return *options.scale;
-  for (const length_unit& u : length_units)
-    if (options.units == u.name) return u.metres;
-  return 1.0;
-}
-
-// Mesh formats other than glTF do not say what their numbers mean. Where they would make a body that nobody holds in
-// his hand, the unit is asked for.
-result<void> check_size(const bake_command& options, const triangle_mesh& mesh) {
-  if (options.scale || options.units || mesh.positions.empty()) return {};
-  if (extension_error(options.full, {".gltf", ".glb"}).empty()) return {};
-  vec3 low = mesh.positions.front();
-  vec3 high = low;
-  for (const vec3& p : mesh.positions) {
-    low = glm::min(low, p);
-    high = glm::max(high, p);
-  }
-  const double diagonal = glm::length(high - low);
-  // Without any size, or with none that is a number, the mesh has another fault, which the bake names.
-  if (!std::isfinite(diagonal) || diagonal == 0.0 || is_sensible_size(diagonal)) return {};
-  std::string choices;
-  for (const length_unit& u : length_units) {
-    if (is_sensible_size(diagonal * u.metres))
-      choices += (choices.empty() ? "" : ", or ") + std::string("--units ") + u.name + " (" +
-                 length_text(diagonal * u.metres) + ")";
-  }
-  return error{error_code::invalid_argument,
-               options.full + ": its diagonal would be " + length_text(diagonal) +
-                   " if its unit is the metre, outside " + sensible_sizes() +
-                   "; say the unit: " + (choices.empty() ? "" : choices + ", or ") +
-                   "--units m if it is that large or small, or --scale with metres per unit"};
-}
-
-void scale_mesh(triangle_mesh& mesh, double factor) {
-  if (factor == 1.0) return;
-  for (vec3& p : mesh.positions) p *= factor;
-}
 
 result<void> check_paths(const bake_command& options) {
   std::error_code ignored;
@@ -128,39 +62,6 @@ result<void> check_paths(const bake_command& options) {
   return check_writable(options.out);
 }
 
-answer report(const bake_command& options, const textured_model& model, const bake::hole_report& holes,
-              const relief_job& relief, const stage_clock& clock, std::vector<std::string> notes) {
-  for (std::string& warning : warnings(model)) notes.push_back(std::move(warning));
-  answer out;
-  out.document = {{"file", options.out}, {"source", options.full}, {"scale", metres_per_unit(options)}};
-  out.document.update(describe(model));
-  out.document["repair"] = {{"holes_closed", holes.holes},
-                            {"triangles_added", holes.triangles_added},
-                            {"area_added", holes.area_added_m2},
-                            {"largest_hole", holes.largest_m}};
-  if (relief.relief) out.document["relief"] = relief.document;
-  json stages = json::array();
-  std::string times;
-  double total = 0.0;
-  for (const auto& [stage, seconds] : clock.stages()) {
-    stages.push_back({{"stage", stage}, {"seconds", seconds}});
-    times += (times.empty() ? "" : ", ") + stage + ' ' + time_text(seconds);
-    total += seconds;
-  }
-  out.document["stages"] = std::move(stages);
-  out.document["seconds"] = total;
-  out.document["warnings"] = notes;
-  out.document["units"] = "SI";
-  out.text = options.full + " -> " + options.out + '\n' + describe_text(model);
-  out.text += relief.text;
-  if (holes.holes > 0) {
-    out.text +=
-        row("holes closed", std::to_string(holes.holes) + ", the largest " + length_text(holes.largest_m) + " across");
-  }
-  out.text += row("time", time_text(total) + "  (" + times + ')') + warnings_text(notes);
-  return out;
-}
-
 result<answer> run_bake(const bake_command& options, const common_options& common) {
   if (const result<void> ok = check_paths(options); !ok) return ok.error();
 
@@ -181,14 +82,18 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   enter("read", 0.0);
   result<triangle_mesh> full = io::load_mesh(options.full);
   if (!full) return full.error();
-  if (const result<void> ok = check_size(options, *full); !ok) return ok.error();
-  scale_mesh(*full, metres_per_unit(options));
+  if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
   std::vector<std::string> remarks;
   bake::hole_report holes;
   if (options.close_holes) {
     const result<bake::hole_report> closed = bake::close_holes(*full);
     if (!closed) return closed.error();
     holes = *closed;
+    if (options.keep_uvs && options.coarse.empty() && holes.holes > 0) {
+      return error{error_code::invalid_argument,
+                   "--keep-uvs: the triangles that close the holes of " + options.full +
+                       " have no texture coordinates; close them where the mesh is unwrapped, or give a --coarse mesh"};
+    }
     if (holes.triangles_turned > 0) {
       remarks.push_back("before its holes were closed, " + std::to_string(holes.triangles_turned) +
                         " triangles that were wound against their neighbours have been turned");
@@ -200,6 +105,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.triangles = options.triangles;
   settings.texture_size = options.texture;
   settings.pieces = options.pieces;
+  settings.keep_uvs = options.keep_uvs;
   settings.threads = options.threads;
   settings.progress = enter;
   if (!options.relief->kind().empty() && !enter("relief", 0.0))
@@ -212,10 +118,12 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!options.coarse.empty()) {
     result<triangle_mesh> coarse = io::load_mesh(options.coarse);
     if (!coarse) return coarse.error();
-    scale_mesh(*coarse, metres_per_unit(options));
+    scale_to_metres(*options.units, *coarse);
     settings.coarse = std::move(coarse).value();
   }
-  const result<textured_model> model = bake::bake(*full, settings);
+  // A mesh that the picture does not need is not kept twice.
+  const result<textured_model> model =
+      drawing && !settings.relief ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
   if (!model) return model.error();
 
   json picture;
@@ -238,7 +146,9 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     if (const result<void> kept = drawing->commit(); !kept) return kept.error();
   }
   clock.leave();
-  answer out = report(options, *model, holes, *relief, clock, std::move(remarks));
+  answer out = tell_of_bake(
+      {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, holes, *relief, clock},
+      std::move(remarks));
   if (drawing) {
     out.document["picture"] = std::move(picture);
     out.text += row("picture", options.picture);
@@ -264,11 +174,9 @@ void add_bake(command_line& line) {
   sub.add_option("--texture", o->texture, "Texels per side of the haptic texture")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
-  auto* scale = sub.add_option("--scale", o->scale, "Metres per unit of the meshes (0.001 for millimetres)")
-                    ->check(positive_number_error, "NUMBER > 0");
-  sub.add_option("--units", o->units, "Unit of the meshes: m, cm, mm or in")
-      ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
-      ->excludes(scale);
+  sub.add_flag("--keep-uvs", o->keep_uvs,
+               "Use the coarse mesh's own texture coordinates; without --coarse, those of a full mesh that is its own");
+  add_unit_options(sub, o->units, "the meshes");
   sub.add_option("--pieces", o->pieces, "Convex pieces to aim for; by default as many as the usual tolerances make")
       ->check(CLI::Range(1, 1000000));
   add_relief_options(sub, o->relief);

@@ -1,24 +1,21 @@
 // asperity bench: what a contact costs, stage by stage, on this machine.
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <optional>
-#include <random>
 #include <utility>
 
-#include "approach.hpp"
 #include "asperity/bake/bake.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "backend_report.hpp"
 #include "benchmark_models.hpp"
 #include "cli.hpp"
-#include "cpu_clock.hpp"
 #include "interrupt.hpp"
 #include "model_report.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "scene_loading.hpp"
+#include "stage_times.hpp"
 #include "statistics.hpp"
 #include "text.hpp"
 
@@ -31,34 +28,12 @@ struct bench_command {
   std::string probe;
   std::string fixed;
   std::string models;
-  std::size_t poses = 2000;
-  std::uint64_t seed = 1;
+  scrubbing motion;
   std::optional<std::string> backend;  ///< given: compare depth backends instead
   std::optional<std::string> gpu;
   std::optional<std::uint32_t> grid;
   std::optional<std::size_t> repeats;
 };
-
-/// Poses of a probe that scrubs over the place where it first touched, pressed in by a little.
-std::vector<pose> scrubbing_path(const pose& touch, const bench_command& options, double size_m) {
-  std::mt19937_64 bits(options.seed);
-  const auto unit = [&] { return static_cast<double>(bits() >> 11) * 0x1.0p-53; };
-  constexpr double two_pi = 6.283185307179586;
-  const double amplitude_m = std::min(0.01, 0.1 * size_m);
-  const double press_m = std::min(0.0005, 0.005 * size_m);
-  const double phase[] = {two_pi * unit(), two_pi * unit(), two_pi * unit()};
-  std::vector<pose> path;
-  for (std::size_t i = 0; i < options.poses; ++i) {
-    // A thousand poses a second, as a device loop would ask for.
-    const double t = 1e-3 * static_cast<double>(i);
-    pose T = touch;
-    T.position += vec3(amplitude_m * (std::sin(two_pi * 1.0 * t + phase[0]) - std::sin(phase[0])),
-                       amplitude_m * (std::sin(two_pi * 0.7 * t + phase[1]) - std::sin(phase[1])), -press_m);
-    T.rotation = exp_rotation({0.0, 0.0, 0.05 * std::sin(two_pi * 0.4 * t + phase[2])}) * touch.rotation;
-    path.push_back(T);
-  }
-  return path;
-}
 
 /// Bakes a benchmark model, or takes it from the folder of baked models.
 result<model_ptr> benchmark_model(models::benchmark which, const bench_command& options, progress_line& progress) {
@@ -97,67 +72,9 @@ result<scene> bench_scene(const bench_command& options, progress_line& progress)
   return scene{std::move(probe).value(), {std::move(fixed).value()}};
 }
 
-/// CPU times along the path, one entry per pose; contact times are divided by the contacts of the pose.
-struct measured {
-  std::vector<double> query_s;
-  std::vector<double> soft_contact_s, central_contact_s;
-  std::vector<double> shared_tick_s, soft_tick_s, central_tick_s;
-  std::vector<double> contacts;
-};
-
-result<measured> measure(const scene& bodies, const bench_command& options, progress_line& progress) {
-  paper_settings soft_settings, central_settings;
-  soft_settings.depth.gradient = gradient_scheme::soft_max;
-  central_settings.depth.gradient = gradient_scheme::central_difference;
-  result<renderer> shared = make_renderer(bodies);
-  if (!shared) return shared.error();
-  result<paper_renderer> soft = make_paper_renderer(bodies, soft_settings);
-  if (!soft) return soft.error();
-  result<paper_renderer> central = make_paper_renderer(bodies, central_settings);
-  if (!central) return central.error();
-
-  const std::vector<pose> T_wb(bodies.fixed.size());
-  const step_function step = [&](const scene_pose& at, tick& found) { return soft->step(at, found); };
-  const result<pose> touch = find_touch(bodies, step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
-  if (!touch) return touch.error();
-  const double size_m = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
-
-  measured out;
-  convex_piece_finder finder(bodies, soft_settings.finder);
-  contact_set contacts(soft_settings.limits);
-  std::vector<penetration> depths(soft_settings.limits.contacts);
-  const std::vector<pose> path = scrubbing_path(*touch, options, size_m);
-  const auto time = [](std::vector<double>& into, double share, auto&& call) {
-    const double begin = cpu_seconds();
-    static_cast<void>(call());
-    into.push_back(share * (cpu_seconds() - begin));
-  };
-  for (std::size_t i = 0; i < path.size(); ++i) {
-    if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
-    progress.show("measuring", static_cast<double>(i) / static_cast<double>(path.size()));
-    const scene_pose at{path[i], T_wb};
-    time(out.query_s, 1.0, [&] { return finder.find(at, contacts); });
-    out.contacts.push_back(static_cast<double>(contacts.size()));
-    if (contacts.size() > 0) {
-      const auto found = std::span(depths).first(contacts.size());
-      const double share = 1.0 / static_cast<double>(contacts.size());
-      time(out.soft_contact_s, share, [&] { return soft->depth().measure(at, contacts, found); });
-      time(out.central_contact_s, share, [&] { return central->depth().measure(at, contacts, found); });
-    }
-    tick found;
-    time(out.shared_tick_s, 1.0, [&] { return shared->step(at, found); });
-    time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
-    time(out.central_tick_s, 1.0, [&] { return central->step(at, found); });
-  }
-  if (out.soft_contact_s.empty()) {
-    return error{error_code::invalid_argument, "the probe lost the fixed body along the path: choose other models"};
-  }
-  return out;
-}
-
 std::string ratio_text(double ratio) { return brief(ratio) + " x"; }
 
-answer report(const scene& bodies, const bench_command& options, const measured& m) {
+answer report(const scene& bodies, const bench_command& options, const stage_times& m) {
   const time_summary query = summarise(m.query_s);
   const time_summary soft = summarise(m.soft_contact_s);
   const time_summary central = summarise(m.central_contact_s);
@@ -174,8 +91,8 @@ answer report(const scene& bodies, const bench_command& options, const measured&
   answer out;
   out.document = {{"probe", body(*bodies.probe)},
                   {"fixed", body(*bodies.fixed.front())},
-                  {"poses", options.poses},
-                  {"seed", options.seed},
+                  {"poses", options.motion.poses},
+                  {"seed", options.motion.seed},
                   {"contacts", {{"mean", contacts}, {"max", most}}},
                   {"time_is", "cpu"},
                   {"seconds",
@@ -202,7 +119,7 @@ answer report(const scene& bodies, const bench_command& options, const measured&
   const auto name = [](const textured_model& b) {
     return b.name + " (" + std::to_string(b.pieces.size()) + " pieces)";
   };
-  out.text = name(*bodies.probe) + " on " + name(*bodies.fixed.front()) + ", " + std::to_string(options.poses) +
+  out.text = name(*bodies.probe) + " on " + name(*bodies.fixed.front()) + ", " + std::to_string(options.motion.poses) +
              " poses of a scrubbing path, " + brief(contacts) + " contacts on average, CPU time of one core\n";
   out.text += row("collision query", to_text(query));
   out.text += row("contact, soft maximum", to_text(soft));
@@ -230,7 +147,7 @@ result<void> check(const bench_command& options) {
 result<answer> compare_backends(const scene& bodies, const bench_command& options, const common_options& common,
                                 progress_line& progress) {
 #ifdef ASPERITY_HAS_GL
-  backend_bench wanted{.backend = *options.backend, .gpu = options.gpu, .seed = options.seed};
+  backend_bench wanted{.backend = *options.backend, .gpu = options.gpu, .seed = options.motion.seed};
   wanted.grid = options.grid.value_or(wanted.grid);
   wanted.repeats = options.repeats.value_or(wanted.repeats);
   const result<bench_of_backends> timed = time_backends(bodies, wanted, progress);
@@ -249,7 +166,7 @@ result<answer> bench(const bench_command& options, const common_options& common)
   const result<scene> bodies = bench_scene(options, progress);
   if (!bodies) return bodies.error();
   if (options.backend) return compare_backends(*bodies, options, common, progress);
-  const result<measured> m = measure(*bodies, options, progress);
+  const result<stage_times> m = time_stages(*bodies, options.motion, progress);
   if (!m) return m.error();
   return report(*bodies, options, *m);
 }
@@ -269,8 +186,10 @@ void add_bench(command_line& line) {
   sub.add_option("--models", o->models, "Folder of baked benchmark models; what is missing there is baked and kept")
       ->check(CLI::ExistingDirectory)
       ->excludes(probe);
-  sub.add_option("--poses", o->poses, "Poses of the path")->check(CLI::Range(10, 1000000))->capture_default_str();
-  sub.add_option("--seed", o->seed, "Seed of the path")
+  sub.add_option("--poses", o->motion.poses, "Poses of the path")
+      ->check(CLI::Range(10, 1000000))
+      ->capture_default_str();
+  sub.add_option("--seed", o->motion.seed, "Seed of the path")
       ->check(whole_number_error, "WHOLE NUMBER")
       ->capture_default_str();
   sub.add_option("--backend", o->backend, "Compare depth backends on a GPU with the CPU instead: all, or one of them")

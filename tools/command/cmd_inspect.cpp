@@ -1,5 +1,6 @@
 // asperity inspect: what is in a textured model.
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "cli.hpp"
 #include "interrupt.hpp"
+#include "mesh_units.hpp"
 #include "model_drawing.hpp"
 #include "model_report.hpp"
 #include "options.hpp"
@@ -23,7 +25,7 @@ struct inspect_command {
   std::string file;
   std::string picture;
   std::string original;
-  double scale = 1.0;
+  std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
   std::string up = "auto";
   double turn_deg = 0.0;
 };
@@ -57,7 +59,7 @@ result<json> draw(const inspect_command& options, const common_options& common, 
     result<triangle_mesh> loaded = io::load_mesh(options.original);
     if (!loaded) return loaded.error();
     original = std::move(*loaded);
-    for (vec3& p : original->positions) p *= options.scale;
+    if (const result<void> ok = bring_to_metres(*options.units, options.original, *original); !ok) return ok.error();
     settings.original = &*original;
     settings.original_name = fs::path(options.original).filename().string();
   }
@@ -104,10 +106,9 @@ void add_inspect(command_line& line) {
           ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");
   auto* original =
       sub.add_option("--original", o->original, "With --picture: show the distance to this mesh")->needs(drawn);
-  sub.add_option("--scale", o->scale, "Metres per unit of the original (0.001 for millimetres)")
-      ->check(positive_number_error, "NUMBER > 0")
-      ->needs(original)
-      ->capture_default_str();
+  const unit_option_pair unit = add_unit_options(sub, o->units, "the original");
+  unit.units->needs(original);
+  unit.scale->needs(original);
   sub.add_option("--up", o->up,
                  "With --picture: axis of the body that points up, x, y or z; auto takes z, and lays down what is tall")
       ->check(CLI::IsMember({"auto", "x", "y", "z"}))

@@ -4,7 +4,7 @@
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
 #include "chosen_renderer.hpp"
-#include "render_options.hpp"
+#include "render_choice.hpp"
 
 namespace asperity::command {
 

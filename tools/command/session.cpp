@@ -9,6 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "asperity/control/real_session.hpp"
+#include "asperity/control/virtual_session.hpp"
 #include "cpu_clock.hpp"
 #include "interrupt.hpp"
 #include "record_queue.hpp"

@@ -5,9 +5,11 @@
 #include <functional>
 #include <vector>
 
-#include "asperity/asperity.hpp"
+#include "asperity/control/contact_loop.hpp"
+#include "asperity/control/device_loop.hpp"
+#include "asperity/hal/simulated/simulated_device.hpp"
+#include "chosen_renderer.hpp"
 #include "progress.hpp"
-#include "render_options.hpp"
 
 namespace asperity::command {
 

@@ -1,6 +1,9 @@
 # shellcheck shell=bash
 # Building and testing one preset. Sourced by ./dev.
 
+# ccache keeps what was compiled with precompiled headers only where it need not look for macros in them.
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
+
 configure() {
   local preset=$1 launcher=()
   command -v ccache > /dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)

@@ -176,6 +176,7 @@ result<triangle_mesh> build_mesh(polygon_soup&& soup, const std::filesystem::pat
     first = soup.ends[k];
   }
   drop_unused(mesh);
+  if (mesh.positions.capacity() > 2 * mesh.positions.size()) mesh.positions.shrink_to_fit();  // STL: six times as many
   return mesh;
 }
 

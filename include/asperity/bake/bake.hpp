@@ -18,8 +18,11 @@ struct bake_options {
   std::string name;                     ///< name of the model, kept in the file
   std::size_t triangles = 600;          ///< coarse triangles to aim for; ignored where `coarse` is given
   std::optional<triangle_mesh> coarse;  ///< a coarse mesh to use instead of simplifying
-  std::uint32_t texture_size = 1024;    ///< texels per side
-  bake::relief relief;                  ///< heights to add to the mesh; none by default
+  /// The coarse mesh's own texture coordinates become the atlas instead of a new one. Without `coarse` the mesh has to
+  /// be its own coarse mesh: of no more than `triangles`.
+  bool keep_uvs = false;
+  std::uint32_t texture_size = 1024;  ///< texels per side
+  bake::relief relief;                ///< heights to add to the mesh; none by default
   /// Convex pieces to aim for, by smaller pieces or looser tolerances than usual; what that costs is in the report.
   std::optional<std::size_t> pieces;
   unsigned threads = 0;  ///< 0: as many as the machine has; the result does not depend on it
@@ -35,11 +38,13 @@ struct bake_options {
 /// mesh into convex pieces, and measure how far the textured surface and the original are apart. The mesh has to be
 /// closed, 2-manifold and in metres; several components and cavities are allowed. Positions and texture coordinates of
 /// the model are exact in float32. The same input gives the same bits.
+/// Texture coordinates that are kept have to be fit for an atlas: within the unit square, each triangle with a place of
+/// its own, and room for lookups between charts. They may mirror and stretch; the report then tells the texels' sizes.
 /// A relief is added on the way: every texel goes on, in its own direction, until it is that height above the triangle
 /// of the mesh that it has met. The errors in the report are then against the mesh with its relief.
 /// @return bad_mesh | bad_texture (relief) | invalid_argument | limit_exceeded | cancelled, with the fault, its place
 /// and
 ///         the mend
-[[nodiscard]] result<textured_model> bake(const triangle_mesh& full, const bake_options& options);
+[[nodiscard]] result<textured_model> bake(triangle_mesh full, const bake_options& options);
 
 }  // namespace asperity::bake

@@ -1,7 +1,6 @@
 // Relief that a mesh does not have in its triangles: a height over every point of it. Component asperity::bake.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -14,10 +13,10 @@ namespace asperity::bake {
 
 /// A point of a mesh, where a height is asked for.
 struct relief_point {
-  vec3 position{0.0};                      ///< m, without the relief
-  vec3 normal{0.0};                        ///< outward unit normal of the triangle
-  std::uint32_t triangle = 0;              ///< of the mesh as it was given
-  std::array<double, 3> barycentric{0.0};  ///< in its corner order
+  vec3 position{0.0};          ///< m, without the relief
+  vec3 normal{0.0};            ///< outward unit normal of the triangle
+  std::uint32_t triangle = 0;  ///< of the mesh as it was given
+  vec2 uv{0.0};                ///< texture coordinates there; zero where the mesh has none
 };
 
 /// Heights over a mesh, to be added by a bake (bake_options::relief).
@@ -27,6 +26,7 @@ struct relief {
   std::function<double(const relief_point&)> height_m;
   /// Size of the finest detail, m: texels of a map, half of the shortest wavelength. 0: not known.
   double finest_m = 0.0;
+  bool reads_uvs = false;  ///< height_m uses relief_point::uv: it fits no mesh without texture coordinates
 
   [[nodiscard]] explicit operator bool() const noexcept { return static_cast<bool>(height_m); }
 };

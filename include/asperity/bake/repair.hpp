@@ -19,11 +19,13 @@ struct hole_report {
   std::size_t triangles_turned = 0;  ///< that were wound against their neighbours: a border can be followed only then
 };
 
-/// Closes every hole with the triangulation of least area over the hole's own vertices; no vertex is added or moved.
+/// Closes every hole with a triangulation over the hole's own vertices; no vertex is added or moved. It is
+/// searched for the fewest folds, onto itself or onto the triangles around, and of those for the least area.
 /// Texture coordinates are dropped where a hole was closed: the new triangles have none.
 /// @return bad_mesh where a hole has more than largest_hole_edges edges, or where edges are shared by more than two
 ///         triangles (a hole has no border there that could be followed), or where a surface has only one side
-/// @source Barequet and Sharir 1995 (least-area triangulation of a hole by dynamic programming)
+/// @source Barequet and Sharir 1995 (least-area triangulation of a hole by dynamic programming);
+///         Liepa 2003 (angles first, then area)
 [[nodiscard]] result<hole_report> close_holes(triangle_mesh& mesh);
 
 }  // namespace asperity::bake

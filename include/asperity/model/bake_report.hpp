@@ -25,7 +25,7 @@ struct bake_quality {
   double to_textured_rms_m = 0.0;
   double crack_max_m = 0.0;  ///< largest gap between the two sides of a coarse edge
 
-  double texel_m = 0.0;            ///< edge of a texel on the coarse surface; the same everywhere
+  double texel_m = 0.0;            ///< edge of a texel on the coarse surface, in the mean where charts are stretched
   double atlas_utilisation = 0.0;  ///< share of the image that coarse triangles cover
   length_spread texel_spacing;     ///< between neighbouring texels on the fine surface; each pair counts the same
 

@@ -12,29 +12,15 @@
 #include "asperity/force/gradient_penalty.hpp"
 #include "asperity/force/shared_potential.hpp"
 #include "asperity/render/renderer.hpp"
+#include "asperity/render/settings.hpp"
 
 namespace asperity {
 
 /// The default: all contacts of two bodies as one potential. The force does not jump, whatever the motion.
 using renderer = basic_renderer<cell_finder, cell_depth, shared_potential>;
 
-/// Settings of the default policies. Each default is explained where its struct is.
-struct renderer_settings {
-  cell_settings cells{};
-  shared_settings shared{};
-  near_limits limits{};
-};
-
 /// The paper's: contacts clustered from convex pieces, each with a window and a spring of its own.
 using paper_renderer = basic_renderer<convex_piece_finder, cpu_depth, gradient_penalty>;
-
-/// Settings of the paper's policies.
-struct paper_settings {
-  finder_settings finder{};
-  depth_settings depth{};
-  gradient_penalty_settings force{};
-  contact_limits limits{};
-};
 
 namespace detail {
 

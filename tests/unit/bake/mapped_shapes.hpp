@@ -58,6 +58,33 @@ struct wavy_slab {
     }
     return out;
   }
+  /// The slab with its waves in its triangles.
+  [[nodiscard]] triangle_mesh fine_mesh(int cells) const {
+    return box({side_m, side_m, 2.0 * half_thickness_m}, {cells, cells, 1}, [this](vec3 p) {
+      p.z += (p.z > 0.0 ? 1.0 : -1.0) * height(p.x, p.y);
+      return p;
+    });
+  }
+  /// The slab without waves, each of its faces a chart of its own: top and bottom side by side, the four walls in two
+  /// rows next to them, gap_m between any two and margin_m around them. Some are mirrored.
+  [[nodiscard]] static triangle_mesh unwrapped(int cells, double gap_m, double margin_m) {
+    triangle_mesh out = box({side_m, side_m, 2.0 * half_thickness_m}, {cells, cells, 1});
+    const double per_m = 1.0 / (2.0 * side_m + gap_m + 2.0 * margin_m);
+    for (const auto& t : out.triangles) {
+      const vec3 n = glm::cross(out.positions[t[1]] - out.positions[t[0]], out.positions[t[2]] - out.positions[t[0]]);
+      const std::size_t axis = std::abs(n.x) > 0.0 ? 0 : std::abs(n.y) > 0.0 ? 1 : 2;
+      const double right = n[static_cast<int>(axis)] < 0.0 ? side_m + gap_m : 0.0;
+      const double low =
+          axis == 2 ? 0.0 : side_m + gap_m + static_cast<double>(axis) * (2.0 * half_thickness_m + gap_m);
+      auto& uv = out.uvs.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const vec3 p = out.positions[t[k]] + vec3(0.5 * side_m, 0.5 * side_m, half_thickness_m);
+        const vec2 on_face = axis == 2 ? vec2(p.x, p.y) : axis == 1 ? vec2(p.x, p.z) : vec2(p.y, p.z);
+        uv[k] = per_m * (vec2(margin_m + right, margin_m + low) + on_face);
+      }
+    }
+    return out;
+  }
   /// White is amplitude_m above the slab, black as much below.
   [[nodiscard]] map_image height_map(std::uint32_t side, std::uint32_t bits) const {
     return make_map(side, 1, bits, [&](double u, double v) -> std::array<double, 3> {

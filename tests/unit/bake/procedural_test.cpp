@@ -17,7 +17,7 @@ const triangle_mesh& block() {
 TEST(Procedural, StripesHaveTheirPitchHeightAndDirection) {
   const auto made = make_stripes({0.003, 0.0004, {0.0, 2.0, 0.0}});
   ASSERT_TRUE(made);
-  const auto at = [&](double x, double y) { return made->height_m({{x, y, 0.01}, {0, 0, 1}, 0, {1, 0, 0}}); };
+  const auto at = [&](double x, double y) { return made->height_m({{x, y, 0.01}, {0, 0, 1}}); };
   EXPECT_NEAR(at(0.0, 0.0), 0.0002, 1e-15);
   EXPECT_NEAR(at(0.02, 0.003), 0.0002, 1e-15);
   EXPECT_NEAR(at(0.01, 0.0015), -0.0002, 1e-15);
@@ -34,7 +34,7 @@ TEST(Procedural, DotsKeepTheirDistanceAndLeaveNoRoom) {
   EXPECT_LE(extent.highest_m, asked.height_m);
   // On the top face, from samples a tenth of a millimetre apart: tops, how near they are to each other, and the largest
   // empty place.
-  const auto at = [&](double x, double y) { return made->height_m({{x, y, 0.01}, {0, 0, 1}, 0, {1, 0, 0}}); };
+  const auto at = [&](double x, double y) { return made->height_m({{x, y, 0.01}, {0, 0, 1}}); };
   std::vector<vec2> tops;
   constexpr double step = 1e-4;
   for (double x = -0.026; x < 0.026; x += step)
@@ -84,7 +84,7 @@ double profile_power(const std::vector<relief>& surfaces, const vec3& along, int
       for (int i = 0; i < samples; ++i) {
         const double x = (i + 0.5) / samples;
         const double window = 1.0 - std::cos(2.0 * std::numbers::pi * x);
-        const double h = window * heights.height_m({start + x * line_m * along, {0, 0, 1}, 0, {1, 0, 0}}) / samples;
+        const double h = window * heights.height_m({start + x * line_m * along, {0, 0, 1}}) / samples;
         re += h * std::cos(2.0 * std::numbers::pi * n * x);
         im += h * std::sin(2.0 * std::numbers::pi * n * x);
       }
@@ -119,7 +119,7 @@ TEST(Procedural, RoughnessHasItsRmsAndItsSpectrumInEveryDirection) {
 }
 
 TEST(Procedural, TheSeedDecides) {
-  const relief_point p{{0.011, 0.007, 0.01}, {0, 0, 1}, 0, {1, 0, 0}};
+  const relief_point p{{0.011, 0.007, 0.01}, {0, 0, 1}};
   triangle_mesh small = shapes::tetrahedron();
   const auto height = [&](std::uint64_t seed) { return make_roughness(fine_roughness(seed), small)->height_m(p); };
   const double first = height(4);

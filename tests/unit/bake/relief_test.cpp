@@ -1,14 +1,14 @@
 // Maps of surfaces in closed form, baked: is the relief the surface's, and does it feel like it?
 #include "asperity/bake/relief.hpp"
 
+#include <cstring>
 #include <gtest/gtest.h>
 
 #include "asperity/bake/bake.hpp"
 #include "asperity/bake/map_relief.hpp"
-#include "asperity/depth/cpu_depth.hpp"
 #include "asperity/model/validate.hpp"
 #include "mapped_shapes.hpp"
-#include "support/height_models.hpp"
+#include "slab_feel.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -29,24 +29,7 @@ bake_options with_relief(relief heights) {
   return out;
 }
 
-// RMS over top and bottom, as far as within_m from their middle, of what the textured surface is away from the closed
-// form, in units of the form's own RMS.
-double miss(const textured_model& model, double within_m = 1.0) {
-  shapes::dice roll(1);
-  double squares = 0.0, own = 0.0;
-  for (int i = 0; i < 20000; ++i) {
-    const std::size_t t = roll.below(model.mesh.triangles.size());
-    const vec3 up = area_normal(corners(model.mesh, t));
-    const auto b = roll.barycentric();
-    const auto& uv = model.mesh.triangles[t].uv;
-    const vec3 p = model.texture.sample(b[0] * uv[0] + b[1] * uv[1] + b[2] * uv[2]);
-    if (std::abs(up.z) < 0.9 * glm::length(up) || std::max(std::abs(p.x), std::abs(p.y)) > within_m) continue;
-    const double h = slab.height(p.x, p.y);
-    squares += std::pow(std::abs(p.z) - shapes::wavy_slab::half_thickness_m - h, 2);
-    own += h * h;
-  }
-  return std::sqrt(squares / own);
-}
+double miss(const textured_model& model, double within_m = 1.0) { return shapes::slab_miss(slab, model, within_m); }
 
 textured_model baked_height_map(std::uint32_t bits) {
   const triangle_mesh mesh = slab.mesh(1);
@@ -84,53 +67,8 @@ TEST(HeightMap, BakesToTheSurfaceThatItWasMadeFrom) {
 
 TEST(NormalMap, BakesToTheSurfaceThatItWasMadeFrom) { EXPECT_LT(miss(baked_normal_map()), 0.05); }
 
-// A bowl pressed on the surface at many places: what a tick reads from both models.
-void expect_same_feel(const textured_model& baked, double depth_tolerance, double slope_tolerance) {
-  using namespace test_support;
-  plate_spec truth;
-  truth.half_x = truth.half_y = 0.5 * shapes::wavy_slab::side_m;
-  truth.thickness = 2.0 * shapes::wavy_slab::half_thickness_m;
-  truth.texels = 512;
-  truth.height = [](double x, double y) { return slab.height(x, y); };
-  truth.T_body_plate.position.z = shapes::wavy_slab::half_thickness_m;
-  plate_spec bowl;
-  bowl.half_x = bowl.half_y = 0.004;
-  bowl.height = [](double x, double y) { return -(x * x + y * y) / (2.0 * 0.004); };
-  const model_ptr probe = make_plate(bowl);
-  depth_settings settings;
-  settings.tau_m = 5e-6;
-  const scene on_baked{probe, {std::make_shared<const textured_model>(baked)}};
-  const scene on_truth{probe, {make_plate(truth)}};
-  auto baked_depth = make_cpu_depth(on_baked, settings);
-  auto true_depth = make_cpu_depth(on_truth, settings);
-  ASSERT_TRUE(baked_depth && true_depth);
-  shapes::dice roll(7);
-  double misses = 0.0, slope_misses = 0.0, slopes = 0.0, deepest = -1.0;
-  constexpr int poses = 60;
-  for (int i = 0; i < poses; ++i) {
-    const vec3 at{roll(-0.012, 0.012), roll(-0.012, 0.012), shapes::wavy_slab::half_thickness_m};
-    const quat tilt = exp_rotation(vec3{roll(-0.1, 0.1), roll(-0.1, 0.1), roll(-3.0, 3.0)});
-    const contact_window window = window_downwards(0.003, at);
-    const pose T_wa{tilt * face_down(), at};
-    const penetration a = measure_whole(*baked_depth, on_baked, window, T_wa);
-    const penetration b = measure_whole(*true_depth, on_truth, window, T_wa);
-    misses += std::pow(a.soft_depth_m - b.soft_depth_m, 2) / poses;
-    for (std::size_t k = 0; k < 2; ++k) {
-      slope_misses += std::pow(a.gradient[k] - b.gradient[k], 2) / poses;
-      slopes += b.gradient[k] * b.gradient[k] / poses;
-    }
-    deepest = std::max(deepest, b.depth_m);
-  }
-  EXPECT_GT(deepest, 0.3 * slab.amplitude_m) << "the bowl touches the waves";
-  EXPECT_GT(std::sqrt(slopes), 0.02) << "and their slopes are felt";
-  EXPECT_LT(std::sqrt(misses), depth_tolerance * slab.amplitude_m / 2.0);
-  EXPECT_LT(std::sqrt(slope_misses), slope_tolerance * std::sqrt(slopes));
-  testing::Test::RecordProperty("depth_miss_percent", std::to_string(200.0 * std::sqrt(misses) / slab.amplitude_m));
-  testing::Test::RecordProperty("slope_miss_percent", std::to_string(100.0 * std::sqrt(slope_misses / slopes)));
-}
-
-TEST(HeightMap, FeelsLikeTheSurface) { expect_same_feel(baked_height_map(16), 0.05, 0.05); }
-TEST(NormalMap, FeelsLikeTheSurface) { expect_same_feel(baked_normal_map(), 0.05, 0.05); }
+TEST(HeightMap, FeelsLikeTheSurface) { shapes::expect_slab_feel(slab, baked_height_map(16), 0.05, 0.05); }
+TEST(NormalMap, FeelsLikeTheSurface) { shapes::expect_slab_feel(slab, baked_normal_map(), 0.05, 0.05); }
 
 // Share of the closed form's RMS by which an integrated relief misses it on a stretched, curved unwrapping.
 double torus_miss(const shapes::mapped_torus& torus, const triangle_mesh& mesh, const relief& heights) {
@@ -139,13 +77,12 @@ double torus_miss(const shapes::mapped_torus& torus, const triangle_mesh& mesh, 
   for (int i = 0; i < 20000; ++i) {
     relief_point p;
     p.triangle = static_cast<std::uint32_t>(roll.below(mesh.triangles.size()));
-    p.barycentric = roll.barycentric();
-    vec2 uv{0.0};
+    const auto b = roll.barycentric();
     for (std::size_t k = 0; k < 3; ++k) {
-      p.position += p.barycentric[k] * mesh.positions[mesh.triangles[p.triangle][k]];
-      uv += p.barycentric[k] * mesh.uvs[p.triangle][k];
+      p.position += b[k] * mesh.positions[mesh.triangles[p.triangle][k]];
+      p.uv += b[k] * mesh.uvs[p.triangle][k];
     }
-    const double h = torus.height(uv.x, uv.y);
+    const double h = torus.height(p.uv.x, p.uv.y);
     squares += std::pow(heights.height_m(p) - h, 2);
     own += h * h;
   }
@@ -195,17 +132,43 @@ TEST(Relief, IsSeenTheSameWayOnAMeshThatComesInsideOut) {
   EXPECT_LT(miss(*bake(turned, with_relief(slopes->heights))), 0.05);
 }
 
-// A bake would turn the odd triangle, and the relief would then be read at other corners than it was made for.
-TEST(Relief, IsRefusedOnAMeshThatDoesNotWindOneWay) {
-  triangle_mesh mesh = slab.mesh(2);
-  std::swap(mesh.triangles[3][1], mesh.triangles[3][2]);
-  bake_options options;
-  EXPECT_TRUE(bake(mesh, options));
-  options.relief.height_m = [](const relief_point&) { return 1e-5; };
-  const auto refused = bake(mesh, options);
+void expect_same_bits(const result<textured_model>& a, const result<textured_model>& b) {
+  ASSERT_TRUE(a) << a.error().message;
+  ASSERT_TRUE(b) << b.error().message;
+  ASSERT_EQ(a->texture.texels.size(), b->texture.texels.size());
+  EXPECT_EQ(std::memcmp(a->texture.texels.data(), b->texture.texels.data(), a->texture.texels.size() * 12), 0);
+  EXPECT_EQ(a->mesh.positions, b->mesh.positions);
+}
+
+TEST(Relief, IsTheSameOnAMeshOfMixedWinding) {
+  const triangle_mesh mesh = slab.mesh(2);
+  triangle_mesh mixed = mesh;
+  for (const std::size_t t : {3UL, 4UL, 9UL, 20UL}) {
+    std::swap(mixed.triangles[t][1], mixed.triangles[t][2]);
+    std::swap(mixed.uvs[t][1], mixed.uvs[t][2]);
+  }
+  const auto small = [](const triangle_mesh& on, const relief& heights) {
+    bake_options options = with_relief(heights);
+    options.texture_size = 96;
+    return bake(on, options);
+  };
+  const map_image heights = slab.height_map(64, 16);
+  expect_same_bits(small(mixed, *height_map_relief(mixed, heights, slab_range())),
+                   small(mesh, *height_map_relief(mesh, heights, slab_range())));
+  const map_image normals = slab.normal_map(64, 16);
+  expect_same_bits(small(mixed, integrate_normal_map(mixed, normals, {})->heights),
+                   small(mesh, integrate_normal_map(mesh, normals, {})->heights));
+}
+
+TEST(Relief, OfAMapIsRefusedOnAMeshWithoutTextureCoordinates) {
+  const triangle_mesh mesh = slab.mesh(1);
+  const auto heights = height_map_relief(mesh, slab.height_map(16, 16), slab_range());
+  triangle_mesh bare = mesh;
+  bare.uvs.clear();
+  const auto refused = bake(bare, with_relief(*heights));
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, error_code::bad_mesh);
-  EXPECT_NE(refused.error().message.find("wind against"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("no texture coordinates"), std::string::npos) << refused.error().message;
 }
 
 TEST(Relief, IsKeptWhenTheMeshIsSimplified) {

@@ -60,6 +60,24 @@ TEST(close_holes, closes_both_ends_of_a_tube_with_its_lids) {
   EXPECT_NEAR(report->largest_m, 2.0, 1e-12);
 }
 
+// A box without its top, and on one side of the rim a triangle that stands up as high as the box is wide. The patch of
+// least area is that triangle once more, back to back with itself, and the flat top.
+TEST(close_holes, does_not_fold_a_patch_onto_what_is_there) {
+  triangle_mesh m;
+  for (int i = 0; i < 8; ++i) m.positions.emplace_back(i & 1, i >> 1 & 1, i >> 2);
+  m.positions.emplace_back(0.5, 0.0, 2.0);
+  m.triangles = {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {1, 3, 7}, {1, 7, 5},
+                 {3, 2, 6}, {3, 6, 7}, {2, 0, 4}, {2, 4, 6}, {4, 5, 8}};
+  const auto report = bake::close_holes(m);
+  ASSERT_TRUE(report);
+  EXPECT_EQ(report->holes, 1U);
+  EXPECT_EQ(report->triangles_added, 3U);
+  EXPECT_TRUE(is_closed_and_oriented(m));
+  const double flat = 0.5, standing = 0.75, beside = 0.5 * std::sqrt(1.25);  // from a far corner of the rim
+  EXPECT_NEAR(report->area_added_m2, flat + standing + beside, 1e-12);
+  EXPECT_GT(report->area_added_m2, 1.0 + 0.5) << "the folded patch is smaller";
+}
+
 TEST(close_holes, turns_triangles_that_wind_against_their_neighbours_first) {
   triangle_mesh tube = open_tube(40);
   for (const std::size_t t : std::array<std::size_t, 3>{3, 4, 31})

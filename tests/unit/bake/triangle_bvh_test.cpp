@@ -1,6 +1,7 @@
 #include "bake/triangle_bvh.hpp"
 
 #include <gtest/gtest.h>
+#include <vector>
 
 #include "bake/geometry.hpp"
 #include "shapes.hpp"
@@ -21,6 +22,32 @@ TEST(TriangleBvh, ClosestPointAgreesWithLookingAtEveryTriangle) {
     EXPECT_DOUBLE_EQ(found.distance_m, best);
     EXPECT_NEAR(glm::length(found.point - p), best, 1e-15);
     EXPECT_EQ(tree.closest(p, 0.99 * best).triangle, no_halfedge);
+  }
+}
+
+TEST(TriangleBvh, IsTheSameTreeWithAnyNumberOfThreads) {
+  // Counts at and about those where leaves are full: the halves find their places by counting.
+  for (const std::uint32_t around : {64U, 100U, 128U, 129U}) {
+    const triangle_mesh mesh = shapes::wavy_torus{}.mesh(around, 64);
+    const triangle_bvh one(mesh.positions, mesh.triangles, 1);
+    shapes::dice roll(2);
+    std::vector<vec3> points;
+    for (int i = 0; i < 100; ++i) points.emplace_back(roll(-0.1, 0.1), roll(-0.1, 0.1), roll(-0.05, 0.05));
+    for (const unsigned threads : {2U, 3U, 7U}) {
+      const triangle_bvh many(mesh.positions, mesh.triangles, threads);
+      for (const vec3& p : points) {
+        const auto a = one.closest(p);
+        const auto b = many.closest(p);
+        EXPECT_EQ(a.triangle, b.triangle);
+        EXPECT_EQ(a.point, b.point);
+      }
+      // Every triangle once, and in the same order.
+      std::vector<std::uint32_t> in_one, in_many;
+      one.visit_box(vec3(-1.0), vec3(1.0), [&](std::uint32_t t) { in_one.push_back(t); });
+      many.visit_box(vec3(-1.0), vec3(1.0), [&](std::uint32_t t) { in_many.push_back(t); });
+      EXPECT_EQ(in_one.size(), mesh.triangles.size());
+      EXPECT_EQ(in_one, in_many);
+    }
   }
 }
 

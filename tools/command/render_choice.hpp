@@ -1,0 +1,50 @@
+// The choice of contacts and depth backend, and the renderer that comes of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "asperity/core/status.hpp"
+#include "asperity/depth/settings.hpp"
+#include "asperity/model/scene.hpp"
+#include "chosen_renderer.hpp"
+
+namespace asperity::command {
+
+/// What the options of the command line choose; render_options.hpp has their help.
+struct render_options {
+  std::optional<std::string> contacts;  ///< what the backend implies where it is not given
+  std::string backend = "cpu";
+  std::optional<std::string> gradient;  ///< of the paper's contacts on grids only
+  std::optional<std::uint32_t> grid;    ///< of the paper's contacts on grids only
+  std::optional<std::string> lookup;    ///< of the paper's contacts on grids only
+  std::optional<std::string> gpu;       ///< index of a GPU or part of its name; of backends on a GPU only
+  bool fallback = false;                ///< of backends on a GPU only
+  bool allow_scale_mismatch = false;
+};
+
+/// Every value of --backend, those that are not part of this build too.
+[[nodiscard]] std::vector<std::string> backend_names();
+
+/// What the options come to, for documents and captions.
+[[nodiscard]] std::string formulation_name(const render_options& options);
+[[nodiscard]] std::string gradient_name(const render_options& options);
+/// Samples per side of a contact's window; nothing where depths are not sampled.
+[[nodiscard]] std::optional<std::uint32_t> grid_of(const render_options& options);
+/// Which fine point stands for a sample; nothing where depths are not sampled.
+[[nodiscard]] std::optional<std::string> lookup_name(const render_options& options);
+
+/// The same for a depth backend on a grid. @pre grid_of() has a value
+[[nodiscard]] depth_settings grid_settings(const render_options& options);
+
+/// Says what does not go together; asked before models are loaded, which takes longer.
+/// @return unsupported (a backend that is not part of this build) | invalid_argument
+[[nodiscard]] result<void> check(const render_options& options);
+
+/// The renderer that the options ask for.
+/// @return what check() says, or the renderer's maker
+[[nodiscard]] result<chosen_renderer> make_chosen_renderer(scene bodies, const render_options& options);
+
+}  // namespace asperity::command

@@ -1,0 +1,90 @@
+#include "stage_times.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <span>
+#include <utility>
+
+#include "approach.hpp"
+#include "asperity/render/default_renderer.hpp"
+#include "cpu_clock.hpp"
+#include "interrupt.hpp"
+
+namespace asperity::command {
+namespace {
+
+/// Poses of a probe that scrubs over the place where it first touched, pressed in by a little.
+std::vector<pose> scrubbing_path(const pose& touch, const scrubbing& motion, double size_m) {
+  std::mt19937_64 bits(motion.seed);
+  const auto unit = [&] { return static_cast<double>(bits() >> 11) * 0x1.0p-53; };
+  constexpr double two_pi = 6.283185307179586;
+  const double amplitude_m = std::min(0.01, 0.1 * size_m);
+  const double press_m = std::min(0.0005, 0.005 * size_m);
+  const double phase[] = {two_pi * unit(), two_pi * unit(), two_pi * unit()};
+  std::vector<pose> path;
+  for (std::size_t i = 0; i < motion.poses; ++i) {
+    // A thousand poses a second, as a device loop would ask for.
+    const double t = 1e-3 * static_cast<double>(i);
+    pose T = touch;
+    T.position += vec3(amplitude_m * (std::sin(two_pi * 1.0 * t + phase[0]) - std::sin(phase[0])),
+                       amplitude_m * (std::sin(two_pi * 0.7 * t + phase[1]) - std::sin(phase[1])), -press_m);
+    T.rotation = exp_rotation({0.0, 0.0, 0.05 * std::sin(two_pi * 0.4 * t + phase[2])}) * touch.rotation;
+    path.push_back(T);
+  }
+  return path;
+}
+
+}  // namespace
+
+result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, progress_line& progress) {
+  paper_settings soft_settings, central_settings;
+  soft_settings.depth.gradient = gradient_scheme::soft_max;
+  central_settings.depth.gradient = gradient_scheme::central_difference;
+  result<renderer> shared = make_renderer(bodies);
+  if (!shared) return shared.error();
+  result<paper_renderer> soft = make_paper_renderer(bodies, soft_settings);
+  if (!soft) return soft.error();
+  result<paper_renderer> central = make_paper_renderer(bodies, central_settings);
+  if (!central) return central.error();
+
+  const std::vector<pose> T_wb(bodies.fixed.size());
+  const step_function step = [&](const scene_pose& at, tick& found) { return soft->step(at, found); };
+  const result<pose> touch = find_touch(bodies, step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
+  if (!touch) return touch.error();
+  const double size_m = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
+
+  stage_times out;
+  convex_piece_finder finder(bodies, soft_settings.finder);
+  contact_set contacts(soft_settings.limits);
+  std::vector<penetration> depths(soft_settings.limits.contacts);
+  const std::vector<pose> path = scrubbing_path(*touch, motion, size_m);
+  const auto time = [](std::vector<double>& into, double share, auto&& call) {
+    const double begin = cpu_seconds();
+    static_cast<void>(call());
+    into.push_back(share * (cpu_seconds() - begin));
+  };
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
+    progress.show("measuring", static_cast<double>(i) / static_cast<double>(path.size()));
+    const scene_pose at{path[i], T_wb};
+    time(out.query_s, 1.0, [&] { return finder.find(at, contacts); });
+    out.contacts.push_back(static_cast<double>(contacts.size()));
+    if (contacts.size() > 0) {
+      const auto found = std::span(depths).first(contacts.size());
+      const double share = 1.0 / static_cast<double>(contacts.size());
+      time(out.soft_contact_s, share, [&] { return soft->depth().measure(at, contacts, found); });
+      time(out.central_contact_s, share, [&] { return central->depth().measure(at, contacts, found); });
+    }
+    tick found;
+    time(out.shared_tick_s, 1.0, [&] { return shared->step(at, found); });
+    time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
+    time(out.central_tick_s, 1.0, [&] { return central->step(at, found); });
+  }
+  if (out.soft_contact_s.empty()) {
+    return error{error_code::invalid_argument, "the probe lost the fixed body along the path: choose other models"};
+  }
+  return out;
+}
+
+}  // namespace asperity::command

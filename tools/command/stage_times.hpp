@@ -1,0 +1,32 @@
+// What contacts and ticks cost, stage by stage, along a path over two bodies.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/scene.hpp"
+#include "progress.hpp"
+
+namespace asperity::command {
+
+/// A path of poses, the same for the same seed.
+struct scrubbing {
+  std::size_t poses = 2000;
+  std::uint64_t seed = 1;
+};
+
+/// CPU times along a path, one entry per pose; contact times are divided by the contacts of the pose.
+struct stage_times {
+  std::vector<double> query_s;
+  std::vector<double> soft_contact_s, central_contact_s;
+  std::vector<double> shared_tick_s, soft_tick_s, central_tick_s;
+  std::vector<double> contacts;
+};
+
+/// Times both formulations on the same path, which scrubs over the place where the probe first touches.
+/// @return invalid_argument (nothing is touched) | cancelled | what make_renderer() says
+[[nodiscard]] result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, progress_line& progress);
+
+}  // namespace asperity::command
