@@ -31,11 +31,11 @@ struct contacts_timed {
 /// One backend with one gradient.
 struct backend_times {
   std::string backend, gradient, lookup;
-  double set_up_s = 0.0;                ///< uploads and what the driver compiles at once
-  double first_tick_s = 0.0;            ///< with what it compiles late
-  std::size_t device_bytes = 0;         ///< beyond the models
-  std::vector<contacts_timed> ticks;    ///< of one call for all contacts
-  std::optional<contacts_timed> batch;  ///< of pairs with poses of their own; the CPU one by one
+  double set_up_s = 0.0;                  ///< uploads and what the driver compiles at once
+  double first_tick_s = 0.0;              ///< with what it compiles late
+  std::size_t device_bytes = 0;           ///< beyond the models
+  std::vector<contacts_timed> ticks{};    ///< of one call for all contacts
+  std::optional<contacts_timed> batch{};  ///< of pairs with poses of their own; the CPU one by one
 };
 
 struct bench_of_backends {
