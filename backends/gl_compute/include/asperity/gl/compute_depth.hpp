@@ -10,9 +10,11 @@
 //   difference, its hard maximum and the sums of the soft maximum with gradient and curvature.
 // - On the host again: the groups' sums are put together in double precision, in a fixed order.
 //
-// A tick is one submission for all contacts, and one wait for it. The host's share grows with the triangles and samples
-// of the patches, some 10 us per contact and configuration; where a device draws thousands of contacts faster than
-// that, deciding about samples on the device would be the next step.
+// A tick is one submission for all contacts, and one wait for it. The host's share at 64 x 64 samples is 0.06 to 0.14
+// ms of processor time per contact with 2 to 32 triangles, and 0.4 to 0.5 ms with the eleven configurations of the
+// central difference (one core of a Xeon at 3 GHz). It is the price of coverage that agrees to the sample; where a
+// device draws thousands of contacts faster than that, finding a row's spans instead of asking at each sample would be
+// the next step.
 #pragma once
 
 #include <array>
