@@ -186,6 +186,27 @@ TEST_F(GlComputeDepth, BelongsToTheThreadThatHasTheContext) {
   expect_nothing(elsewhere);
 }
 
+TEST_F(GlComputeDepth, ThreadsWithContextsOfTheirOwnDoNotDisturbEachOther) {
+  const seeded_contacts s = test_support::make_seeded_contacts(18, 2, 1, 64, 4);
+  const auto at = pairs(s);
+  std::array<std::array<penetration, 4>, 3> found;
+  std::vector<std::thread> threads;
+  for (auto& mine : found) {
+    threads.emplace_back([&] {
+      const auto own = open_context();
+      if (!own) return;
+      auto backend = compute_depth::make(*own, s.bodies, soft);
+      for (int i = 0; backend && i < 5; ++i) EXPECT_EQ(backend->measure_each(at, s.contacts, mine), status::ok);
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  EXPECT_GT(found[0][0].samples + found[0][1].samples, 0U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    expect_same_bits(found[1][i], found[0][i]);
+    expect_same_bits(found[2][i], found[0][i]);
+  }
+}
+
 TEST_F(GlComputeDepth, BrokenTexelsAreLeftOutAsOnTheCpu) {
   seeded_contacts s = test_support::make_seeded_contacts(14, 2, 1, 64, 24);
   auto probe = std::make_shared<textured_model>(*s.bodies.probe);
