@@ -37,9 +37,11 @@ result<query_pass> query_pass::make(const context_ptr& context, std::size_t cont
   if (out.counts_) out.counted_ = query_names(context, contacts);
   out.vertices_ = make_name(context, name_kind::vertex_array);
 
+  const functions& gl = context->gl();
+  const std::string all = definitions + (gl.ClipControl != nullptr ? "#define DEPTH_FROM_VERTEX\n" : "");
   const auto program = [&](const shader_source& fragment) {
-    const std::array stages{shader_stage{GL_VERTEX_SHADER, definitions, {shaders::quad_vertex_glsl}},
-                            shader_stage{GL_FRAGMENT_SHADER, definitions, {fragment}}};
+    const std::array stages{shader_stage{GL_VERTEX_SHADER, all, {shaders::quad_vertex_glsl}},
+                            shader_stage{GL_FRAGMENT_SHADER, all, {fragment}}};
     return make_program(context, stages, "the queries of the occlusion depth");
   };
   auto threshold = program(shaders::threshold_fragment_glsl);
@@ -48,7 +50,6 @@ result<query_pass> query_pass::make(const context_ptr& context, std::size_t cont
   auto samples = program(shaders::sample_fragment_glsl);
   if (!samples) return samples.error();
   out.sample_program_ = *std::move(samples);
-  const functions& gl = context->gl();
   out.threshold_ = gl.GetUniformLocation(out.threshold_program_.get(), "threshold");
   const auto of_sample = [&](const char* name) { return gl.GetUniformLocation(out.sample_program_.get(), name); };
   out.tile_a_ = of_sample("tile_a");
@@ -66,7 +67,13 @@ void query_pass::begin(const query_view& view) noexcept {
   gl.Enable(GL_SCISSOR_TEST);
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthMask(GL_FALSE);
+  if (gl.ClipControl != nullptr) gl.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   gl.BindVertexArray(vertices_.get());
+}
+
+void query_pass::end() noexcept {
+  const functions& gl = context_->gl();
+  if (gl.ClipControl != nullptr) gl.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
 void query_pass::draw(const rectangle& r) noexcept {
@@ -152,6 +159,7 @@ void query_pass::coverage(const query_view& view, std::span<contact_slot> slots,
     if (look_for_bad[s] != 0) slot.bad_texel = answer(any_[s * per_slot_ + rings_]) != 0;
     slot.samples = counts_ ? answer(counted_[s]) : (slot.outermost < rings_ ? 1 : 0);
   }
+  end();
 }
 
 void query_pass::search(const query_view& view, std::span<contact_slot> slots) noexcept {
@@ -187,6 +195,7 @@ void query_pass::search(const query_view& view, std::span<contact_slot> slots) n
       }
     }
   }
+  end();
 }
 
 }  // namespace asperity::gl

@@ -72,6 +72,7 @@ class query_pass {
     std::uint32_t x, y, width, height;
   };
   void begin(const query_view& view) noexcept;
+  void end() noexcept;
   void draw(const rectangle& r) noexcept;
   void draw_ring(const query_view& view, std::size_t slot, std::uint32_t ring) noexcept;
   void begin_query(GLenum target, GLuint name) noexcept;
