@@ -8,7 +8,11 @@
 namespace fault {
 namespace {
 
-const process_options no_gl{.environment = {{"__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent"}}};
+const process_options no_gl = [] {
+  process_options without;
+  without.environment.emplace_back("__EGL_VENDOR_LIBRARY_DIRS", "/nonexistent");
+  return without;
+}();
 
 class gpu : public command_test {
  protected:
@@ -253,12 +257,18 @@ TEST_F(on_gpu, bench_compares_backends_in_one_run) {
     for (const json& t : b.at("ticks")) {
       EXPECT_EQ(t.at("seconds").at("count"), 2);
       EXPECT_GT(t.at("ratio_to_cpu"), 0.0);
-      if (b.at("backend") == "cpu") EXPECT_EQ(t.at("ratio_to_cpu"), 1.0);
+      if (b.at("backend") == "cpu") {
+        EXPECT_EQ(t.at("ratio_to_cpu"), 1.0);
+      }
     }
     const bool has_batch = b.at("gradient_scheme") == "soft";
     EXPECT_EQ(b.at("batch").is_null(), !has_batch);
-    if (has_batch) EXPECT_EQ(b.at("batch").at("contacts"), 4096);
-    if (b.at("backend") != "cpu") EXPECT_GT(b.at("device_memory"), 0);
+    if (has_batch) {
+      EXPECT_EQ(b.at("batch").at("contacts"), 4096);
+    }
+    if (b.at("backend") != "cpu") {
+      EXPECT_GT(b.at("device_memory"), 0);
+    }
   }
   EXPECT_EQ(seen, (std::set<std::string>{"cpu soft", "cpu central", "gl-compute soft", "gl-compute central",
                                          "gl-occlusion central"}));

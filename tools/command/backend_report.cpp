@@ -8,7 +8,10 @@ namespace asperity::command {
 namespace {
 
 json to_json(const contacts_timed& t) {
-  return {{"contacts", t.contacts}, {"seconds", command::to_json(summarise(t.seconds))}, {"ratio_to_cpu", t.cpu_ratio}};
+  return {{"contacts", t.contacts},
+          {"calls", t.calls},
+          {"seconds", command::to_json(summarise(t.seconds))},
+          {"ratio_to_cpu", t.cpu_ratio}};
 }
 
 json to_json(const backend_times& b) {

@@ -202,34 +202,58 @@ result<void> time_ticks(std::vector<candidate>& all, const workload& work, const
   return {};
 }
 
-/// 4096 pairs with the soft maximum: on the CPU one by one, in one submission by the backend that has a batch.
+/// The backend that has a batch, for as many pairs at a time as the device's buffers hold.
+struct batch_backend {
+  gl::compute_depth depth;
+  std::size_t at_once;
+};
+
+result<batch_backend> make_batch(const scene& bodies, const workload& work, const depth_settings& settings,
+                                 const gl::context_ptr& context) {
+  for (std::size_t at_once = pairs;; at_once /= 2) {
+    const contact_limits limits = work.limits(at_once);
+    result<gl::compute_depth> made = gl::compute_depth::make(
+        context, bodies, settings, {.contacts = limits.contacts, .triangles = limits.triangles});
+    if (made) return batch_backend{std::move(made).value(), at_once};
+    if (made.error().code != error_code::limit_exceeded || at_once == 1) return made.error();
+  }
+}
+
+/// 4096 pairs with the soft maximum: on the CPU one by one, on the GPU by measure_each().
 result<void> time_batch(std::vector<candidate>& all, const scene& bodies, const workload& work,
                         const backend_bench& options, const gl::context_ptr& context, progress_line& progress) {
   if (options.backend == "gl-occlusion") return {};
-  const contact_limits limits = work.limits(pairs);
-  result<gl::compute_depth> gpu =
-      gl::compute_depth::make(context, bodies, settings_of(options, gradient_scheme::soft_max),
-                              {.contacts = limits.contacts, .triangles = limits.triangles});
+  result<batch_backend> gpu = make_batch(bodies, work, settings_of(options, gradient_scheme::soft_max), context);
   if (!gpu) return gpu.error();
-  const contact_set contacts = work.repeated(pairs);
+  const contact_set contacts = work.repeated(gpu->at_once);
   contact_set one = work.repeated(1);
   std::vector<gl::pose_pair> at;
   for (const pose& T : work.T_wa_of_pair) at.push_back({T, work.T_wb[work.what.body]});
   std::vector<penetration> depths(pairs);
+  const auto all_pairs = [&] {
+    for (std::size_t first = 0; first < pairs; first += gpu->at_once) {
+      const status s = gpu->depth.measure_each(std::span(at).subspan(first, gpu->at_once), contacts,
+                                               std::span(depths).subspan(first, gpu->at_once));
+      if (s != status::ok) return s;
+    }
+    return status::ok;
+  };
   const auto is_soft = [](const char* backend) {
     return [backend](const candidate& c) { return c.times.backend == backend && c.times.gradient == "soft"; };
   };
   candidate& cpu = *std::find_if(all.begin(), all.end(), is_soft("cpu"));
   candidate& compute = *std::find_if(all.begin(), all.end(), is_soft("gl-compute"));
-  contacts_timed on_cpu{.contacts = pairs, .seconds = {}}, on_gpu = on_cpu;
-  status answered = gpu->measure_each(at, contacts, depths);  // not counted: the driver may compile for a new size
+  contacts_timed on_cpu{.contacts = pairs, .calls = pairs, .seconds = {}};
+  contacts_timed on_gpu{.contacts = pairs, .calls = pairs / gpu->at_once, .seconds = {}};
+  status answered = all_pairs();  // not counted: the driver may compile for a new size
   for (std::size_t i = 0; i < std::max<std::size_t>(1, options.repeats / 4); ++i) {
     if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
     progress.show("batch", 4.0 * static_cast<double>(i) / static_cast<double>(options.repeats));
     if (answered != status::ok) return not_answered("the batch", answered);
-    on_gpu.seconds.push_back(wall_seconds([&] { answered = gpu->measure_each(at, contacts, depths); }));
+    on_gpu.seconds.push_back(wall_seconds([&] { answered = all_pairs(); }));
     if (answered != status::ok) return not_answered("the batch", answered);
     on_cpu.seconds.push_back(wall_seconds([&] { answered = one_by_one(cpu.depth, work, one, depths); }));
+    if (answered != status::ok) return not_answered("the batch", answered);
   }
   on_gpu.cpu_ratio = median(on_gpu.seconds) / median(on_cpu.seconds);
   cpu.times.batch = std::move(on_cpu);

@@ -24,6 +24,7 @@ struct backend_bench {
 /// Times of one number of contacts, on the wall: a GPU does not spend CPU time.
 struct contacts_timed {
   std::size_t contacts = 0;
+  std::size_t calls = 1;  ///< that they were measured in
   std::vector<double> seconds;
   double cpu_ratio = 1.0;  ///< of the medians, to the CPU backend with the same settings in the same run
 };
