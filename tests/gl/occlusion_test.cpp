@@ -203,18 +203,27 @@ TEST_F(GlOcclusionDepth, BeyondTheRangeIsNeitherNoOverlapNorTheOtherEnd) {
   EXPECT_NEAR(far.depth_m, -1e-3, 1e-12);
   EXPECT_GT(far.samples, 0U);
   expect_nothing(beside);
+  EXPECT_EQ(backend.counters().round_trips, 3U * 17) << "a patch outside of its window is not drawn";
+  // Both patches in the window, one at either side.
+  expect_nothing(test_support::measure_whole(backend, s, test_support::window_downwards(4e-3, {0.012, 0.0, 0.0}),
+                                             {test_support::face_down(), {0.0185, 0.0, -5e-5}}));
+  EXPECT_EQ(backend.counters().round_trips, 3U * 17 + 1) << "one round says that nothing overlaps";
 }
 
 TEST_F(GlOcclusionDepth, FlagsAreThoseOfTheCpuBackend) {
   const scene s = flat_scene();
   const contact_window w = test_support::window_downwards(4e-3);
-  occlusion_depth backend = make(s);
+  occlusion_depth backend = make(s), packed_backend = make(s, {.packed = true});
   cpu_depth reference(s, paper_depth_settings(32));
-  for (const double tilt : {0.0, 0.02}) {
-    const pose T{exp_rotation(vec3(0.0, tilt, 0.0)) * test_support::face_down(), {0.0, 0.0, -1e-4}};
-    const penetration p = test_support::measure_whole(backend, s, w, T);
-    EXPECT_EQ(p.flags, test_support::measure_whole(reference, s, w, T).flags);
-    EXPECT_EQ(has(p.flags, depth_flag::window_too_small), tilt > 0.0);
+  // Tilted, it is deepest at one side of the window: each in turn.
+  for (const vec3& tilt :
+       {vec3(0.0), vec3(0.02, 0.0, 0.0), vec3(-0.02, 0.0, 0.0), vec3(0.0, 0.02, 0.0), vec3(0.0, -0.02, 0.0)}) {
+    const pose T{exp_rotation(tilt) * test_support::face_down(), {0.0, 0.0, -1e-4}};
+    for (occlusion_depth* b : {&backend, &packed_backend}) {
+      const penetration p = test_support::measure_whole(*b, s, w, T);
+      EXPECT_EQ(p.flags, test_support::measure_whole(reference, s, w, T).flags);
+      EXPECT_EQ(has(p.flags, depth_flag::window_too_small), glm::length(tilt) > 0.0);
+    }
   }
 
   auto broken = std::make_shared<textured_model>(*s.fixed[0]);
