@@ -51,8 +51,8 @@ struct occlusion_options {
 /// How often a backend waited, and for how much.
 struct occlusion_counters {
   std::uint64_t ticks = 0;  ///< calls that reached the device
-  std::uint64_t round_trips =
-      0;  ///< waits for answers: one per tick that saw anything, one per bit where it overlapped
+  /// Waits for answers: one per tick that sees both patches of a contact, and one per bit where any of them overlap.
+  std::uint64_t round_trips = 0;
   std::uint64_t queries = 0;
   std::uint64_t contacts = 0;
 };
