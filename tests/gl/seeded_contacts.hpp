@@ -37,10 +37,12 @@ struct seeded_contacts {
     s.chart_per_cell = charts;
     const double k = 6.28 / uniform(8.0, 30.0) * texels / 0.02;  // waves of 8 to 30 texels
     const double amplitude = uniform(0.05, 0.15) / k, turn = uniform(0.0, 3.0), bend = uniform(-8.0, 8.0);
+    // The textured surface lies some texels off the coarse one, so that a tilted lookup ends in the next chart.
+    const double lift = uniform(-15.0, 15.0) * 0.02 / texels;
     s.coarse_height = [=](double x, double y) { return 0.5 * bend * (x * x + 0.6 * y * y); };
     s.height = [=](double x, double y) {
       const double u = std::cos(turn) * x + std::sin(turn) * y, v = -std::sin(turn) * x + std::cos(turn) * y;
-      return 0.5 * bend * (x * x + 0.6 * y * y) + amplitude * (std::cos(k * u) + 0.7 * std::sin(1.3 * k * v));
+      return lift + 0.5 * bend * (x * x + 0.6 * y * y) + amplitude * (std::cos(k * u) + 0.7 * std::sin(1.3 * k * v));
     };
     s.T_body_plate = {exp_rotation(vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))),
                       vec3(uniform(-0.1, 0.1), uniform(-0.1, 0.1), uniform(-0.1, 0.1))};
@@ -58,7 +60,7 @@ struct seeded_contacts {
                         vec3(uniform(-0.5, 0.5), uniform(-0.5, 0.5), uniform(-0.5, 0.5))};
     const pose T_probe{exp_rotation(vec3(uniform(-0.15, 0.15), uniform(-0.15, 0.15), uniform(-3, 3))) * face_down(),
                        vec3(uniform(-0.012, 0.012), uniform(-0.012, 0.012), uniform(-4e-4, 1e-4))};
-    const pose T_fixed{exp_rotation(vec3(uniform(-0.05, 0.05), uniform(-0.05, 0.05), 0.0)), vec3(0.0)};
+    const pose T_fixed{exp_rotation(vec3(uniform(-0.15, 0.15), uniform(-0.15, 0.15), 0.0)), vec3(0.0)};
     out.T_wa.push_back(T_w_here * T_probe * inverse(T_probe_plate));
     out.T_wb.push_back(T_w_here * T_fixed * inverse(T_fixed_plate));
     contact c;

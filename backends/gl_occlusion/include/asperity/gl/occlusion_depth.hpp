@@ -83,7 +83,7 @@ struct occlusion_tiles {
 ///
 /// Agreement with cpu_depth, measured over 2000 contacts (tests/gl): the same flags and samples; depth_m within one
 /// quantum of the contact's depth buffer (found: 0.50). The gradient is a difference of two depths: within 2 quantum_m
-/// / step_m across n (found: 0.73) and 2 quantum_m / step_rad about the point of rotation (found: 0.77). With 24 bits
+/// / step_m across n (found: 1.03) and 2 quantum_m / step_rad about the point of rotation (found: 0.83). With 24 bits
 /// single precision is what limits: 3e-7 of the window's half size and the depth range together stand for the quantum
 /// where that is more.
 /// With moved_heights::reused turns about n are other than the CPU backend's.
