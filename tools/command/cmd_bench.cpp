@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "asperity/bake/bake.hpp"
+#include "asperity/depth/settings.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "backend_report.hpp"
 #include "benchmark_models.hpp"
