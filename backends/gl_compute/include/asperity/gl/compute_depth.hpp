@@ -62,8 +62,8 @@ struct compute_counters {
 /// Agreement with cpu_depth, asserted and printed over 2080 seeded contacts (tests/gl); angular components count at
 /// the lever arm of the contact:
 /// - double precision: hard depth to 1e-11 of the window's width, soft depth to 1e-7, each component of the gradient
-///   and of tau times the curvature to 1e-5, a central difference to 1e-10. The soft maximum is behind because shaders have
-///   the exponential in single precision only.
+///   and of tau times the curvature to 1e-5, a central difference to 1e-10. The soft maximum is behind because shaders
+///   have the exponential in single precision only.
 /// - single precision: depth to 1e-6, gradient to 2e-2, tau times the curvature to 1e-1. A weight of the soft maximum
 ///   errs by the error of a depth over tau.
 /// Which samples a patch covers is the same to the sample, and so are the flags. The same call gives the same bits on
