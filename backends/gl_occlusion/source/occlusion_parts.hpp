@@ -54,7 +54,8 @@ struct occlusion_depth::parts {
   [[nodiscard]] query_view view() const noexcept;
   void write_at_rest(const scene_pose& at, const contact_set& contacts) noexcept;
   void write_moved(const scene_pose& at, const contact_set& contacts) noexcept;
-  [[nodiscard]] bool draw_heights() noexcept;
+  [[nodiscard]] bool records_fit() noexcept;
+  [[nodiscard]] status draw(const scene_pose& at, const contact_set& contacts) noexcept;
   template <class Add>
   void write_runs(Add add) noexcept;
   [[nodiscard]] difference_record at_rest(std::size_t slot, double half_m) const noexcept;

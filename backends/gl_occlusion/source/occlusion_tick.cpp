@@ -75,12 +75,9 @@ void occlusion_depth::parts::write_moved(const scene_pose& at, const contact_set
   });
 }
 
-bool occlusion_depth::parts::draw_heights() noexcept {
-  for (const record_list& list : heights.lists()) {
-    if (list.overflowed()) return false;
-  }
-  heights.draw(runs, slots.size(), probe->texture.get(), fixed_textures);
-  return true;
+bool occlusion_depth::parts::records_fit() noexcept {
+  const std::span<record_list> lists = heights.lists();
+  return std::none_of(lists.begin(), lists.end(), [](const record_list& list) { return list.overflowed(); });
 }
 
 void occlusion_depth::parts::choose_range(contact_slot& slot, double half_m) const noexcept {
@@ -183,6 +180,24 @@ penetration occlusion_depth::parts::answer(const scene_pose& at, const contact& 
   return found;
 }
 
+status occlusion_depth::parts::draw(const scene_pose& at, const contact_set& contacts) noexcept {
+  for (record_list& list : heights.lists()) list.used = 0;
+  write_at_rest(at, contacts);
+  if (!records_fit()) return status::capacity_reached;
+  if (std::none_of(slots.begin(), slots.end(), [](const contact_slot& s) { return s.visible; })) return status::ok;
+  heights.clear(slots.size());
+  heights.draw(runs, slots.size(), probe->texture.get(), fixed_textures);
+  draw_at_rest(contacts);
+  queries.coverage(view(), slots, look_for_bad);
+  if (std::none_of(slots.begin(), slots.end(), [](const contact_slot& s) { return s.samples > 0; })) return status::ok;
+  write_moved(at, contacts);
+  if (!records_fit()) return status::capacity_reached;
+  heights.draw(runs, slots.size(), probe->texture.get(), fixed_textures);
+  draw_all(contacts);
+  queries.search(view(), slots);
+  return status::ok;
+}
+
 status occlusion_depth::parts::measure(const scene_pose& at, const contact_set& contacts,
                                        std::span<penetration> out) noexcept {
   const penetration nothing{.flags = depth_flag::no_overlap};
@@ -198,30 +213,20 @@ status occlusion_depth::parts::measure(const scene_pose& at, const contact_set& 
   if (contacts.size() > options.contacts) return status::capacity_reached;
   if (context->make_current() != status::ok) return status::backend_failed;
 
-  const functions& gl = context->gl();
-  for (record_list& list : heights.lists()) list.used = 0;
-  write_at_rest(at, contacts);
+  const status drawn = draw(at, contacts);
   ++counters.ticks;
   counters.contacts += contacts.size();
-  heights.clear(slots.size());
-  const bool any_visible = std::any_of(slots.begin(), slots.end(), [](const contact_slot& s) { return s.visible; });
-  if (!draw_heights()) return status::capacity_reached;
-  if (!any_visible) return status::ok;
-  draw_at_rest(contacts);
-  queries.coverage(view(), slots, look_for_bad);
-  if (std::any_of(slots.begin(), slots.end(), [](const contact_slot& s) { return s.samples > 0; })) {
-    write_moved(at, contacts);
-    if (!draw_heights()) return status::capacity_reached;
-    draw_all(contacts);
-    queries.search(view(), slots);
-  }
   counters.round_trips = queries.rounds();
   counters.queries = queries.queries();
+  // Others draw in this context too.
+  const functions& gl = context->gl();
   gl.Disable(GL_SCISSOR_TEST);
   gl.Disable(GL_DEPTH_TEST);
   gl.DepthMask(GL_TRUE);
   gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+  gl.BindVertexArray(0);
   if (context->check() != status::ok || gl.GetError() != GL_NO_ERROR) return status::backend_failed;
+  if (drawn != status::ok) return drawn;
 
   for (const contact_slot& slot : slots) {
     penetration& p = out[slot.contact];

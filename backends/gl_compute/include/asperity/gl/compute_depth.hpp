@@ -1,20 +1,18 @@
 // The depth backend in compute shaders. Component asperity::gl_compute.
 //
 // What happens where
-// - On the host, in double precision: the patches are projected into their windows, and for each sample it is decided
-// which
-//   coarse triangle it sees. These are the decisions at which a rounding error would show (a silhouette runs between
-//   two samples), so they are taken by the code of the CPU backend and are the same to the bit. The host also reduces
-//   every pose to numbers relative to the window.
+// - On the host, in double precision: the patches are projected into their windows, and it is decided which coarse
+//   triangle each sample sees. A rounding error would show in these decisions (a silhouette runs between two samples),
+//   so they are those of the CPU backend to the bit. The host also reduces every pose to numbers relative to the
+//   window.
 // - On the device, a group of invocations per 512 samples: the textured surface over each sample of both bodies, their
 //   difference, its hard maximum and the sums of the soft maximum with gradient and curvature.
 // - On the host again: the groups' sums are put together in double precision, in a fixed order.
 //
-// A tick is one submission for all contacts, and one wait for it. The host's share at 64 x 64 samples is 0.06 to 0.14
-// ms of processor time per contact with 2 to 32 triangles, and 0.4 to 0.5 ms with the eleven configurations of the
-// central difference (one core of a Xeon at 3 GHz). It is the price of coverage that agrees to the sample; where a
-// device draws thousands of contacts faster than that, finding a row's spans instead of asking at each sample would be
-// the next step.
+// A tick is one submission for all contacts, and one wait for it. The host's share at 64 x 64 samples was 0.06 to 0.12
+// ms of processor time per contact with 2 to 32 triangles, and 0.2 to 0.4 ms with the eleven configurations of the
+// central difference (one busy core of a Xeon at 3 GHz). It is the price of coverage that agrees to the sample; where a
+// device draws thousands of contacts faster than that, deciding on the device would be the next step.
 #pragma once
 
 #include <array>
@@ -64,9 +62,8 @@ struct compute_counters {
 /// Agreement with cpu_depth, asserted and printed over 2080 seeded contacts (tests/gl); angular components count at
 /// the lever arm of the contact:
 /// - double precision: hard depth to 1e-11 of the window's width, soft depth to 1e-7, each component of the gradient
-/// and
-///   of tau times the curvature to 1e-5, a central difference to 1e-10. The soft maximum is behind because shaders have
-///   the exponential in single precision only.
+///   and of tau times the curvature to 1e-5, a central difference to 1e-10. The soft maximum is behind because shaders
+///   have the exponential in single precision only.
 /// - single precision: depth to 1e-6, gradient to 2e-2, tau times the curvature to 1e-1. A weight of the soft maximum
 ///   errs by the error of a depth over tau.
 /// Which samples a patch covers is the same to the sample, and so are the flags. The same call gives the same bits on

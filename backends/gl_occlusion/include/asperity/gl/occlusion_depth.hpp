@@ -50,8 +50,9 @@ struct occlusion_options {
 
 /// How often a backend waited, and for how much.
 struct occlusion_counters {
-  std::uint64_t ticks = 0;        ///< calls that reached the device
-  std::uint64_t round_trips = 0;  ///< waits for answers: one per tick, and one per bit where anything overlapped
+  std::uint64_t ticks = 0;  ///< calls that reached the device
+  /// Waits for answers: one per tick that sees both patches of a contact, and one per bit where any of them overlap.
+  std::uint64_t round_trips = 0;
   std::uint64_t queries = 0;
   std::uint64_t contacts = 0;
 };
@@ -80,10 +81,11 @@ struct occlusion_tiles {
 
 /// Directional penetration depth and its eleven-pose gradient, as cpu_depth with the same settings has them.
 ///
-/// Agreement with cpu_depth, measured over 2000 contacts (tests/gl): the same flags and samples, depth_m within one
-/// quantum of the contact's depth buffer, and the gradient within two quanta of both depths that it is a difference of:
-/// 2 quantum_m / step_m across n, 2 quantum_m / step_rad about the rotation's origin. With 24 bits single precision is
-/// what limits: 3e-7 of the window's half size and the depth range together stand for the quantum where that is more.
+/// Agreement with cpu_depth, measured over 2000 contacts (tests/gl): the same flags and samples; depth_m within one
+/// quantum of the contact's depth buffer (found: 0.50). The gradient is a difference of two depths: within 2 quantum_m
+/// / step_m across n (found: 1.03) and 2 quantum_m / step_rad about the point of rotation (found: 0.83). With 24 bits
+/// single precision is what limits: 3e-7 of the window's half size and the depth range together stand for the quantum
+/// where that is more.
 /// With moved_heights::reused turns about n are other than the CPU backend's.
 ///
 /// What the paper's backend cannot know is left as follows: soft_depth_m is depth_m and there is no curvature;
