@@ -22,14 +22,14 @@ json to_json(const backend_times& b) {
           {"lookup", b.lookup},
           {"set_up_seconds", b.set_up_s},
           {"first_tick_seconds", b.first_tick_s},
-          {"device_memory", b.device_bytes},
           {"ticks", std::move(ticks)},
           {"batch", b.batch ? to_json(*b.batch) : json()}};
 }
 
 std::string text_of(const contacts_timed& t, const char* what, bool is_reference) {
-  return row(std::to_string(t.contacts) + what,
-             to_text(summarise(t.seconds)) + (is_reference ? "" : "  (" + brief(t.cpu_ratio) + " x cpu)"));
+  std::string value = to_text(summarise(t.seconds));
+  if (!is_reference) value += "  (" + brief(t.cpu_ratio) + " x cpu, " + memory_text(t.device_bytes) + ")";
+  return row(std::to_string(t.contacts) + what, value);
 }
 
 std::string text_of(const backend_times& b) {
@@ -39,7 +39,6 @@ std::string text_of(const backend_times& b) {
     out += row("first tick", time_text(b.first_tick_s));
   } else {
     out += row("set-up, first tick", time_text(b.set_up_s) + ", " + time_text(b.first_tick_s));
-    out += row("memory on the GPU", memory_text(b.device_bytes));
   }
   for (const contacts_timed& t : b.ticks) out += text_of(t, t.contacts == 1 ? " contact" : " contacts", is_reference);
   if (b.batch) out += text_of(*b.batch, " pairs", is_reference);

@@ -105,7 +105,8 @@ result<std::vector<gl::uploaded_ptr>> upload(const gl::context_ptr& context, con
 struct candidate {
   backend_times times;
   any_depth depth;
-  std::size_t reference = 0;  ///< index of the CPU backend with the same settings
+  std::size_t reference = 0;     ///< index of the CPU backend with the same settings
+  std::size_t device_bytes = 0;  ///< beyond the models
 };
 
 depth_settings settings_of(const backend_bench& options, gradient_scheme gradient) {
@@ -133,9 +134,8 @@ status one_by_one(any_depth& depth, const workload& work, contact_set& one, std:
 }
 
 result<std::vector<candidate>> make_candidates(const scene& bodies, const backend_bench& options,
-                                               const gl::context_ptr& context, const workload& work) {
+                                               const gl::context_ptr& context, const contact_limits& limits) {
   std::vector<candidate> out;
-  const contact_limits limits = work.limits(sizes.back());
   const auto add_gpu = [&](const char* name, gpu_depth_maker* make, gradient_scheme gradient,
                            std::size_t reference) -> result<void> {
     const depth_settings s = settings_of(options, gradient);
@@ -144,8 +144,7 @@ result<std::vector<candidate>> make_candidates(const scene& bodies, const backen
     backend_times times = named(name, s);
     times.set_up_s = wall_seconds([&] { made = make(context, bodies, s, limits); });
     if (!made) return made.error();
-    times.device_bytes = context->device_bytes() - before;
-    out.push_back({std::move(times), std::move(made).value(), reference});
+    out.push_back({std::move(times), std::move(made).value(), reference, context->device_bytes() - before});
     return {};
   };
   for (const gradient_scheme gradient : {gradient_scheme::soft_max, gradient_scheme::central_difference}) {
@@ -169,52 +168,70 @@ result<std::vector<candidate>> make_candidates(const scene& bodies, const backen
   return out;
 }
 
-result<void> time_ticks(std::vector<candidate>& all, const workload& work, const backend_bench& options,
+/// `n` contacts on every backend, each with room for so many; adds to the figures of the sizes before.
+result<void> time_ticks(std::vector<candidate>& all, std::size_t n, const workload& work, const backend_bench& options,
                         progress_line& progress) {
-  std::vector<penetration> depths(sizes.back());
+  std::vector<penetration> depths(n);
+  const contact_set contacts = work.repeated(n);
   status answered = status::ok;
-  const auto time = [&](candidate& c, const contact_set& contacts) {
-    return wall_seconds([&] {
-      answered = c.depth.measure({work.T_wa, work.T_wb}, contacts, std::span(depths).first(contacts.size()));
-    });
+  const auto time = [&](candidate& c) {
+    return wall_seconds([&] { answered = c.depth.measure({work.T_wa, work.T_wb}, contacts, depths); });
   };
-  const contact_set one = work.repeated(1);
   for (candidate& c : all) {
-    c.times.first_tick_s = time(c, one);
+    c.times.first_tick_s = time(c);
     if (answered != status::ok) return not_answered(c.times.backend, answered);
+    c.times.ticks.push_back({.contacts = n, .device_bytes = c.device_bytes, .seconds = {}});
   }
-  for (const std::size_t n : sizes) {
-    const contact_set contacts = work.repeated(n);
-    for (candidate& c : all) c.times.ticks.push_back({.contacts = n, .seconds = {}});
-    for (std::size_t i = 0; i < options.repeats; ++i) {
-      progress.show(std::to_string(n) + " contacts", static_cast<double>(i) / static_cast<double>(options.repeats));
-      for (candidate& c : all) {
-        if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
-        c.times.ticks.back().seconds.push_back(time(c, contacts));
-        if (answered != status::ok) return not_answered(c.times.backend, answered);
-      }
-    }
+  for (std::size_t i = 0; i < options.repeats; ++i) {
+    progress.show(std::to_string(n) + " contacts", static_cast<double>(i) / static_cast<double>(options.repeats));
     for (candidate& c : all) {
-      contacts_timed& t = c.times.ticks.back();
-      t.cpu_ratio = median(t.seconds) / median(all[c.reference].times.ticks.back().seconds);
+      if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
+      c.times.ticks.back().seconds.push_back(time(c));
+      if (answered != status::ok) return not_answered(c.times.backend, answered);
     }
+  }
+  for (candidate& c : all) {
+    contacts_timed& t = c.times.ticks.back();
+    t.cpu_ratio = median(t.seconds) / median(all[c.reference].times.ticks.back().seconds);
   }
   return {};
+}
+
+/// All sizes. Set-up and first tick are those of the first size: later ones find shaders that are compiled.
+result<std::vector<candidate>> time_sizes(const scene& bodies, const backend_bench& options,
+                                          const gl::context_ptr& context, const workload& work,
+                                          progress_line& progress) {
+  std::vector<candidate> all;
+  for (const std::size_t n : sizes) {
+    result<std::vector<candidate>> now = make_candidates(bodies, options, context, work.limits(n));
+    if (!now) return now.error();
+    if (result<void> ok = time_ticks(*now, n, work, options, progress); !ok) return ok.error();
+    if (all.empty()) {
+      all = std::move(now).value();
+      continue;
+    }
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      all[i].times.ticks.push_back(std::move((*now)[i].times.ticks.front()));
+    }
+  }
+  return all;
 }
 
 /// The backend that has a batch, for as many pairs at a time as the device's buffers hold.
 struct batch_backend {
   gl::compute_depth depth;
   std::size_t at_once;
+  std::size_t device_bytes;
 };
 
 result<batch_backend> make_batch(const scene& bodies, const workload& work, const depth_settings& settings,
                                  const gl::context_ptr& context) {
   for (std::size_t at_once = pairs;; at_once /= 2) {
     const contact_limits limits = work.limits(at_once);
+    const std::size_t before = context->device_bytes();
     result<gl::compute_depth> made = gl::compute_depth::make(
         context, bodies, settings, {.contacts = limits.contacts, .triangles = limits.triangles});
-    if (made) return batch_backend{std::move(made).value(), at_once};
+    if (made) return batch_backend{std::move(made).value(), at_once, context->device_bytes() - before};
     if (made.error().code != error_code::limit_exceeded || at_once == 1) return made.error();
   }
 }
@@ -244,7 +261,8 @@ result<void> time_batch(std::vector<candidate>& all, const scene& bodies, const 
   candidate& cpu = *std::find_if(all.begin(), all.end(), is_soft("cpu"));
   candidate& compute = *std::find_if(all.begin(), all.end(), is_soft("gl-compute"));
   contacts_timed on_cpu{.contacts = pairs, .calls = pairs, .seconds = {}};
-  contacts_timed on_gpu{.contacts = pairs, .calls = pairs / gpu->at_once, .seconds = {}};
+  contacts_timed on_gpu{
+      .contacts = pairs, .calls = pairs / gpu->at_once, .device_bytes = gpu->device_bytes, .seconds = {}};
   status answered = all_pairs();  // not counted: the driver may compile for a new size
   for (std::size_t i = 0; i < std::max<std::size_t>(1, options.repeats / 4); ++i) {
     if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
@@ -271,9 +289,8 @@ result<bench_of_backends> time_backends(const scene& bodies, const backend_bench
   const result<std::vector<gl::uploaded_ptr>> models = upload(*context, bodies);
   if (!models) return models.error();
   const std::size_t model_bytes = (*context)->device_bytes();
-  result<std::vector<candidate>> all = make_candidates(bodies, options, *context, *work);
+  result<std::vector<candidate>> all = time_sizes(bodies, options, *context, *work, progress);
   if (!all) return all.error();
-  if (result<void> ok = time_ticks(*all, *work, options, progress); !ok) return ok.error();
   if (result<void> ok = time_batch(*all, bodies, *work, options, *context, progress); !ok) return ok.error();
 
   bench_of_backends out;

@@ -24,7 +24,8 @@ struct backend_bench {
 /// Times of one number of contacts, on the wall: a GPU does not spend CPU time.
 struct contacts_timed {
   std::size_t contacts = 0;
-  std::size_t calls = 1;  ///< that they were measured in
+  std::size_t calls = 1;         ///< that they were measured in
+  std::size_t device_bytes = 0;  ///< of a backend with room for so many, beyond the models
   std::vector<double> seconds;
   double cpu_ratio = 1.0;  ///< of the medians, to the CPU backend with the same settings in the same run
 };
@@ -34,7 +35,6 @@ struct backend_times {
   std::string backend, gradient, lookup;
   double set_up_s = 0.0;                  ///< uploads and what the driver compiles at once
   double first_tick_s = 0.0;              ///< with what it compiles late
-  std::size_t device_bytes = 0;           ///< beyond the models
   std::vector<contacts_timed> ticks{};    ///< of one call for all contacts
   std::optional<contacts_timed> batch{};  ///< of pairs with poses of their own; the CPU one by one
 };
