@@ -4,13 +4,13 @@
 
 #include "asperity/gl/program.hpp"
 #include "contact_slot.hpp"
+#include "record_attributes.hpp"
 #include "shaders.hpp"
 
 namespace asperity::gl {
 namespace {
 
-constexpr GLuint attributes = sizeof(difference_record) / (4 * sizeof(float));
-static_assert(sizeof(difference_record) == attributes * 4 * sizeof(float));
+constexpr GLuint attributes = attributes_of<difference_record>;
 
 }  // namespace
 
@@ -81,10 +81,7 @@ void difference_pass::draw(std::size_t first, std::size_t count, GLuint heights)
   gl.BindTexture(GL_TEXTURE_2D, heights);
   gl.BindVertexArray(vertices_.get());
   gl.BindBuffer(GL_ARRAY_BUFFER, records_.name());
-  for (GLuint i = 0; i < attributes; ++i) {
-    gl.VertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, sizeof(difference_record),
-                           reinterpret_cast<const void*>(first * sizeof(difference_record) + i * 4 * sizeof(float)));
-  }
+  read_records_from<difference_record>(gl, first * sizeof(difference_record));
   gl.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
 }
 

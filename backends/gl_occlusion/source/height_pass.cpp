@@ -4,12 +4,13 @@
 
 #include "asperity/gl/program.hpp"
 #include "contact_slot.hpp"
+#include "record_attributes.hpp"
 #include "shaders.hpp"
 
 namespace asperity::gl {
 namespace {
 
-constexpr GLuint attributes = sizeof(triangle_record) / (4 * sizeof(float));
+constexpr GLuint attributes = attributes_of<triangle_record>;
 constexpr float no_surface = -1e30F;
 
 }  // namespace
@@ -120,10 +121,7 @@ void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, G
       if (run.quarter != q) continue;
       gl.BindTexture(GL_TEXTURE_2D, fixed_textures[run.body]);
       const std::size_t start = (q * lists_[q].memory.size() + run.first) * sizeof(triangle_record);
-      for (GLuint i = 0; i < attributes; ++i) {
-        gl.VertexAttribPointer(i, 4, GL_FLOAT, GL_FALSE, sizeof(triangle_record),
-                               reinterpret_cast<const void*>(start + i * 4 * sizeof(float)));
-      }
+      read_records_from<triangle_record>(gl, start);
       gl.DrawArraysInstanced(GL_TRIANGLE_FAN, 0, 7, static_cast<GLsizei>(run.count));
     }
   }

@@ -82,7 +82,7 @@ result<std::vector<occlusion_tiles>> occlusion_depth::read_tiles() {
       for (std::uint32_t j = 0; j < d.tile; ++j) {
         for (std::uint32_t i = 0; i < d.tile; ++i) {
           const double stored = static_cast<double>(levels.at(d.x(s, k) + i, d.y(s) + j, 0)) * p.levels.top();
-          const auto level = static_cast<std::uint32_t>(stored + 0.5);
+          const auto level = static_cast<std::uint32_t>(std::lround(stored));
           tile.values_m.push_back(level == depth_levels::none
                                       ? nothing
                                       : slot.low_m +

@@ -177,7 +177,7 @@ void tile_writer::write(std::span<record_list> lists, const projected_triangle& 
 std::size_t tile_writer::heap_bytes() const noexcept {
   std::size_t bytes = asperity::heap_bytes(scene_.fixed, indices_, pairs_, patch_, bad_);
   for (const auto& r : relief_) bytes += asperity::heap_bytes(r);
-  return bytes + relief_.capacity() * sizeof(relief_.front());
+  return bytes + relief_.capacity() * sizeof(decltype(relief_)::value_type);
 }
 
 }  // namespace asperity::gl

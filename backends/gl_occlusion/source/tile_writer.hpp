@@ -22,7 +22,7 @@ struct triangle_record {
   std::array<float, 2> tile;                   ///< first pixel of the tile
   std::array<float, 4> edge_0, edge_1, edge_2, texel_x, texel_y, axis, near;
 };
-static_assert(sizeof(triangle_record) == 11 * 4 * sizeof(float));
+static_assert(sizeof(triangle_record) == 44 * sizeof(float));
 
 /// Records of triangles in mapped memory. Writing past the end is counted, not done.
 struct record_list {
