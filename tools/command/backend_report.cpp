@@ -10,6 +10,7 @@ namespace {
 json to_json(const contacts_timed& t) {
   return {{"contacts", t.contacts},
           {"calls", t.calls},
+          {"device_memory", t.device_bytes},
           {"seconds", command::to_json(summarise(t.seconds))},
           {"ratio_to_cpu", t.cpu_ratio}};
 }
