@@ -92,7 +92,8 @@ class crowding_search {
     std::sort(near_.begin(), near_.end());
     for (std::size_t i = 0, j = 0; i < near_.size(); i = j) {
       while (j < near_.size() && near_[j].texel == near_[i].texel) ++j;
-      const vec2 p{near_[i].texel % size_ + 0.5, first_row + near_[i].texel / size_ + 0.5};
+      const std::uint32_t row = first_row + near_[i].texel / size_;
+      const vec2 p{near_[i].texel % size_ + 0.5, row + 0.5};
       if (j - i > 1) judge(std::span(near_).subspan(i, j - i), p);
     }
   }
