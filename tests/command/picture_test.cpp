@@ -347,7 +347,8 @@ TEST(picture_page, stops_where_it_is_told_to) {
 
 TEST(picture_page, strange_models_are_drawn_too) {
   textured_model model = flat_box();
-  model.name = std::string(400, 'x') + "\n\u00e9\u00e9";
+  model.name.assign(400, 'x');
+  model.name += "\n\u00e9\u00e9";
   model.pieces.clear();
   for (glm::vec3& p : model.texture.texels) p = glm::vec3(NAN);
   EXPECT_TRUE(draw_model(model));
