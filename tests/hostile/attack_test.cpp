@@ -53,9 +53,9 @@ class Attack : public ::testing::TestWithParam<attack> {
  protected:
   void expect(const char* how, const std::string& says) {
     const planted at(GetParam());
-    const open_watch secret(at.secret_file), passwords("/etc/passwd");
+    const open_watch secret(at.secret_file), outside(system_file);
     static_cast<void>(secret.opened());
-    static_cast<void>(passwords.opened());
+    static_cast<void>(outside.opened());
     // What is refused for its size costs none of it.
     const std::size_t counted = std::min(at.bytes, std::size_t{512} << 20);
     const std::size_t bound = times_the_file * counted + plus_bytes;
@@ -66,7 +66,7 @@ class Attack : public ::testing::TestWithParam<attack> {
     EXPECT_EQ(got.signal, 0) << strsignal(got.signal);
     EXPECT_LE(got.peak_bytes, bound);
     EXPECT_FALSE(secret.opened());
-    EXPECT_FALSE(passwords.opened());
+    EXPECT_FALSE(outside.opened());
     if (says.empty()) {
       EXPECT_EQ(got.said, "loaded");
       return;

@@ -28,6 +28,10 @@ struct attack {
 /// All of them.
 [[nodiscard]] std::vector<attack> all_attacks();
 
+/// A file of the system that no reader has any business with, and that nothing else opens while the tests run: a
+/// graphics driver in a neighbouring test looks its user up in /etc/passwd.
+inline constexpr const char* system_file = "/etc/issue";
+
 /// Message of a reader that does not read this kind of file at all.
 inline constexpr const char* no_glb = "does not begin with 'glTF'";
 /// Message about a .glb without the extension.
