@@ -51,7 +51,7 @@ tally fuzz(std::size_t runs, std::uint64_t seed, const std::string& good, const 
   random_source random(seed);
   tally out;
   std::vector<std::string> pool{good};
-  for (std::size_t run = 0; run < runs / share; ++run) {
+  for (std::size_t run = 0; run < runs; ++run) {
     const std::string bytes = mutate(random.once_in(2) ? good : random.one_of(pool), random);
     const auto answer = read(bytes);
     out.add(answer);

@@ -16,7 +16,7 @@ namespace {
 
 TEST(Fuzz, TexturedModels) {
   const auto read = [](const std::string& bytes) { return io::read_textured_model(bytes, "fuzz.glb"); };
-  const tally t = fuzz(10'000, 20041, good_model(), mutated_glb, read);
+  const tally t = fuzz(10'000 / share, 20041, good_model(), mutated_glb, read);
   t.print("textured models");
   EXPECT_GE(t.kinds(), 60U) << "mutations stop at the first checks";
   EXPECT_GT(t.loaded(), 0.1);
@@ -25,7 +25,7 @@ TEST(Fuzz, TexturedModels) {
 
 TEST(Fuzz, PlainGltf) {
   const auto read = [](const std::string& bytes) { return io::read_gltf(bytes, "fuzz.glb"); };
-  const tally t = fuzz(15'000, 7, glb(tetrahedron(), tetrahedron_bytes()), mutated_glb, read);
+  const tally t = fuzz(15'000 / share, 7, glb(tetrahedron(), tetrahedron_bytes()), mutated_glb, read);
   t.print("plain glTF");
   EXPECT_GE(t.kinds(), 50U);
   EXPECT_GT(t.loaded(), 0.1);
@@ -58,8 +58,8 @@ TEST(Fuzz, PlainMeshes) {
                                                                                                : bytes.size();
       return mutated_mesh(bytes, end, random);
     };
-    const tally t =
-        fuzz(10'000, 3, f.good, mutate, [&](const std::string& bytes) { return f.read(bytes, std::string("fuzz")); });
+    const tally t = fuzz(10'000 / share, 3, f.good, mutate,
+                         [&](const std::string& bytes) { return f.read(bytes, std::string("fuzz")); });
     t.print(f.name);
     EXPECT_GE(t.kinds(), f.least_kinds) << f.name;
     EXPECT_GT(t.loaded(), 0.05) << f.name;

@@ -115,6 +115,7 @@ outcome fuzz_images(const image_format& format, const char* how, const std::stri
   return out;
 }
 
+// All runs in every build: the images are small.
 TEST_P(ImageFuzz, ByteByByte) {
   std::uint64_t seed = 1;
   for (const std::string& good : GetParam().good) {
