@@ -57,18 +57,31 @@ std::vector<std::string> map_channels(const Imf::ChannelList& channels) {
   return all.size() == 1 ? all : std::vector<std::string>();
 }
 
-result<map_image> read_exr(std::string_view bytes, const std::filesystem::path& file) {
+/// The header alone. An InputFile takes memory for the rows that its header claims, however few bytes there are.
+Imf::Header header_of(std::string_view bytes) {
   memory_stream stream(bytes);
-  Imf::InputFile image(stream, 0);
-  const Imath::Box2i window = image.header().dataWindow();
+  std::array<char, 8> start{};  // magic number and version, little-endian
+  stream.read(start.data(), static_cast<int>(start.size()));
+  int version = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    version |= static_cast<int>(static_cast<unsigned char>(start[4 + k])) << (8 * k);
+  }
+  Imf::Header header;
+  header.readFrom(stream, version);
+  return header;
+}
+
+result<map_image> read_exr(std::string_view bytes, const std::filesystem::path& file) {
+  const Imf::Header claimed = header_of(bytes);
+  const Imath::Box2i window = claimed.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  const std::vector<std::string> names = map_channels(image.header().channels());
+  const std::vector<std::string> names = map_channels(claimed.channels());
   if (names.empty())
     return fault(error_code::unsupported, file,
                  "has several channels, none of them R, G, B or Y; export the heights as one channel");
   for (const std::string& name : names) {
-    const Imf::Channel& channel = image.header().channels()[name.c_str()];
+    const Imf::Channel& channel = claimed.channels()[name.c_str()];
     if (channel.xSampling != 1 || channel.ySampling != 1)
       return fault(error_code::unsupported, file, "has subsampled channels; export it at full resolution");
   }
@@ -78,6 +91,8 @@ result<map_image> read_exr(std::string_view bytes, const std::filesystem::path& 
   if (!sized) return sized.error();
   map_image& out = *sized;
 
+  memory_stream stream(bytes);
+  Imf::InputFile image(stream, 0);
   // Row by row: a file that ends early has taken no memory for what it does not hold.
   const std::size_t pixel = sizeof(float) * names.size();
   std::vector<float> row(std::size_t{out.width} * names.size());
