@@ -73,7 +73,7 @@ Imf::Header header_of(std::string_view bytes) {
 
 result<map_image> read_exr(std::string_view bytes, const std::filesystem::path& file) {
   const Imf::Header claimed = header_of(bytes);
-  const Imath::Box2i window = claimed.dataWindow();
+  const Imath::Box2i& window = claimed.dataWindow();
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   const std::vector<std::string> names = map_channels(claimed.channels());
