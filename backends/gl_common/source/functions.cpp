@@ -22,7 +22,7 @@ std::string functions::load(any_function (*proc_address)(const char*)) {
   const auto* const words = reinterpret_cast<const char*>(GetString(GL_VERSION));
   const bool es = words != nullptr && std::strncmp(words, "OpenGL ES", 9) == 0;
   const int version = 10 * major + minor;
-  // An entry point counts only with its version or extension: the loader hands out a stub for any name.
+  // An entry point counts only with its version or extension: EGL has an address for any name, known or not.
   const auto optional = [&](auto& to, bool in_core, const char* core_name, const char* extension,
                             const char* extension_name) {
     const char* const name = in_core ? core_name : (has_extension(*this, extension) ? extension_name : nullptr);

@@ -85,21 +85,6 @@ owned_name make_name(const context_ptr& context, name_kind kind) {
   return {context, kind, name};
 }
 
-result<owned_name> make_buffer(const context_ptr& context, std::size_t bytes, const void* data,
-                               const std::string& what) {
-  if (const result<void> r = context->take_memory(bytes, what); !r) return r.error();
-  const functions& gl = context->gl();
-  static_cast<void>(take_errors(gl));
-  GLuint name = 0;
-  gl.GenBuffers(1, &name);
-  owned_name out(context, name_kind::buffer, name, bytes);
-  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, name);
-  gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), data, GL_STATIC_DRAW);
-  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
-  if (gl.GetError() != GL_NO_ERROR) return device_full(gl, what, bytes);
-  return out;
-}
-
 result<owned_name> make_texture(const context_ptr& context, GLenum internal_format, std::uint32_t width,
                                 std::uint32_t height, const std::string& what) {
   const functions& gl = context->gl();

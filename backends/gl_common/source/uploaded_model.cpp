@@ -37,20 +37,6 @@ result<owned_name> upload_texture(const context_ptr& context, const haptic_textu
   return name;
 }
 
-std::vector<uploaded_corner> corners_of(const textured_model& model) {
-  std::vector<uploaded_corner> out;
-  out.reserve(3 * model.mesh.triangles.size());
-  for (const coarse_triangle& t : model.mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const vec3& p = model.mesh.positions[t.vertex[k]];
-      out.push_back({{static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)},
-                     {static_cast<float>(t.uv[k].x * model.texture.width - 0.5),
-                      static_cast<float>(t.uv[k].y * model.texture.height - 0.5)}});
-    }
-  }
-  return out;
-}
-
 }  // namespace
 
 result<uploaded_ptr> upload(const context_ptr& context, const model_ptr& model) {
@@ -62,16 +48,24 @@ result<uploaded_ptr> upload(const context_ptr& context, const model_ptr& model) 
   const std::string what = "model \"" + model->name + "\"";
   result<owned_name> texture = upload_texture(context, model->texture, "the haptic texture of " + what);
   if (!texture) return texture.error();
-  const std::vector<uploaded_corner> corners = corners_of(*model);
-  result<owned_name> buffer =
-      make_buffer(context, corners.size() * sizeof(uploaded_corner), corners.data(), "the coarse mesh of " + what);
-  if (!buffer) return buffer.error();
   auto out = std::make_shared<uploaded_model>();
   out->model = model;
   out->texture = *std::move(texture);
-  out->corners = *std::move(buffer);
   known.push_back(out);
   return uploaded_ptr(std::move(out));
+}
+
+result<uploaded_scene> upload(const context_ptr& context, const scene& bodies) {
+  uploaded_scene out;
+  result<uploaded_ptr> there = upload(context, bodies.probe);
+  if (!there) return there.error();
+  out.probe = *std::move(there);
+  for (const model_ptr& m : bodies.fixed) {
+    there = upload(context, m);
+    if (!there) return there.error();
+    out.fixed.push_back(*std::move(there));
+  }
+  return out;
 }
 
 }  // namespace asperity::gl

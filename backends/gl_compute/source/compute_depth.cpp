@@ -54,8 +54,7 @@ struct compute_depth::parts {
   compute_options options;
   bool doubles = false;
   std::size_t groups = 0;  ///< per job
-  uploaded_ptr probe;
-  std::vector<uploaded_ptr> fixed;
+  uploaded_scene models;
   program_ptr program;
   GLint first_job = 0, side = 0;  ///< uniforms
   mapped_buffer numbers, integers, results;
@@ -65,7 +64,6 @@ struct compute_depth::parts {
 
   parts(context_ptr c, const scene& s, const depth_settings& settings, const compute_options& o)
       : context(std::move(c)), writer(s, settings), options(o) {}
-  [[nodiscard]] result<void> upload_scene();
   [[nodiscard]] result<void> take_buffers();
   [[nodiscard]] number_list list(const mapped_buffer& b) const noexcept {
     return doubles ? number_list(b.as<double>()) : number_list(b.as<float>());
@@ -75,19 +73,6 @@ struct compute_depth::parts {
   template <class PoseAt>
   [[nodiscard]] status measure(const contact_set& contacts, std::span<penetration> out, PoseAt pose_at) noexcept;
 };
-
-result<void> compute_depth::parts::upload_scene() {
-  const scene& s = writer.bodies();
-  result<uploaded_ptr> there = upload(context, s.probe);
-  if (!there) return there.error();
-  probe = *there;
-  for (const model_ptr& m : s.fixed) {
-    there = upload(context, m);
-    if (!there) return there.error();
-    fixed.push_back(*there);
-  }
-  return {};
-}
 
 result<void> compute_depth::parts::take_buffers() {
   const depth_settings& s = writer.settings();
@@ -141,7 +126,9 @@ result<compute_depth> compute_depth::make(context_ptr context, const scene& s, c
   }
   auto p = std::make_unique<parts>(context, s, settings, options);
   p->doubles = options.arithmetic != arithmetic::single_precision && facts.double_precision;
-  if (result<void> r = p->upload_scene(); !r) return r.error();
+  result<uploaded_scene> models = upload(p->context, s);
+  if (!models) return models.error();
+  p->models = *std::move(models);
   if (result<void> r = p->take_buffers(); !r) return r.error();
   const shader_stage stage{GL_COMPUTE_SHADER,
                            definitions_of(settings, p->doubles, facts),
@@ -160,7 +147,7 @@ result<compute_depth> compute_depth::make(context_ptr context, const scene& s, c
 void compute_depth::parts::dispatch(std::size_t body, std::size_t first, std::size_t count) noexcept {
   const functions& gl = context->gl();
   gl.ActiveTexture(GL_TEXTURE1);
-  gl.BindTexture(GL_TEXTURE_2D, fixed[body]->texture.get());
+  gl.BindTexture(GL_TEXTURE_2D, models.fixed[body]->texture.get());
   // A dispatch has at most 65535 groups in each direction.
   for (std::size_t done = 0; done < count;) {
     const std::size_t now = std::min<std::size_t>(count - done, 65535);
@@ -176,7 +163,7 @@ status compute_depth::parts::measure(const contact_set& contacts, std::span<pene
   std::fill(out.begin(), out.end(), nothing);
   if (out.size() < contacts.size()) return status::not_ready;
   for (const contact& c : contacts.contacts()) {
-    if (c.body >= fixed.size()) return status::not_ready;
+    if (c.body >= models.fixed.size()) return status::not_ready;
   }
   if (contacts.size() == 0) return status::ok;
   if (contacts.size() > options.contacts) return status::capacity_reached;
@@ -194,13 +181,13 @@ status compute_depth::parts::measure(const contact_set& contacts, std::span<pene
   gl.UseProgram(program->get());
   gl.Uniform1i(side, static_cast<GLint>(writer.settings().grid));
   gl.ActiveTexture(GL_TEXTURE0);
-  gl.BindTexture(GL_TEXTURE_2D, probe->texture.get());
+  gl.BindTexture(GL_TEXTURE_2D, models.probe->texture.get());
   gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, numbers.name());
   gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, integers.name());
   gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, results.name());
 
   // Everything is written before anything is drawn: jobs of one fixed body follow each other.
-  for (std::size_t body = 0; body < fixed.size(); ++body) {
+  for (std::size_t body = 0; body < models.fixed.size(); ++body) {
     for (std::size_t i = 0; i < contacts.size(); ++i) {
       const contact& c = contacts.contacts()[i];
       if (c.body != body) continue;
@@ -251,7 +238,7 @@ compute_depth& compute_depth::operator=(compute_depth&&) noexcept = default;
 compute_depth::~compute_depth() = default;
 
 status compute_depth::measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept {
-  if (at.T_wb.size() != parts_->fixed.size()) {
+  if (at.T_wb.size() != parts_->models.fixed.size()) {
     std::fill(out.begin(), out.end(), penetration{.flags = depth_flag::no_overlap});
     return status::not_ready;
   }

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "span_raster.hpp"
-
 namespace asperity::gl {
 
 using detail::hit;
@@ -131,7 +129,7 @@ bool job_writer::add(number_list& numbers, integer_list& integers, const contact
 void job_writer::project(side& s, std::size_t body_index, std::span<const std::uint32_t> patch, const window_map& map,
                          layer which, const sample_grid& grid) noexcept {
   s.patch.project(body(body_index).mesh, indices_[body_index], patch, map, which, settings_.facing_cosine);
-  rasterise_spans(s.patch, grid, which, s.field);
+  rasterise(s.patch, grid, which, s.field);
 }
 
 job_writer::written job_writer::write(const side& s, std::size_t body_index, const window_map& map, layer which,

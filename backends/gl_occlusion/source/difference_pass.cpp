@@ -8,12 +8,6 @@
 #include "shaders.hpp"
 
 namespace asperity::gl {
-namespace {
-
-constexpr GLuint attributes = attributes_of<difference_record>;
-
-}  // namespace
-
 result<difference_pass> difference_pass::make(const context_ptr& context, const tile_atlas& atlas,
                                               std::uint32_t depth_bits, const std::string& definitions,
                                               std::array<int, 2> tile_samples) {
@@ -54,13 +48,7 @@ result<difference_pass> difference_pass::make(const context_ptr& context, const 
   out.tile_pixels_ = gl.GetUniformLocation(out.program_.get(), "tile_pixels");
   out.samples_ = gl.GetUniformLocation(out.program_.get(), "tile_samples");
 
-  out.vertices_ = make_name(context, name_kind::vertex_array);
-  gl.BindVertexArray(out.vertices_.get());
-  for (GLuint i = 0; i < attributes; ++i) {
-    gl.EnableVertexAttribArray(i);
-    gl.VertexAttribDivisor(i, 1);
-  }
-  gl.BindVertexArray(0);
+  out.vertices_ = make_record_vertices<difference_record>(context);
   return out;
 }
 

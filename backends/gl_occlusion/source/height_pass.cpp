@@ -10,7 +10,6 @@
 namespace asperity::gl {
 namespace {
 
-constexpr GLuint attributes = attributes_of<triangle_record>;
 constexpr float no_surface = -1e30F;
 
 }  // namespace
@@ -69,13 +68,7 @@ result<height_pass> height_pass::make(const context_ptr& context, const tile_atl
   out.samples_ = gl.GetUniformLocation(out.program_.get(), "tile_samples");
   out.mirrored_ = gl.GetUniformLocation(out.program_.get(), "mirrored");
 
-  out.vertices_ = make_name(context, name_kind::vertex_array);
-  gl.BindVertexArray(out.vertices_.get());
-  for (GLuint i = 0; i < attributes; ++i) {
-    gl.EnableVertexAttribArray(i);
-    gl.VertexAttribDivisor(i, 1);
-  }
-  gl.BindVertexArray(0);
+  out.vertices_ = make_record_vertices<triangle_record>(context);
   return out;
 }
 
@@ -89,8 +82,7 @@ void height_pass::clear(std::size_t contacts) noexcept {
   gl.ClearBufferfv(GL_COLOR, 0, none.data());
 }
 
-void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, GLuint probe_texture,
-                       std::span<const GLuint> fixed_textures) noexcept {
+void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, const uploaded_scene& models) noexcept {
   if (runs.empty()) return;
   const functions& gl = heights_.owner()->gl();
   const std::size_t before_last = (lists().size() - 1) * lists_[0].memory.size();
@@ -107,7 +99,7 @@ void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, G
   gl.Uniform2f(atlas_size_, static_cast<float>(atlas_.width()), static_cast<float>(atlas_.height()));
   gl.Uniform2i(samples_, tile_samples_[0], tile_samples_[1]);
   gl.ActiveTexture(GL_TEXTURE0);
-  gl.BindTexture(GL_TEXTURE_2D, probe_texture);
+  gl.BindTexture(GL_TEXTURE_2D, models.probe->texture.get());
   gl.ActiveTexture(GL_TEXTURE1);
   gl.BindVertexArray(vertices_.get());
   gl.BindBuffer(GL_ARRAY_BUFFER, records_.name());
@@ -119,7 +111,7 @@ void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, G
     gl.Uniform2i(mirrored_, static_cast<GLint>(q & 1), static_cast<GLint>(q >> 1));
     for (const record_run& run : runs) {
       if (run.quarter != q) continue;
-      gl.BindTexture(GL_TEXTURE_2D, fixed_textures[run.body]);
+      gl.BindTexture(GL_TEXTURE_2D, models.fixed[run.body]->texture.get());
       const std::size_t start = (q * lists_[q].memory.size() + run.first) * sizeof(triangle_record);
       read_records_from<triangle_record>(gl, start);
       gl.DrawArraysInstanced(GL_TRIANGLE_FAN, 0, 7, static_cast<GLsizei>(run.count));

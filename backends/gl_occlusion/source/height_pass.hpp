@@ -8,6 +8,7 @@
 #include "asperity/gl/functions.hpp"
 #include "asperity/gl/mapped_buffer.hpp"
 #include "asperity/gl/names.hpp"
+#include "asperity/gl/uploaded_model.hpp"
 #include "tile_layout.hpp"
 #include "tile_writer.hpp"
 
@@ -38,8 +39,7 @@ class height_pass {
   /// Empties the tiles of the first `contacts`. @rt safe, apart from what the driver does
   void clear(std::size_t contacts) noexcept;
   /// Renders runs of records, of which each quarter's follow each other. @rt safe, apart from what the driver does
-  void draw(std::span<const record_run> runs, std::size_t contacts, GLuint probe_texture,
-            std::span<const GLuint> fixed_textures) noexcept;
+  void draw(std::span<const record_run> runs, std::size_t contacts, const uploaded_scene& models) noexcept;
 
   [[nodiscard]] std::size_t device_bytes() const noexcept {
     return heights_.bytes() + layers_.bytes() + records_.size();

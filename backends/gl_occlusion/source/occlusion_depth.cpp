@@ -58,16 +58,9 @@ occlusion_depth::parts::parts(context_ptr c, const scene& s, const depth_setting
       levels{o.depth_bits} {}
 
 result<void> occlusion_depth::parts::set_up() {
-  const scene& s = writer.bodies();
-  result<uploaded_ptr> there = upload(context, s.probe);
-  if (!there) return there.error();
-  probe = *there;
-  for (const model_ptr& m : s.fixed) {
-    there = upload(context, m);
-    if (!there) return there.error();
-    fixed.push_back(*there);
-    fixed_textures.push_back((*there)->texture.get());
-  }
+  result<uploaded_scene> uploaded = upload(context, writer.bodies());
+  if (!uploaded) return uploaded.error();
+  models = *std::move(uploaded);
 
   const auto contacts = static_cast<std::uint32_t>(options.contacts);
   const std::uint32_t fold = options.packed ? 2 : 1;
@@ -100,7 +93,7 @@ result<void> occlusion_depth::parts::set_up() {
 
   asperity::detail::reserve_resident(slots, options.contacts);
   asperity::detail::reserve_resident(look_for_bad, options.contacts);
-  asperity::detail::reserve_resident(runs, fixed.size() * writer.quarters());
+  asperity::detail::reserve_resident(runs, models.fixed.size() * writer.quarters());
   slot_of.assign(options.contacts, no_slot);
   return {};
 }
@@ -158,7 +151,7 @@ std::size_t occlusion_depth::device_bytes() const noexcept {
 std::size_t occlusion_depth::heap_bytes() const noexcept {
   const parts& p = *parts_;
   return sizeof(parts) + p.writer.heap_bytes() + p.queries.heap_bytes() +
-         asperity::heap_bytes(p.fixed, p.fixed_textures, p.slots, p.slot_of, p.look_for_bad, p.runs);
+         asperity::heap_bytes(p.models.fixed, p.slots, p.slot_of, p.look_for_bad, p.runs);
 }
 
 }  // namespace asperity::gl

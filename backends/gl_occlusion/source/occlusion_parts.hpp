@@ -21,9 +21,7 @@ struct occlusion_depth::parts {
   tile_writer writer;
   occlusion_options options;
   depth_levels levels;
-  uploaded_ptr probe;
-  std::vector<uploaded_ptr> fixed;
-  std::vector<GLuint> fixed_textures;
+  uploaded_scene models;
   height_pass heights;
   difference_pass differences;
   query_pass queries;

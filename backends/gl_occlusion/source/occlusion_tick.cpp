@@ -24,7 +24,7 @@ template <class Add>
 void occlusion_depth::parts::write_runs(Add add) noexcept {
   runs.clear();
   const std::span<record_list> lists = heights.lists();
-  for (std::size_t body = 0; body < fixed.size(); ++body) {
+  for (std::size_t body = 0; body < models.fixed.size(); ++body) {
     std::array<std::size_t, 4> first{};
     for (std::size_t q = 0; q < lists.size(); ++q) first[q] = lists[q].used;
     add(body);
@@ -186,13 +186,13 @@ status occlusion_depth::parts::draw(const scene_pose& at, const contact_set& con
   if (!records_fit()) return status::capacity_reached;
   if (std::none_of(slots.begin(), slots.end(), [](const contact_slot& s) { return s.visible; })) return status::ok;
   heights.clear(slots.size());
-  heights.draw(runs, slots.size(), probe->texture.get(), fixed_textures);
+  heights.draw(runs, slots.size(), models);
   draw_at_rest(contacts);
   queries.coverage(view(), slots, look_for_bad);
   if (std::none_of(slots.begin(), slots.end(), [](const contact_slot& s) { return s.samples > 0; })) return status::ok;
   write_moved(at, contacts);
   if (!records_fit()) return status::capacity_reached;
-  heights.draw(runs, slots.size(), probe->texture.get(), fixed_textures);
+  heights.draw(runs, slots.size(), models);
   draw_all(contacts);
   queries.search(view(), slots);
   return status::ok;
@@ -205,9 +205,9 @@ status occlusion_depth::parts::measure(const scene_pose& at, const contact_set& 
   slots.clear();
   look_for_bad.clear();
   std::fill(slot_of.begin(), slot_of.end(), no_slot);
-  if (out.size() < contacts.size() || at.T_wb.size() != fixed.size()) return status::not_ready;
+  if (out.size() < contacts.size() || at.T_wb.size() != models.fixed.size()) return status::not_ready;
   for (const contact& c : contacts.contacts()) {
-    if (c.body >= fixed.size()) return status::not_ready;
+    if (c.body >= models.fixed.size()) return status::not_ready;
   }
   if (contacts.size() == 0) return status::ok;
   if (contacts.size() > options.contacts) return status::capacity_reached;

@@ -58,20 +58,17 @@ class chart_blocks {
     const auto inside = [](double k, std::uint32_t size) {
       return static_cast<std::size_t>(std::clamp(k, 0.0, static_cast<double>(size) - 1.0));
     };
-    vec3 low(0.0), high(0.0);
+    rest_box box;
     for (double y = first.y; y <= last.y; ++y) {
       for (double x = first.x; x <= last.x; ++x) {
         if (!meets({x, y})) continue;
         const vec3 p = texture.at(inside(x, texture.width), inside(y, texture.height));
         if (!is_finite(p)) continue;
         const vec3 rest = p - x * out.along_x - y * out.along_y;
-        low = out.empty ? rest : glm::min(low, rest);
-        high = out.empty ? rest : glm::max(high, rest);
-        out.empty = false;
+        box.add(rest);
       }
     }
-    out.centre = 0.5 * (low + high);
-    out.spare = 0.5 * (high - low);
+    box.close(out);
     return out;
   }
 

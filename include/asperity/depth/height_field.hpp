@@ -2,10 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "asperity/depth/patch_projection.hpp"
+#include "asperity/depth/settings.hpp"
 
 namespace asperity::detail {
 
@@ -54,12 +57,46 @@ struct edge_side {
   [[nodiscard]] double row(double v) const noexcept { return per_v * v + constant; }
 };
 
+/// Where a row's samples inside an edge begin, or end. An edge function grows or shrinks along a row, rounded or not,
+/// so its samples inside are one run; its end moves little from row to row, and is searched from where it was.
+class edge_run {
+ public:
+  edge_run(const edge_side& edge, std::size_t first, std::size_t end) noexcept
+      : edge_(edge), first_(first), end_(end), at_(edge.per_u > 0.0 ? end : first) {}
+
+  /// Cuts [first, end) down to the samples of row v that are not outside the edge.
+  /// @param u  coordinate of each column
+  void cut(const double* u, double v, std::size_t& first, std::size_t& end) noexcept {
+    const double row = edge_.row(v);
+    const auto outside = [&](std::size_t column) { return edge_(u[column], row) < 0.0; };
+    if (edge_.per_u > 0.0) {
+      while (at_ > first_ && !outside(at_ - 1)) --at_;
+      while (at_ < end_ && outside(at_)) ++at_;
+      first = std::max(first, at_);
+    } else if (edge_.per_u < 0.0) {
+      while (at_ < end_ && !outside(at_)) ++at_;
+      while (at_ > first_ && outside(at_ - 1)) --at_;
+      end = std::min(end, at_);
+    } else if (first < end && outside(first)) {
+      end = first;
+    }
+  }
+
+ private:
+  edge_side edge_;
+  std::size_t first_, end_;  // columns of the triangle's box
+  std::size_t at_;
+};
+
 /// Finds the coarse triangle over each sample: of several layers the one that `which` names. Fills kind, owner and the
 /// coarse height.
+/// @pre grid.side <= depth_settings::max_grid
 /// @rt safe   @source paper section 5.1 (orthographic projection along n)
 inline void rasterise(const patch_projection& patch, const sample_grid& grid, layer which, height_field& out) noexcept {
   std::fill_n(out.kind.begin(), grid.size(), hit::none);
   const double s = sign(which);
+  std::array<double, depth_settings::max_grid> u;  // an integer is slow to turn into a number
+  for (std::size_t i = 0; i < grid.side; ++i) u[i] = grid.coordinate(i);
   for (std::uint32_t t = 0; t < patch.triangles().size(); ++t) {
     const projected_triangle& tri = patch.triangles()[t];
     const auto [c0, c1, c2] = tri.corner;
@@ -70,15 +107,16 @@ inline void rasterise(const patch_projection& patch, const sample_grid& grid, la
     const std::size_t first_row = grid.first_at(std::min({c0.y, c1.y, c2.y}) - slack);
     const std::size_t end_row = grid.end_at(std::max({c0.y, c1.y, c2.y}) + slack);
     // Seen along n, A's facing triangles turn counter-clockwise and B's clockwise.
-    const edge_side e0(tri, 0, s), e1(tri, 1, s), e2(tri, 2, s);
+    std::array runs{edge_run(edge_side(tri, 0, s), first_column, end_column),
+                    edge_run(edge_side(tri, 1, s), first_column, end_column),
+                    edge_run(edge_side(tri, 2, s), first_column, end_column)};
     for (std::size_t row = first_row; row < end_row; ++row) {
       const double v = grid.coordinate(row);
-      const double r0 = e0.row(v), r1 = e1.row(v), r2 = e2.row(v);
-      for (std::size_t column = first_column; column < end_column; ++column) {
-        const double u = grid.coordinate(column);
-        if (e0(u, r0) < 0.0 || e1(u, r1) < 0.0 || e2(u, r2) < 0.0) continue;
+      std::size_t first = first_column, end = end_column;
+      for (edge_run& r : runs) r.cut(u.data(), v, first, end);
+      for (std::size_t column = first; column < end; ++column) {
         const std::size_t i = grid.index(column, row);
-        const double h = tri.height(u, v);
+        const double h = tri.height(u[column], v);
         if (out.kind[i] != hit::none && s * (h - out.height[i]) <= 0.0) continue;
         out.kind[i] = hit::coarse;
         out.height[i] = h;

@@ -43,6 +43,23 @@ struct texture_block {
   bool one_cell = false;  ///< a cell, or a part of one
 };
 
+/// Box around what texels deviate from a block's lean.
+struct rest_box {
+  vec3 low{0.0}, high{0.0};
+  bool empty = true;
+
+  void add(const vec3& rest) noexcept {
+    low = empty ? rest : glm::min(low, rest);
+    high = empty ? rest : glm::max(high, rest);
+    empty = false;
+  }
+  void close(texture_block& block) const noexcept {
+    block.centre = 0.5 * (low + high);
+    block.spare = 0.5 * (high - low);
+    block.empty = empty;
+  }
+};
+
 /// Smallest and largest texel positions over blocks of cells, measured from a plane patch that leans as the block does:
 /// a box along the axes would be as thick as a slope makes it, and the bound of a tilted face useless.
 /// Bilinear interpolation of what texels deviate from an affine function stays between their extremes, so a box that
@@ -123,20 +140,17 @@ class texture_pyramid {
       out.along_y = along_y;
     }
     const vec2 middle = at.middle();
-    vec3 low(0.0), high(0.0);
+    rest_box box;
     for (std::int64_t j = j0; j <= j1; ++j) {
       for (std::int64_t i = i0; i <= i1; ++i) {
         const vec3 p = node(i, j);
         if (!is_finite(p)) continue;
         const vec3 rest = p - (static_cast<double>(i) - 1.0 - middle.x) * out.along_x -
                           (static_cast<double>(j) - 1.0 - middle.y) * out.along_y;
-        low = out.empty ? rest : glm::min(low, rest);
-        high = out.empty ? rest : glm::max(high, rest);
-        out.empty = false;
+        box.add(rest);
       }
     }
-    out.centre = 0.5 * (low + high);
-    out.spare = 0.5 * (high - low);
+    box.close(out);
     return out;
   }
 

@@ -1,6 +1,9 @@
 // Which coarse triangle is seen over each sample.
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <random>
+#include <utility>
 
 #include "asperity/depth/height_field.hpp"
 #include "support/height_models.hpp"
@@ -21,6 +24,80 @@ struct raster {
     rasterise(patch, sample_grid(64, w.half_size_m), which, field);
   }
 };
+
+/// What rasterise() has to find, decided sample by sample.
+void rasterise_plainly(const patch_projection& patch, const sample_grid& grid, layer which, height_field& out) {
+  std::fill(out.kind.begin(), out.kind.end(), hit::none);
+  const double s = sign(which);
+  for (std::uint32_t t = 0; t < patch.triangles().size(); ++t) {
+    const projected_triangle& tri = patch.triangles()[t];
+    const edge_side edges[] = {edge_side(tri, 0, s), edge_side(tri, 1, s), edge_side(tri, 2, s)};
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const vec2 p = grid.position(i);
+      if (std::any_of(std::begin(edges), std::end(edges),
+                      [&](const edge_side& e) { return e(p.x, e.row(p.y)) < 0.0; })) {
+        continue;
+      }
+      const double h = tri.height(p.x, p.y);
+      if (out.kind[i] != hit::none && s * (h - out.height[i]) <= 0.0) continue;
+      out.kind[i] = hit::coarse;
+      out.height[i] = h;
+      out.owner[i] = t;
+    }
+  }
+}
+
+/// @return samples that are covered, the largest owner
+std::pair<std::size_t, std::uint32_t> expect_plain_decisions(const patch_projection& patch, const sample_grid& grid,
+                                                             layer which) {
+  height_field wanted(grid.size()), found(grid.size());
+  rasterise_plainly(patch, grid, which, wanted);
+  rasterise(patch, grid, which, found);
+  EXPECT_EQ(found.kind, wanted.kind);
+  std::pair<std::size_t, std::uint32_t> seen{0, 0};
+  for (std::size_t k = 0; k < grid.size(); ++k) {
+    if (wanted.kind[k] == hit::none) continue;
+    EXPECT_EQ(found.owner[k], wanted.owner[k]) << k;
+    EXPECT_EQ(found.height[k], wanted.height[k]) << k;
+    ++seen.first;
+    seen.second = std::max(seen.second, wanted.owner[k]);
+  }
+  return seen;
+}
+
+TEST(Raster, DecidesARowAsItWouldDecideEachSample) {
+  plate_spec spec;
+  spec.half_x = spec.half_y = 0.004;
+  spec.texels = 64;
+  // Walls seen nearly from the side stand before the top, and samples of the unturned plate lie exactly on edges.
+  std::mt19937_64 bits(5);
+  const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
+  std::size_t covered = 0;
+  std::uint32_t owner = 0;
+  for (const std::uint32_t cells : {1U, 3U, 4U}) {
+    spec.cells_x = spec.cells_y = cells;
+    const model_ptr plate = make_plate(spec);
+    const surface_index index(*plate);
+    patch_projection patch(plate->mesh.triangles.size());
+    for (int i = 0; i < 60; ++i) {
+      const contact_window w = window_downwards(i % 2 == 0 ? 4e-3 : 2.5e-3);
+      const double turn = i < 6 ? 0.0 : 1.2;
+      const sample_grid grid(i % 3 == 0 ? 8 : 33, w.half_size_m);
+      const vec3 shift =
+          i < 6 ? 0.5 * i * grid.pitch_m * vec3(1.0, 1.0, 0.0) : 2e-3 * vec3{uniform(), uniform(), uniform()};
+      const pose T{exp_rotation(turn * vec3{uniform(), uniform(), 2.0 * uniform()}) * face_down(), shift};
+      for (const layer which : {layer::highest, layer::lowest}) {
+        const pose seen = which == layer::highest ? T : pose{glm::conjugate(face_down()) * T.rotation, T.position};
+        patch.project(plate->mesh, index, all_triangles(*plate), window_map(w, seen), which, 0.02);
+        const auto [samples, largest] = expect_plain_decisions(patch, grid, which);
+        covered += samples;
+        owner = std::max(owner, largest);
+      }
+    }
+  }
+  EXPECT_GT(covered, 50'000U);
+  EXPECT_GT(owner, 20U);
+}
 
 TEST(Raster, LeavesNoHoleBetweenTrianglesInAnyPose) {
   plate_spec spec;
