@@ -87,20 +87,6 @@ result<workload> make_workload(const scene& bodies, std::uint64_t seed) {
   return out;
 }
 
-/// Uploads the models and keeps them there, so that they are no backend's.
-result<std::vector<gl::uploaded_ptr>> upload(const gl::context_ptr& context, const scene& bodies) {
-  const gl::current_scope here(context);
-  std::vector<gl::uploaded_ptr> out;
-  std::vector<model_ptr> models = bodies.fixed;
-  models.push_back(bodies.probe);
-  for (const model_ptr& m : models) {
-    result<gl::uploaded_ptr> there = gl::upload(context, m);
-    if (!there) return there.error();
-    out.push_back(std::move(there).value());
-  }
-  return out;
-}
-
 /// A backend under test: its figures so far, and how to ask it.
 struct candidate {
   backend_times times;
@@ -286,7 +272,11 @@ result<bench_of_backends> time_backends(const scene& bodies, const backend_bench
   if (!context) return context.error();
   const result<workload> work = make_workload(bodies, options.seed);
   if (!work) return work.error();
-  const result<std::vector<gl::uploaded_ptr>> models = upload(*context, bodies);
+  // Held from here on, so that the models' memory is no backend's.
+  const result<gl::uploaded_scene> models = [&] {
+    const gl::current_scope here(*context);
+    return gl::upload(*context, bodies);
+  }();
   if (!models) return models.error();
   const std::size_t model_bytes = (*context)->device_bytes();
   result<std::vector<candidate>> all = time_sizes(bodies, options, *context, *work, progress);
