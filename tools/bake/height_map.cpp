@@ -13,7 +13,7 @@ namespace {
 // Compressed images return greys that differ by a step or two between the channels.
 constexpr float grey_tolerance = 2.5F / 255.0F;
 
-error bad_map(std::string what) { return {error_code::bad_texture, "the height map " + std::move(what)}; }
+error bad_height_map(std::string what) { return {error_code::bad_texture, "the height map " + std::move(what)}; }
 
 }  // namespace
 
@@ -39,7 +39,7 @@ result<relief> height_map_relief(const triangle_mesh& mesh, const map_image& map
                  "glTF)"};
   const std::size_t pixels = std::size_t{map.width} * map.height;
   if (pixels == 0 || (map.channels != 1 && map.channels != 3) || map.samples.size() != pixels * map.channels)
-    return bad_map("holds no image of one or three channels; load it again");
+    return bad_height_map("holds no image of one or three channels; load it again");
   if (!std::isfinite(settings.offset_m) || !std::isfinite(settings.scale_m))
     return error{error_code::invalid_argument, "the heights of black and white have to be finite numbers of metres"};
 
@@ -48,9 +48,11 @@ result<relief> height_map_relief(const triangle_mesh& mesh, const map_image& map
     const float* at = &map.samples[i * map.channels];
     const std::string place = std::to_string(i % map.width) + ", row " + std::to_string(i / map.width);
     if (map.channels == 3 && (std::fabs(at[0] - at[1]) > grey_tolerance || std::fabs(at[1] - at[2]) > grey_tolerance))
-      return bad_map("has colours, at column " + place + ": a height map is grey; for a normal map use --normal-map");
+      return bad_height_map("has colours, at column " + place +
+                            ": a height map is grey; for a normal map use --normal-map");
     const double h = settings.offset_m + settings.scale_m * static_cast<double>(at[0]);
-    if (!std::isfinite(h)) return bad_map("has a height that is not finite, at column " + place + "; export it again");
+    if (!std::isfinite(h))
+      return bad_height_map("has a height that is not finite, at column " + place + "; export it again");
     heights_m.pixels[i] = h;
   }
   relief out;

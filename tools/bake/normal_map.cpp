@@ -20,7 +20,7 @@ constexpr std::size_t most_triangles_solved = 1'000'000;
 constexpr double steepest_slope = 10.0;       // about 84 degrees: what lies beyond is no height field
 constexpr double most_backward_pixels = 0.1;  // share of pixels that face inwards: then the map is of another kind
 
-error bad_map(std::string what) { return {error_code::bad_texture, "the normal map " + std::move(what)}; }
+error bad_normal_map(std::string what) { return {error_code::bad_texture, "the normal map " + std::move(what)}; }
 
 // Red and green of flat are 127.5 of 255: 8 bits cannot say that, and programs write 127 or 128 for it.
 double centred(float sample, std::uint32_t bits) noexcept {
@@ -32,7 +32,7 @@ double centred(float sample, std::uint32_t bits) noexcept {
 result<map_lookup<vec2>> slopes_of(const map_image& map, const normal_map_settings& settings) {
   const std::size_t pixels = std::size_t{map.width} * map.height;
   if (map.channels != 3 || pixels == 0 || map.samples.size() != 3 * pixels)
-    return bad_map("is grey: a tangent-space normal map has three channels; for heights use --height-map");
+    return bad_normal_map("is grey: a tangent-space normal map has three channels; for heights use --height-map");
   map_lookup<vec2> out{map.width, map.height, settings.wrap_u, settings.wrap_v, std::vector<vec2>(pixels)};
   // Floating-point maps hold the vector itself, or, where none of their numbers is negative, the usual encoding of it.
   const bool vectors =
@@ -42,7 +42,7 @@ result<map_lookup<vec2>> slopes_of(const map_image& map, const normal_map_settin
     const float* at = &map.samples[3 * i];
     vec3 n{centred(at[0], map.bits), centred(at[1], map.bits), 2.0 * static_cast<double>(at[2]) - 1.0};
     if (vectors) n = {at[0], at[1], at[2]};
-    if (!is_finite(n)) return bad_map("has a sample that is not finite; export it again");
+    if (!is_finite(n)) return bad_normal_map("has a sample that is not finite; export it again");
     if (settings.green_is_down) n.y = -n.y;
     if (!(n.z > 0.0)) ++backward;
     const double z = std::max(n.z, 1e-3);
@@ -51,8 +51,8 @@ result<map_lookup<vec2>> slopes_of(const map_image& map, const normal_map_settin
     out.pixels[i] = steepness > steepest_slope ? slope * (steepest_slope / steepness) : slope;
   }
   if (static_cast<double>(backward) > most_backward_pixels * static_cast<double>(pixels))
-    return bad_map("faces inwards in " + std::to_string(100 * backward / pixels) +
-                   " % of its pixels, so it is no tangent-space map; export it in tangent space");
+    return bad_normal_map("faces inwards in " + std::to_string(100 * backward / pixels) +
+                          " % of its pixels, so it is no tangent-space map; export it in tangent space");
   return out;
 }
 

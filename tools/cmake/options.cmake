@@ -19,3 +19,10 @@ add_library(asperity::reproducible ALIAS asperity_reproducible)
 set_target_properties(asperity_reproducible PROPERTIES EXPORT_NAME reproducible)
 target_compile_options(asperity_reproducible INTERFACE -ffp-contract=off)
 target_link_libraries(asperity_build_options INTERFACE asperity_reproducible)
+
+# asperity_unity(TARGET FILES): compiles a target's sources FILES at a time, where the build asks for it (the presets do):
+# what they all include is then parsed, and what they all instantiate compiled, once and not once per file.
+option(ASPERITY_UNITY "Compile several sources at a time, for quicker whole builds" OFF)
+function(asperity_unity target files)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${ASPERITY_UNITY} UNITY_BUILD_BATCH_SIZE ${files})
+endfunction()

@@ -11,7 +11,7 @@
 namespace asperity::io {
 namespace {
 
-constexpr std::size_t header_bytes = 84;  // 80 of any content, then the number of triangles
+constexpr std::size_t stl_header_bytes = 84;  // 80 of any content, then the number of triangles
 constexpr std::size_t facet_bytes = 50;   // normal, three corners, two spare bytes
 
 /// Case-insensitive: some exporters write FACET. `keyword` is in lower case.
@@ -27,13 +27,13 @@ void add_triangle_corner(polygon_soup& soup, const vec3& p) {
 
 result<triangle_mesh> read_binary(std::string_view bytes, const std::filesystem::path& file) {
   polygon_soup soup;
-  const std::size_t count = (bytes.size() - header_bytes) / facet_bytes;
+  const std::size_t count = (bytes.size() - stl_header_bytes) / facet_bytes;
   soup.positions.reserve(3 * count);
   soup.corners.reserve(3 * count);
   soup.ends.reserve(count);
   for (std::size_t f = 0; f < count; ++f) {
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const std::size_t offset = header_bytes + f * facet_bytes + 12 + 12 * corner;
+      const std::size_t offset = stl_header_bytes + f * facet_bytes + 12 + 12 * corner;
       const char* at = bytes.data() + offset;
       const vec3 p(load_number<float>(at), load_number<float>(at + 4), load_number<float>(at + 8));
       if (!is_finite(p)) {
@@ -115,8 +115,8 @@ class ascii_reader {
 }  // namespace
 
 result<triangle_mesh> read_stl(std::string_view bytes, const std::filesystem::path& file) {
-  const std::size_t announced = bytes.size() < header_bytes ? 0 : load_number<std::uint32_t>(bytes.data() + 80);
-  if (bytes.size() >= header_bytes && bytes.size() - header_bytes == announced * facet_bytes) {
+  const std::size_t announced = bytes.size() < stl_header_bytes ? 0 : load_number<std::uint32_t>(bytes.data() + 80);
+  if (bytes.size() >= stl_header_bytes && bytes.size() - stl_header_bytes == announced * facet_bytes) {
     return read_binary(bytes, file);
   }
   text_cursor cursor(bytes);
@@ -124,14 +124,14 @@ result<triangle_mesh> read_stl(std::string_view bytes, const std::filesystem::pa
   cursor.next_line();
   const std::string_view second = cursor.word_anywhere();
   if (solid && (is_keyword(second, "facet") || is_keyword(second, "endsolid"))) return ascii_reader(bytes, file).read();
-  if (bytes.size() < header_bytes) {
+  if (bytes.size() < stl_header_bytes) {
     return fault(error_code::bad_format, file,
                  "has " + std::to_string(bytes.size()) +
                      " bytes, fewer than the header of a binary STL, and is no ascii STL; export the mesh again");
   }
   return fault(error_code::bad_format, file,
                "byte 80 announces " + std::to_string(announced) + " triangles, which take " +
-                   std::to_string(header_bytes + announced * facet_bytes) + " bytes, but the file has " +
+                   std::to_string(stl_header_bytes + announced * facet_bytes) + " bytes, but the file has " +
                    std::to_string(bytes.size()) + "; export the mesh again");
 }
 

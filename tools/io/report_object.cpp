@@ -37,17 +37,16 @@ object quality_object(const bake_quality& q) {
           {"bridged_air_max_m", value(q.bridged_air_max_m)}};
 }
 
-bool is_finite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool is_finite(const length_spread& s) {
+bool all_finite(const length_spread& s) {
   return std::isfinite(s.median_m) && std::isfinite(s.p99_m) && std::isfinite(s.max_m);
 }
 
-bool is_finite(const bake_quality& q) {
+bool all_finite(const bake_quality& q) {
   for (const double x : {q.to_original_rms_m, q.to_textured_rms_m, q.crack_max_m, q.texel_m, q.atlas_utilisation,
                          q.lost_share, q.lost_part_share, q.surface_to_hull_max_m, q.bridged_air_max_m}) {
     if (!std::isfinite(x)) return false;
   }
-  return is_finite(q.to_original) && is_finite(q.to_textured) && is_finite(q.texel_spacing) &&
+  return all_finite(q.to_original) && all_finite(q.to_textured) && all_finite(q.texel_spacing) &&
          is_finite(q.lost_part_centre) && is_finite(q.lost_part_low) && is_finite(q.lost_part_high);
 }
 
@@ -68,9 +67,9 @@ tinygltf::Value::Object report_object(const bake_report& report) {
   return out;
 }
 
-bool is_finite(const bake_report& r) {
+bool has_finite_figures(const bake_report& r) {
   return std::isfinite(r.rms_error_m) && std::isfinite(r.max_error_m) && std::isfinite(r.relief_m) &&
-         std::isfinite(r.max_displacement_m) && (!r.quality || is_finite(*r.quality));
+         std::isfinite(r.max_displacement_m) && (!r.quality || all_finite(*r.quality));
 }
 
 }  // namespace asperity::io

@@ -11,6 +11,6 @@ namespace asperity::io {
 [[nodiscard]] tinygltf::Value::Object report_object(const bake_report& report);
 
 /// False where a number is NaN or infinite: JSON has no such numbers.
-[[nodiscard]] bool is_finite(const bake_report& report);
+[[nodiscard]] bool has_finite_figures(const bake_report& report);
 
 }  // namespace asperity::io

@@ -197,7 +197,7 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
   if (const auto valid = validate(model); !valid) {
     return fault(valid.error().code, file, "is not written: " + valid.error().message);
   }
-  if (!is_finite(model.report)) {
+  if (!has_finite_figures(model.report)) {
     return fault(error_code::invalid_argument, file,
                  "is not written: its bake report holds a number that is not finite");
   }

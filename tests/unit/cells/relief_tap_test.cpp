@@ -15,14 +15,14 @@ using detail::relief_map;
 using detail::relief_tap;
 
 constexpr std::uint32_t columns = 12, rows = 9;
-constexpr double pitch = 0.125;
+constexpr double grid_pitch = 0.125;
 
 /// A body of one cell whose nodes are told by (column, row).
 surface_cells body_with(const std::function<relief_node(double, double)>& node) {
   surface_cells body;
   surface_cell cell;
   cell.low = {-0.5, 0.25};
-  cell.pitch_m = pitch;
+  cell.pitch_m = grid_pitch;
   cell.columns = columns;
   cell.rows = rows;
   cell.first = 3;  // nodes of an earlier cell
@@ -89,14 +89,14 @@ TEST(ReliefMap, ReproducesParabolasExactly) {
   for (int n = 0; n < 200; ++n) {
     const double x = random(1.0, columns - 2.0), y = random(1.0, rows - 2.0);
     relief_map::place at{};
-    ASSERT_TRUE(map.find(-0.5 + pitch * x, 0.25 + pitch * y, at));
+    ASSERT_TRUE(map.find(-0.5 + grid_pitch * x, 0.25 + grid_pitch * y, at));
     const relief_tap tap = map.read(at);
     EXPECT_NEAR(tap.height_m, height(x, y), 1e-12);
     EXPECT_NEAR(tap.clearance_m, clearance(x, y), 1e-11);
-    EXPECT_NEAR(tap.height_slope.x, (-1.0 + x - y) / pitch, 1e-10);
-    EXPECT_NEAR(tap.height_slope.y, (3.0 - x + 0.5 * y) / pitch, 1e-10);
-    EXPECT_NEAR(tap.clearance_slope.x, x * y * y / 32.0 / pitch, 1e-10);
-    EXPECT_NEAR(tap.clearance_slope.y, (x * x * y / 32.0 - 1.0) / pitch, 1e-10);
+    EXPECT_NEAR(tap.height_slope.x, (-1.0 + x - y) / grid_pitch, 1e-10);
+    EXPECT_NEAR(tap.height_slope.y, (3.0 - x + 0.5 * y) / grid_pitch, 1e-10);
+    EXPECT_NEAR(tap.clearance_slope.x, x * y * y / 32.0 / grid_pitch, 1e-10);
+    EXPECT_NEAR(tap.clearance_slope.y, (x * x * y / 32.0 - 1.0) / grid_pitch, 1e-10);
   }
 }
 
@@ -111,7 +111,7 @@ TEST(ReliefMap, SlopesAreTheDerivatives) {
   };
   constexpr double h = 1e-6;
   for (int n = 0; n < 100; ++n) {
-    const double x = -0.5 + pitch * random(1.1, columns - 2.1), y = 0.25 + pitch * random(1.1, rows - 2.1);
+    const double x = -0.5 + grid_pitch * random(1.1, columns - 2.1), y = 0.25 + grid_pitch * random(1.1, rows - 2.1);
     const relief_tap tap = read(x, y), east = read(x + h, y), west = read(x - h, y), north = read(x, y + h),
                      south = read(x, y - h);
     EXPECT_NEAR(tap.height_slope.x, (east.height_m - west.height_m) / (2 * h), 1e-6);
@@ -125,7 +125,9 @@ TEST(ReliefMap, KnowsWhereItEnds) {
   const surface_cells body = random_body(6);
   const relief_map map(body, body.cells[0]);
   relief_map::place at{};
-  const auto found = [&](double column, double row) { return map.find(-0.5 + pitch * column, 0.25 + pitch * row, at); };
+  const auto found = [&](double column, double row) {
+    return map.find(-0.5 + grid_pitch * column, 0.25 + grid_pitch * row, at);
+  };
   EXPECT_TRUE(found(1.0, 1.0));
   EXPECT_TRUE(found(columns - 2.001, rows - 2.001));
   EXPECT_EQ(at.column, columns - 3U);
@@ -144,7 +146,7 @@ TEST(ReliefMap, RisesLessThanTwiceTheSlopeLimitOverANode) {
   constexpr double slope = 1.0;
   double most = 0.0;
   for (int n = 0; n < 400; ++n) {
-    const double size = random(0.1, 3.0) * pitch;
+    const double size = random(0.1, 3.0) * grid_pitch;
     surface_cells body = body_with([&](double, double) {
       return relief_node{static_cast<float>(random(0.0, 1.0) < 0.5 ? -size : size), 0.0F};
     });
@@ -164,9 +166,9 @@ TEST(ReliefMap, RisesLessThanTwiceTheSlopeLimitOverANode) {
       }
     }
   }
-  std::printf("largest rise over a node: %.3f pitches at slope 1\n", most / pitch);
-  EXPECT_GT(most, 1.2 * slope * pitch);  // the test does find steep places
-  EXPECT_LE(most, 2.0 * slope * pitch);
+  std::printf("largest rise over a node: %.3f pitches at slope 1\n", most / grid_pitch);
+  EXPECT_GT(most, 1.2 * slope * grid_pitch);  // the test does find steep places
+  EXPECT_LE(most, 2.0 * slope * grid_pitch);
 }
 
 }  // namespace
