@@ -9,8 +9,8 @@
 
 namespace asperity::hid {
 
-/// Whether a version of hidapi may be asked for its devices. Before 0.15 it follows a null pointer where a device leaves
-/// while it lists (its issue 580), and nothing from outside can prevent that.
+/// Whether a version of hidapi may be asked for its devices. Before 0.15 it follows a null pointer where a device
+/// leaves while it lists (its issue 580), and nothing from outside can prevent that.
 [[nodiscard]] constexpr bool may_list(int hidapi_major, int hidapi_minor) noexcept {
   return hidapi_major > 0 || hidapi_minor >= 15;
 }

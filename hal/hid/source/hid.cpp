@@ -81,7 +81,8 @@ result<std::unique_ptr<hid_link>> open_node(const std::string& path, const hid_l
     if (vendor != expected->vendor_id || product != expected->product_id ||
         (!serial.empty() && serial != expected->serial)) {
       return error{error_code::io_failed, path + " is " + numbers(vendor, product) + " now and not " +
-                                              identity_of(*expected) + ", which was there before: list the devices again"};
+                                              identity_of(*expected) +
+                                              ", which was there before: list the devices again"};
     }
   }
   return std::unique_ptr<hid_link>(std::make_unique<hidraw_link>(file.hand_on(), std::move(descriptor)));
@@ -94,13 +95,15 @@ std::string identity_of(const hid_listing& which) {
 }
 
 std::string udev_rule(std::uint16_t vendor_id, std::uint16_t product_id) {
-  return "SUBSYSTEM==\"hidraw\", KERNELS==\"*:" + numbers(vendor_id, product_id, "%04X:%04X") + ".*\", TAG+=\"uaccess\"";
+  return "SUBSYSTEM==\"hidraw\", KERNELS==\"*:" + numbers(vendor_id, product_id, "%04X:%04X") +
+         ".*\", TAG+=\"uaccess\"";
 }
 
 std::string explain_open_error(const std::string& path, int error_number, const std::string& rule) {
   if (error_number == EACCES || error_number == EPERM) {
     std::string text = path + " cannot be opened: this user has no permission; ";
-    if (rule.empty()) return text + "install asperity's 70-asperity.rules in /etc/udev/rules.d and plug the device in again";
+    if (rule.empty())
+      return text + "install asperity's 70-asperity.rules in /etc/udev/rules.d and plug the device in again";
     return text + "put this line into /etc/udev/rules.d/70-asperity.rules and plug the device in again: " + rule;
   }
   if (error_number == ENOENT || error_number == ENODEV || error_number == ENXIO) {

@@ -1,10 +1,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <hidapi.h>
 #include <iterator>
 #include <mutex>
-
-#include <hidapi.h>
 
 #include "enumerate.hpp"
 

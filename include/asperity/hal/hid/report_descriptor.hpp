@@ -26,11 +26,11 @@ struct hid_field {
   std::int32_t logical_max = 0;
   std::int32_t physical_min = 0;  ///< as the logical range where the device gives none
   std::int32_t physical_max = 0;
-  std::uint32_t unit = 0;          ///< HID 1.11 section 6.2.2.7
-  std::int8_t unit_exponent = 0;   ///< power of ten
-  bool relative = false;           ///< a change since the last report, as the device claims
-  bool array = false;              ///< the value is an index of a usage, and `usage` is the lowest of them
-  std::uint16_t top_page = 0;      ///< usage page of the application collection it is in
+  std::uint32_t unit = 0;         ///< HID 1.11 section 6.2.2.7
+  std::int8_t unit_exponent = 0;  ///< power of ten
+  bool relative = false;          ///< a change since the last report, as the device claims
+  bool array = false;             ///< the value is an index of a usage, and `usage` is the lowest of them
+  std::uint16_t top_page = 0;     ///< usage page of the application collection it is in
   std::uint16_t top_usage = 0;
 };
 
@@ -44,12 +44,12 @@ struct hid_report_size {
 /// What became of a descriptor.
 enum class descriptor_status : std::uint8_t {
   ok,
-  empty,          ///< no bytes
-  cut_off,        ///< ends inside an item
-  bad_item,       ///< a reserved item, or a value that makes no sense where it stands
-  unbalanced,     ///< collections or pushes that do not close
-  too_large,      ///< longer, deeper or with longer reports than the limits below
-  capacity,       ///< the fields that fit are there; `fields.dropped()` says how many did not
+  empty,       ///< no bytes
+  cut_off,     ///< ends inside an item
+  bad_item,    ///< a reserved item, or a value that makes no sense where it stands
+  unbalanced,  ///< collections or pushes that do not close
+  too_large,   ///< longer, deeper or with longer reports than the limits below
+  capacity,    ///< the fields that fit are there; `fields.dropped()` says how many did not
 };
 
 [[nodiscard]] constexpr const char* to_string(descriptor_status s) noexcept {
@@ -290,9 +290,9 @@ class descriptor_parser {
         now_.physical_max = it;
         break;
       case 0x5:  // four bits with a sign, as the specification has it; some devices give a whole byte
-        now_.exponent = static_cast<std::int8_t>(it.raw <= 7 ? static_cast<int>(it.raw) :
-                                                 it.raw <= 15 ? static_cast<int>(it.raw) - 16 :
-                                                 std::clamp(it.with_sign, -8, 7));
+        now_.exponent = static_cast<std::int8_t>(it.raw <= 7    ? static_cast<int>(it.raw)
+                                                 : it.raw <= 15 ? static_cast<int>(it.raw) - 16
+                                                                : std::clamp(it.with_sign, -8, 7));
         break;
       case 0x6:
         now_.unit = it.raw;

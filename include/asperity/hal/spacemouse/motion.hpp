@@ -24,22 +24,22 @@ enum class spacemouse_control : std::uint8_t {
 /// rotation maps shifts and turns alike. This follows published recordings and has not been seen on a device.
 struct spacemouse_motion_config {
   spacemouse_control control = spacemouse_control::rate;
-  double max_speed_m_per_s = 0.1;      ///< rate: at full displacement; position: the fastest that the pose follows
-  double max_turn_rad_per_s = 1.0;     ///< likewise
-  double reach_m = 0.05;               ///< position: at full displacement
-  double reach_rad = 0.5;              ///< position: at full displacement
-  double dead_zone = 0.04;             ///< share of full displacement that counts as none, 0 to below 1; what is
-                                       ///< beyond it begins at zero, without a step
+  double max_speed_m_per_s = 0.1;   ///< rate: at full displacement; position: the fastest that the pose follows
+  double max_turn_rad_per_s = 1.0;  ///< likewise
+  double reach_m = 0.05;            ///< position: at full displacement
+  double reach_rad = 0.5;           ///< position: at full displacement
+  double dead_zone = 0.04;          ///< share of full displacement that counts as none, 0 to below 1; what is
+                                    ///< beyond it begins at zero, without a step
   std::array<double, 6> gain{1, 1, 1, 1, 1, 1};  ///< per device axis, -1 to 1: below 0 turned round, 0 off
-  quat R_dn{0.0, 1.0, 0.0, 0.0};       ///< device axes n in the base frame d; GLM's order w x y z
-  vec3 workspace_low_d{-0.1, -0.1, -0.1};  ///< the pose's origin stays in this box
+  quat R_dn{0.0, 1.0, 0.0, 0.0};                 ///< device axes n in the base frame d; GLM's order w x y z
+  vec3 workspace_low_d{-0.1, -0.1, -0.1};        ///< the pose's origin stays in this box
   vec3 workspace_high_d{0.1, 0.1, 0.1};
-  pose T_dh_start{};                   ///< where the handle is when the device is opened; position: where it rests
+  pose T_dh_start{};  ///< where the handle is when the device is opened; position: where it rests
   std::int64_t longest_step_ns = 20'000'000;  ///< a later tick moves the pose by this much time only
 };
 
-/// Integrates or follows. Whatever comes in, the pose is finite, of unit length and in its box, and moves no faster than
-/// the configuration says.
+/// Integrates or follows. Whatever comes in, the pose is finite, of unit length and in its box, and moves no faster
+/// than the configuration says.
 /// @rt safe after construction
 class spacemouse_motion {
  public:

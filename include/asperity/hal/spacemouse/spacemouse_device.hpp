@@ -46,7 +46,8 @@ struct spacemouse_config {
   spacemouse_motion_config motion{};
   /// A cap that is pushed reports every 8 or 16 ms. After this time without a report the sample is left to grow old.
   std::int64_t silence_limit_ns = 100'000'000;
-  /// A wrench up to this passes the gate and is kept in shown(), for a picture of it. Zero, as the device puts out none.
+  /// A wrench up to this passes the gate and is kept in shown(), for a picture of it. Zero, as the device puts out
+  /// none.
   double shown_force_n = 0.0;
   double shown_torque_n_m = 0.0;
 };
@@ -74,7 +75,8 @@ struct spacemouse_counts {
 ///   Limits are zero, so the output gate lets none through, unless spacemouse_config says what may be shown.
 /// - `lost` counts axis reports that could not be used, and on classic devices one for every report 1 that follows on a
 ///   report 1 (or 2 on 2), for they take turns.
-/// - Unplugged while ready: absent, and open() looks for it again, wherever it is by then. Unplugged while armed: fault.
+/// - Unplugged while ready: absent, and open() looks for it again, wherever it is by then. Unplugged while armed:
+/// fault.
 /// @rt read, write and disarm are as safe as the link
 class spacemouse_device {
  public:

@@ -136,7 +136,8 @@ class virtual_hid {
       queued* next = nullptr;
       for (queued& q : from.waiting) {
         if (q.due_ns > now_ns) continue;
-        if (next == nullptr || q.due_ns < next->due_ns || (q.due_ns == next->due_ns && q.order < next->order)) next = &q;
+        if (next == nullptr || q.due_ns < next->due_ns || (q.due_ns == next->due_ns && q.order < next->order))
+          next = &q;
       }
       if (next == nullptr) return false;
       size = std::min(next->size, report.size());  // as the kernel: what does not fit is lost

@@ -20,9 +20,9 @@ struct hid_listing {
   std::string serial;  ///< empty where the device has none
   std::string product;
   std::string manufacturer;
-  int interface_number = -1;                     ///< -1 where it is not on USB
-  std::vector<std::uint8_t> report_descriptor;   ///< empty where the system does not give it
-  std::optional<std::string> not_openable{};     ///< why, and how to mend it
+  int interface_number = -1;                    ///< -1 where it is not on USB
+  std::vector<std::uint8_t> report_descriptor;  ///< empty where the system does not give it
+  std::optional<std::string> not_openable{};    ///< why, and how to mend it
 };
 
 /// The same wherever the device is plugged in: "046d:c626", with ":serial" where it has one. Two devices of one kind

@@ -35,7 +35,8 @@ class spacemouse_driver final : public device_driver {
 };
 
 /// The listed interface as the driver shows it; nothing where it is no SpaceMouse.
-[[nodiscard]] std::optional<device_listing> as_spacemouse(const hid_listing& which, const spacemouse_config& config = {});
+[[nodiscard]] std::optional<device_listing> as_spacemouse(const hid_listing& which,
+                                                          const spacemouse_config& config = {});
 
 /// Which of several interfaces a device remembered by identity and last path is now.
 /// @return io_failed where it is not there, or where two could be it
