@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <thread>
 
+#include <asperity/control/virtual_session.hpp>
 #include <asperity/hal/virtual/virtual_hid.hpp>
 #include <asperity/hid/hidraw_link.hpp>
 #include <asperity/hid/spacemouse_driver.hpp>
@@ -13,6 +14,7 @@
 #include "enumerate.hpp"
 #include "hal/peers/fake_spacemouse.hpp"
 #include "kernel/uhid_device.hpp"
+#include "unit/control/analytic_wall.hpp"
 
 #if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
 #define ASPERITY_COUNTS_ALLOCATIONS 1
@@ -230,14 +232,14 @@ TEST_F(kernel_hid, takes_no_other_device_for_the_listed_one) {
 TEST_F(kernel_hid, survives_nodes_that_vanish_while_they_are_opened) {
   int opened = 0;
   int refused = 0;
-  for (int n = 0; n < 40; ++n) {
+  for (int n = 0; n < 20; ++n) {
     uhid_device uhid;
     const bytes descriptor = fake_spacemouse::descriptor(spacemouse_kind::classic);
     ASSERT_TRUE(uhid.plug_in(0x256f, 0xc635, "x", "V", descriptor));
     const auto listing = wait_for("256f:c635:V");
     ASSERT_TRUE(listing);
     std::thread leaver([&] {
-      std::this_thread::sleep_for(std::chrono::microseconds(97 * n));
+      std::this_thread::sleep_for(std::chrono::microseconds(197 * n));
       static_cast<void>(uhid.unplug());
     });
     int refused_in_a_row = 0;
@@ -381,6 +383,48 @@ TEST_F(kernel_hid, drives_a_spacemouse_from_end_to_end) {
     std::printf("%s: %s, then %s\n", p.identity().c_str(), first_path.c_str(), p.listing->path.c_str());
     EXPECT_NE(p.listing->path, first_path);
   }
+}
+
+struct last_record {
+  session_record r{};
+  void operator()(const session_record& now) noexcept { r = now; }
+};
+
+// A whole session: the firmware's reports go through the kernel, the driver and both loops, and the wrench is shown.
+TEST_F(kernel_hid, moves_a_probe_against_a_wall) {
+  plugged p(spacemouse_kind::combined);
+  ASSERT_TRUE(p.listing);
+  spacemouse_config config;
+  config.motion.T_dh_start.position = {0, 0, 0.01};
+  config.shown_force_n = 5.0;
+  spacemouse_driver driver(config);
+  const auto list = driver.list();
+  ASSERT_TRUE(list && !list->empty());
+  auto device = driver.make_spacemouse(list->front());
+  ASSERT_TRUE(device && device->open() && device->arm());
+  virtual_session<test_support::analytic_wall, spacemouse_device, last_record> session({}, {{pose{}}, vec3(0.0)},
+                                                                                       *device, control_config{});
+  const auto run_to = [&](std::int64_t until_ns) {
+    status s = status::ok;
+    while (session.now_ns() < until_ns) {
+      p.step(session.now_ns());
+      s = session.step();
+    }
+    return s;
+  };
+  const session_record& seen = session.device().observer().r;
+  p.mouse.push({0, 0, 350, 0, 0, 0});  // down
+  EXPECT_EQ(run_to(150 * ms), status::ok);
+  p.mouse.release();
+  EXPECT_EQ(run_to(1000 * ms), status::ok);
+  EXPECT_NEAR(seen.T_dh.position.z, -0.005, 0.0017);
+  EXPECT_GT(seen.on_probe_w.force.z, 0.3);
+  EXPECT_GT(device->shown().force.z, 0.3);
+  p.unplug();
+  static_cast<void>(session.step());
+  EXPECT_EQ(device->shown().force.z, 0.0);
+  EXPECT_EQ(session.device().gate().fault(), gate_fault::device_failed);
+  EXPECT_EQ(device->fault(), spacemouse_fault::unplugged);
 }
 
 }  // namespace
