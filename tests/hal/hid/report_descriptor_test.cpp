@@ -113,6 +113,7 @@ TEST(report_descriptor, says_what_is_wrong_and_keeps_nothing) {
   EXPECT_EQ(status_of({0xa1, 0x01}), descriptor_status::unbalanced);
   EXPECT_EQ(status_of({0xc0}), descriptor_status::unbalanced);
   EXPECT_EQ(status_of({0xb4}), descriptor_status::unbalanced);
+  EXPECT_EQ(status_of({0xb4, 0xa4}), descriptor_status::unbalanced);
   EXPECT_EQ(status_of({0xa4}), descriptor_status::unbalanced);
   EXPECT_EQ(status_of({0x85, 0x00}), descriptor_status::bad_item);
   EXPECT_EQ(status_of({0x19, 0x05, 0x29, 0x02}), descriptor_status::bad_item);

@@ -143,6 +143,68 @@ TEST(spacemouse_session, shuts_its_gate_when_a_pushed_cap_falls_silent) {
   EXPECT_EQ(d.device.shown().force, vec3(0.0));
 }
 
+// Every fault of the link begins at a seeded tick of a session that presses on the wall and shows the wrench.
+TEST(spacemouse_session, keeps_its_limits_under_every_fault_of_the_link) {
+  struct row {
+    link_fault kind;
+    const char* name;
+    bool ends;  // whether the link itself says that something is wrong
+  };
+  const std::array rows{row{link_fault::lose, "lose", false},       row{link_fault::delay, "delay", false},
+                        row{link_fault::reorder, "reorder", false}, row{link_fault::duplicate, "duplicate", false},
+                        row{link_fault::shorten, "shorten", false}, row{link_fault::flip_bit, "flip bit", false},
+                        row{link_fault::bus_off, "bus off", false}, row{link_fault::answer, "answer failed", true},
+                        row{link_fault::unplug, "unplug", true}};
+  std::mt19937_64 bits(23);
+  for (const row& kind : rows) {
+    int shut = 0;
+    double largest_n = 0.0;
+    std::int64_t longest_ns = 0;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      const std::int64_t at = (150 + static_cast<std::int64_t>(bits() % 200)) * ms;
+      const link_event e{.kind = kind.kind, .from_ns = at, .amount_ns = 40 * ms, .with = io_status::failed};
+      desk d(seed % 2 == 0 ? spacemouse_kind::classic : spacemouse_kind::combined, 5.0, {.events = {e}, .seed = seed});
+      d.mouse.push({0, 0, 350, 50, -50, 0});
+      std::int64_t shut_ns = -1;
+      for (std::int64_t t = ms; t <= 700 * ms; t += ms) {
+        if (t == 160 * ms) d.mouse.push({0, 0, 30, 0, 0, 0});  // held
+        d.run_until(t);
+        const double shown_n = glm::length(d.device.shown().force);
+        ASSERT_LE(shown_n, 5.0 * (1 + 1e-9)) << kind.name;
+        largest_n = std::max(largest_n, shown_n);
+        const gate_fault fault = d.session->device().gate().fault();
+        if (fault == gate_fault::none) continue;
+        if (shut_ns < 0) {
+          shut_ns = t;
+          ++shut;
+          ASSERT_TRUE(fault == gate_fault::device_failed || fault == gate_fault::bad_samples) << to_string(fault);
+        }
+        if (shown_n > 0.0) longest_ns = std::max(longest_ns, t - shut_ns);
+        ASSERT_FALSE(d.device.state() == device_state::active && t > shut_ns + 5 * ms) << kind.name;
+      }
+      if (kind.ends) {
+        ASSERT_EQ(d.device.state(), device_state::fault);
+        ASSERT_EQ(d.device.fault(),
+                  kind.kind == link_fault::unplug ? spacemouse_fault::unplugged : spacemouse_fault::read_failed);
+        ASSERT_EQ(d.session->device().gate().fault(), gate_fault::device_failed);
+      } else {
+        ASSERT_NE(d.device.state(), device_state::fault) << kind.name;
+      }
+    }
+    // Lost or useless reports of a pushed cap are a silence, and end it; what still comes through does not.
+    const bool silent = kind.kind == link_fault::lose || kind.kind == link_fault::shorten;
+    EXPECT_EQ(shut > 0, silent || kind.ends) << kind.name;
+    EXPECT_GT(largest_n, 0.3) << kind.name;
+    EXPECT_LE(longest_ns, 2 * ms) << kind.name;
+    std::printf("%-14s 8 sessions, largest %.2f N, ", kind.name, largest_n);
+    if (shut == 0) {
+      std::printf("none shut\n");
+    } else {
+      std::printf("%d shut, at zero within %lld ms\n", shut, static_cast<long long>(longest_ns / ms + 1));
+    }
+  }
+}
+
 TEST(spacemouse_session, two_at_once_do_not_touch_each_other) {
   desk a(spacemouse_kind::classic);
   desk b(spacemouse_kind::combined);
