@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <hidapi.h>
@@ -14,7 +15,7 @@ namespace {
 std::string utf8(const wchar_t* text) {
   std::string out;
   for (; text != nullptr && *text != L'\0'; ++text) {
-    auto c = static_cast<std::uint32_t>(*text);
+    auto c = std::bit_cast<std::uint32_t>(*text);
     if (c > 0x10ffff || (c >= 0xd800 && c < 0xe000)) c = '?';
     if (c < 0x80) {
       out += static_cast<char>(c);
