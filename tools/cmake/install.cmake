@@ -1,13 +1,17 @@
-# The package: find_package(asperity [COMPONENTS io bake gl gl_compute gl_occlusion]), pkg-config for the header-only core, the command.
+# The package: find_package(asperity [COMPONENTS ...]), pkg-config for the header-only core, the command.
 include(CMakePackageConfigHelpers)
 
+set(ASPERITY_TOOLS_COMPONENTS io bake)
+set(ASPERITY_GL_COMPONENTS gl gl_compute gl_occlusion)
+set(ASPERITY_HAL_COMPONENTS hid)
+set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} ${ASPERITY_HAL_COMPONENTS})
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 
 # Core. Each component below has an export file of its own, so that find_package(asperity) asks for GLM and nothing else.
 install(TARGETS asperity asperity_reproducible EXPORT asperity-core FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT asperity-core NAMESPACE asperity:: FILE asperity-core.cmake DESTINATION ${_config_dir})
 
-foreach(_component io bake gl gl_compute gl_occlusion)
+foreach(_component ${ASPERITY_COMPONENTS})
   if(TARGET asperity_${_component})
     set_target_properties(asperity_${_component} PROPERTIES EXPORT_NAME ${_component})
     install(TARGETS asperity_${_component} EXPORT asperity-${_component}
@@ -17,6 +21,11 @@ foreach(_component io bake gl gl_compute gl_occlusion)
     install(EXPORT asperity-${_component} NAMESPACE asperity:: FILE asperity-${_component}.cmake
             DESTINATION ${_config_dir})
   endif()
+endforeach()
+
+# For a message to people.
+foreach(_kind TOOLS GL HAL)
+  list(JOIN ASPERITY_${_kind}_COMPONENTS ", " ASPERITY_${_kind}_COMPONENTS)
 endforeach()
 
 # What find_dependency has to find before a component is used; the core needs GLM only.
@@ -40,6 +49,10 @@ if(TARGET asperity_command)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/command/manual/asperity.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/command/manual/asperity.bash
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME asperity)
+endif()
+if(ASPERITY_BUILD_HAL)
+  # Where udev looks for the rules of packages: below a prefix of /usr it takes effect by itself.
+  install(FILES ${PROJECT_SOURCE_DIR}/hal/udev/70-asperity.rules DESTINATION lib/udev/rules.d)
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 file(GLOB _schemas CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/reference/*.schema.json)

@@ -1,0 +1,46 @@
+// Finds SpaceMice among the HID devices and opens them. Component asperity::hid.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "asperity/hal/driver.hpp"
+#include "asperity/hal/spacemouse/spacemouse_device.hpp"
+#include "asperity/hid/hid.hpp"
+
+namespace asperity::hid {
+
+/// The driver of the SpaceMouse family (hal/spacemouse/products.hpp).
+///
+/// A device is the multi-axis controller of a product in the table; other interfaces of it are passed over. make()
+/// gives a device that remembers its identity and not its path: its open() takes it where it is by then, at the listed
+/// path where it is still there. Two of one kind have no serial numbers to tell them apart, so when both have moved,
+/// open() says so and takes neither.
+class spacemouse_driver final : public device_driver {
+ public:
+  explicit spacemouse_driver(const spacemouse_config& config = {}) : config_(config) {}
+
+  [[nodiscard]] std::string_view name() const noexcept override { return "spacemouse"; }
+  [[nodiscard]] driver_maturity maturity() const noexcept override { return driver_maturity::protocol_tested; }
+  [[nodiscard]] result<std::vector<device_listing>> list() override;
+  /// @return invalid_argument where the listing is another driver's
+  [[nodiscard]] result<any_device> make(const device_listing& which) override;
+
+  /// As make(), with what only a SpaceMouse has: light, battery, the wrench to show.
+  [[nodiscard]] result<spacemouse_device> make_spacemouse(const device_listing& which);
+
+ private:
+  spacemouse_config config_;
+};
+
+/// The listed interface as the driver shows it; nothing where it is no SpaceMouse.
+[[nodiscard]] std::optional<device_listing> as_spacemouse(const hid_listing& which,
+                                                          const spacemouse_config& config = {});
+
+/// Which of several interfaces a device remembered by identity and last path is now.
+/// @return io_failed where it is not there, or where two could be it
+[[nodiscard]] result<hid_listing> find_again(const std::vector<hid_listing>& now, const std::string& identity,
+                                             const std::string& last_path);
+
+}  // namespace asperity::hid
