@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "asperity/gl/program.hpp"
 #include "contact_slot.hpp"
 #include "record_attributes.hpp"
 #include "shaders.hpp"
@@ -41,12 +40,12 @@ result<difference_pass> difference_pass::make(const context_ptr& context, const 
 
   const std::array stages{shader_stage{GL_VERTEX_SHADER, definitions, {shaders::difference_vertex_glsl}},
                           shader_stage{GL_FRAGMENT_SHADER, definitions, {shaders::difference_fragment_glsl}}};
-  auto program = make_program(context, stages, "the differences of the occlusion depth");
+  auto program = share_program(context, stages, "the differences of the occlusion depth");
   if (!program) return program.error();
   out.program_ = *std::move(program);
-  out.atlas_size_ = gl.GetUniformLocation(out.program_.get(), "atlas_size");
-  out.tile_pixels_ = gl.GetUniformLocation(out.program_.get(), "tile_pixels");
-  out.samples_ = gl.GetUniformLocation(out.program_.get(), "tile_samples");
+  out.atlas_size_ = gl.GetUniformLocation(out.program_->get(), "atlas_size");
+  out.tile_pixels_ = gl.GetUniformLocation(out.program_->get(), "tile_pixels");
+  out.samples_ = gl.GetUniformLocation(out.program_->get(), "tile_samples");
 
   out.vertices_ = make_record_vertices<difference_record>(context);
   return out;
@@ -61,7 +60,7 @@ void difference_pass::draw(std::size_t first, std::size_t count, GLuint heights)
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthFunc(GL_ALWAYS);
   gl.DepthMask(GL_TRUE);
-  gl.UseProgram(program_.get());
+  gl.UseProgram(program_->get());
   gl.Uniform2f(atlas_size_, static_cast<float>(atlas_.width()), static_cast<float>(atlas_.height()));
   gl.Uniform1f(tile_pixels_, static_cast<float>(atlas_.tile));
   gl.Uniform2i(samples_, tile_samples_[0], tile_samples_[1]);

@@ -7,6 +7,7 @@
 #include "asperity/gl/functions.hpp"
 #include "asperity/gl/mapped_buffer.hpp"
 #include "asperity/gl/names.hpp"
+#include "asperity/gl/program.hpp"
 #include "tile_layout.hpp"
 
 namespace asperity::gl {
@@ -39,7 +40,8 @@ class difference_pass {
  private:
   tile_atlas atlas_;
   std::array<int, 2> tile_samples_{};
-  owned_name depth_, framebuffer_, vertices_, program_;
+  owned_name depth_, framebuffer_, vertices_;
+  program_ptr program_;
   mapped_buffer records_;
   GLint atlas_size_ = 0, tile_pixels_ = 0, samples_ = 0;
 };

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "asperity/gl/program.hpp"
 #include "contact_slot.hpp"
 #include "record_attributes.hpp"
 #include "shaders.hpp"
@@ -61,12 +60,12 @@ result<height_pass> height_pass::make(const context_ptr& context, const tile_atl
 
   const std::array stages{shader_stage{GL_VERTEX_SHADER, definitions, {shaders::height_vertex_glsl}},
                           shader_stage{GL_FRAGMENT_SHADER, definitions, {shaders::height_fragment_glsl}}};
-  auto program = make_program(context, stages, "the heights of the occlusion depth");
+  auto program = share_program(context, stages, "the heights of the occlusion depth");
   if (!program) return program.error();
   out.program_ = *std::move(program);
-  out.atlas_size_ = gl.GetUniformLocation(out.program_.get(), "atlas_size");
-  out.samples_ = gl.GetUniformLocation(out.program_.get(), "tile_samples");
-  out.mirrored_ = gl.GetUniformLocation(out.program_.get(), "mirrored");
+  out.atlas_size_ = gl.GetUniformLocation(out.program_->get(), "atlas_size");
+  out.samples_ = gl.GetUniformLocation(out.program_->get(), "tile_samples");
+  out.mirrored_ = gl.GetUniformLocation(out.program_->get(), "mirrored");
 
   out.vertices_ = make_record_vertices<triangle_record>(context);
   return out;
@@ -95,7 +94,7 @@ void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, c
   gl.DepthFunc(GL_GREATER);
   gl.DepthMask(GL_TRUE);
   gl.ClearDepthf(0.0F);
-  gl.UseProgram(program_.get());
+  gl.UseProgram(program_->get());
   gl.Uniform2f(atlas_size_, static_cast<float>(atlas_.width()), static_cast<float>(atlas_.height()));
   gl.Uniform2i(samples_, tile_samples_[0], tile_samples_[1]);
   gl.ActiveTexture(GL_TEXTURE0);

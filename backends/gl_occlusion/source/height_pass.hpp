@@ -8,6 +8,7 @@
 #include "asperity/gl/functions.hpp"
 #include "asperity/gl/mapped_buffer.hpp"
 #include "asperity/gl/names.hpp"
+#include "asperity/gl/program.hpp"
 #include "asperity/gl/uploaded_model.hpp"
 #include "tile_layout.hpp"
 #include "tile_writer.hpp"
@@ -49,7 +50,8 @@ class height_pass {
   tile_atlas atlas_;
   bool packed_ = false;
   std::array<int, 2> tile_samples_{};
-  owned_name heights_, layers_, framebuffer_, vertices_, program_;
+  owned_name heights_, layers_, framebuffer_, vertices_;
+  program_ptr program_;
   mapped_buffer records_;
   std::array<record_list, 4> lists_;
   GLint atlas_size_ = 0, samples_ = 0, mirrored_ = 0;
