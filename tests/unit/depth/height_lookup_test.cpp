@@ -2,6 +2,8 @@
 #include "asperity/depth/height_lookup.hpp"
 
 #include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
 #include <random>
 
 #include "support/height_models.hpp"
@@ -155,6 +157,65 @@ TEST(HeightLookup, WhereThePatchEndsFirstThePapersLookupStandsIn) {
   EXPECT_GE(beside, side / 2);
   EXPECT_LE(beside, 3 * side);
   for (const double h : l.field.height) EXPECT_TRUE(std::isfinite(h));
+}
+
+/// A face of one triangle with a corner of 12 degrees. Its chart ends two texels outside; beyond lies `other`. The
+/// textured surface stands 8 texels further from the corner than the coarse one, so that what lies over the samples
+/// near the corner would have to be read beyond it.
+model_ptr sharp_corner(const vec3& other) {
+  constexpr double texel_m = 5e-5, length = 160.0;
+  const double half_width = length * std::tan(0.5 * 12.0 * std::numbers::pi / 180.0);
+  const vec2 corner(40.0, 32.0);
+  const std::array<vec2, 3> z{corner, corner + vec2(length, -half_width), corner + vec2(length, half_width)};
+  textured_model m;
+  m.texture.width = 256;
+  m.texture.height = 64;
+  for (const vec2& at : z) m.mesh.positions.emplace_back(texel_m * vec3(at - corner, 0.0));
+  coarse_triangle t{.vertex = {0, 1, 2}, .uv = {}};
+  for (std::size_t k = 0; k < 3; ++k) t.uv[k] = (z[k] + 0.5) / vec2(256.0, 64.0);
+  m.mesh.triangles.push_back(t);
+  const auto outside = [&](const vec2& at) {
+    double nearest = std::numeric_limits<double>::infinity();
+    bool inside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const vec2 from = z[k], along = z[(k + 1) % 3] - from;
+      const double share = std::clamp(glm::dot(at - from, along) / glm::dot(along, along), 0.0, 1.0);
+      nearest = std::min(nearest, glm::length(at - from - share * along));
+      inside = inside && along.x * (at - from).y - along.y * (at - from).x >= 0.0;
+    }
+    return inside ? 0.0 : nearest;
+  };
+  for (int j = 0; j < 64; ++j) {
+    for (int i = 0; i < 256; ++i) {
+      const vec2 at(i, j);
+      const vec3 fine = texel_m * vec3(at - corner + vec2(8.0, 0.0), 2.0);
+      m.texture.texels.emplace_back(outside(at) <= 2.0 ? fine : fine + other);
+    }
+  }
+  return std::make_shared<const textured_model>(std::move(m));
+}
+
+TEST(HeightLookup, PastASharpCornerThePapersLookupStandsIn) {
+  // Beyond the chart: nothing, and another one, 5 mm higher.
+  for (const double other : {std::numeric_limits<double>::quiet_NaN(), 5e-3}) {
+    lookup l{sharp_corner(vec3(0.0, 0.0, other))};
+    const contact_window w = window_downwards(8e-4, vec3(7e-4, 0.0, 0.0));
+    const std::size_t above = l.run(w, {face_down(), vec3(0.0)}, parallax_mode::exact);
+    const auto beside = static_cast<std::size_t>(std::count(l.field.kind.begin(), l.field.kind.end(), hit::beside));
+    std::size_t covered = 0;
+    const sample_grid grid(48, w.half_size_m);
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const double x = grid.position(i).x + 7e-4;
+      const bool there = x > 0.0 && std::fabs(grid.position(i).y) < x * std::tan(6.0 * std::numbers::pi / 180.0);
+      covered += there ? 1 : 0;
+      if (l.field.kind[i] != hit::none) {
+        EXPECT_NEAR(l.field.height[i], 1e-4, 1e-9) << x;
+      }
+    }
+    EXPECT_NEAR(static_cast<double>(above + beside), static_cast<double>(covered), 2.0);
+    EXPECT_GT(beside, 5U);
+    EXPECT_GT(above, 3 * beside);
+  }
 }
 
 }  // namespace
