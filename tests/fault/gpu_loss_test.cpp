@@ -64,8 +64,8 @@ class lost_gpu : public command_test, public testing::WithParamInterface<lost_ba
   }
   [[nodiscard]] static arguments session(const arguments& options, double seconds) {
     const std::string block = (small_models() / "block.glb").string();
-    arguments all{"run",    "--probe", block,     "--fixed", block,       "--probe-pose",         "0 0 0.0199 0 0 0 1",
-                  "--grid", "16",      "--quiet", "--json",  "--seconds", std::to_string(seconds)};
+    arguments all{"run",   "--probe", block, "--fixed", block,    "--probe-pose", "0 0 0.0199 0 0 0 1",   "--motion",
+                  "press", "--grid",  "16",  "--quiet", "--json", "--seconds",    std::to_string(seconds)};
     all.insert(all.end(), options.begin(), options.end());
     return all;
   }
@@ -80,6 +80,7 @@ class lost_gpu : public command_test, public testing::WithParamInterface<lost_ba
 
 TEST_P(lost_gpu, the_cpu_answers_in_the_same_tick_and_every_such_tick_is_counted) {
   constexpr double seconds = 0.1;
+  constexpr int answers = 80;  // by then the probe stays in touch
   const auto recorded = [&](const arguments& options, const char* file, const process_options& how) {
     const outcome done = run(session(with(options, {"--record", path(file)}), seconds), how);
     EXPECT_EQ(done.exit_status, 0) << done.err;
@@ -87,22 +88,23 @@ TEST_P(lost_gpu, the_cpu_answers_in_the_same_tick_and_every_such_tick_is_counted
   };
   static_cast<void>(recorded(GetParam().cpu, "cpu.csv", {}));
   const json kept = recorded(with(GetParam().gl, {"--fallback"}), "kept.csv", after(1'000'000)).at("gpu");
-  const json early = recorded(with(GetParam().gl, {"--fallback"}), "early.csv", after(20)).at("gpu");
-  const json later = recorded(with(GetParam().gl, {"--fallback"}), "later.csv", after(21)).at("gpu");
+  const json early = recorded(with(GetParam().gl, {"--fallback"}), "early.csv", after(answers)).at("gpu");
+  const json later = recorded(with(GetParam().gl, {"--fallback"}), "later.csv", after(answers + 1)).at("gpu");
   EXPECT_EQ(kept.at("fallback_ticks"), 0);
   for (const json* lost : {&early, &later}) {
     EXPECT_EQ(lost->at("failed_ticks"), 0) << "a tick went unanswered";
     EXPECT_EQ(lost->at("ticks"), kept.at("ticks"));
-    EXPECT_GT(lost->at("fallback_ticks"), 20);
+    EXPECT_GE(lost->at("fallback_ticks"), 20);
   }
   // One answer more of the GPU's is one less of the CPU's: the tick of the loss is among those.
   EXPECT_EQ(early.at("fallback_ticks").get<int>(), later.at("fallback_ticks").get<int>() + 1);
-  EXPECT_EQ(early.at("fallback_ticks").get<int>() + 20, early.at("ticks").get<int>());
+  EXPECT_EQ(early.at("fallback_ticks").get<int>() + answers, early.at("ticks").get<int>());
 
-  // Nobody feels the loss: the probe goes where it goes on the CPU, in contact all the way.
+  // Nobody feels the loss: the probe goes where it goes on the CPU, in contact before and after.
   const std::string on_cpu = read("cpu.csv"), lost = read("early.csv");
   const std::vector<double> contacts = column(lost, "contacts");
-  EXPECT_TRUE(std::all_of(contacts.begin(), contacts.end(), [](double n) { return n > 0.0; }));
+  ASSERT_GT(contacts.size(), 95U);
+  EXPECT_TRUE(std::all_of(contacts.begin() + answers - 5, contacts.end(), [](double n) { return n > 0.0; }));
   EXPECT_EQ(contacts, column(on_cpu, "contacts"));
   double apart = 0.0;
   for (const char* name : {"probe_x_m", "probe_y_m", "probe_z_m"}) {
@@ -110,7 +112,7 @@ TEST_P(lost_gpu, the_cpu_answers_in_the_same_tick_and_every_such_tick_is_counted
     ASSERT_EQ(a.size(), b.size());
     for (std::size_t i = 0; i < a.size(); ++i) apart = std::max(apart, std::fabs(a[i] - b[i]));
   }
-  std::printf("%s, lost after 20 of %d ticks: %.1e m from the CPU's session\n", GetParam().name,
+  std::printf("%s, lost after %d of %d ticks: %.1e m from the CPU's session\n", GetParam().name, answers,
               early.at("ticks").get<int>(), apart);
   EXPECT_LE(apart, GetParam().position_m);
 }
@@ -124,7 +126,7 @@ TEST_P(lost_gpu, without_a_fallback_the_session_ends_and_says_why) {
   EXPECT_NE(done.err.find("the wrench went to zero"), std::string::npos) << done.err;
   EXPECT_NE(done.err.find("--fallback"), std::string::npos) << done.err;
   EXPECT_EQ(std::count(done.err.begin(), done.err.end(), '\n'), 1) << done.err;
-  // Lost in its first tick, and in a single query.
+  // Lost in its first tick.
   EXPECT_EQ(run(session(GetParam().gl, 0.1), after(0)).exit_status, 1);
 }
 
