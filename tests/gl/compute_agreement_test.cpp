@@ -3,11 +3,13 @@
 #include <cmath>
 #include <cstdio>
 #include <gtest/gtest.h>
+#include <limits>
 #include <optional>
 
 #include "asperity/gl/compute_depth.hpp"
 #include "gl/seeded_contacts.hpp"
 #include "support/gl_context.hpp"
+#include "support/sharp_corner.hpp"
 
 namespace asperity::gl {
 namespace {
@@ -111,6 +113,29 @@ TEST_F(GlComputeAgreement, OverSeededContacts) {
   }
   run("soft max, single", context, soft, arithmetic::single_precision, 260, {1e-6, 1e-6, 2e-2, 1e-1});
   run("central difference, single", context, differences, arithmetic::single_precision, 40, {1e-6, 1e-6, 1e-3, 0.0});
+}
+
+TEST_F(GlComputeAgreement, PastASharpCorner) {
+  test_support::plate_spec fixed;
+  fixed.texels = 64;
+  for (const double other : {std::numeric_limits<double>::quiet_NaN(), 5e-3}) {
+    const scene s{test_support::sharp_corner(vec3(0.0, 0.0, other)), {test_support::make_plate(fixed)}};
+    const contact_window w = test_support::window_downwards(8e-4, vec3(7e-4, 0.0, 0.0));
+    const pose T_wa{test_support::face_down(), vec3(0.0)};
+    const depth_settings settings{.grid = 48};
+    cpu_depth reference(s, settings);
+    const penetration wanted = test_support::measure_whole(reference, s, w, T_wa);
+    EXPECT_NEAR(wanted.depth_m, 1e-4, 1e-9);
+    EXPECT_FALSE(has(wanted.flags, depth_flag::bad_texel));
+    for (const arithmetic a : {arithmetic::automatic, arithmetic::single_precision}) {
+      auto made = compute_depth::make(context, s, settings, {.arithmetic = a});
+      ASSERT_TRUE(made) << made.error().message;
+      const penetration found = test_support::measure_whole(*made, s, w, T_wa);
+      EXPECT_EQ(found.flags, wanted.flags);
+      EXPECT_EQ(found.samples, wanted.samples);
+      EXPECT_NEAR(found.depth_m, wanted.depth_m, 1.6e-9);
+    }
+  }
 }
 
 }  // namespace

@@ -125,7 +125,10 @@ result<void> check(const render_options& options) {
   const backend_choice& backend = backend_of(options);
   if (!is_built(backend)) {
     return error{error_code::unsupported,
-                 "the depth backend " + options.backend + " is not part of this build: use --backend cpu"};
+                 "the depth backend " + options.backend + " is not part of this build: use --backend cpu" +
+                     (backend.on_gpu ? ", or configure with -DASPERITY_BUILD_GL=ON and OpenGL's headers (Debian: "
+                                       "libegl-dev, libgl-dev)"
+                                     : "")};
   }
   if (backend.shared == nullptr && options.contacts == "shared") {
     return contradiction("--backend " + options.backend +

@@ -87,6 +87,27 @@ rvec3 distances(chart c, rvec2 z) {
   return rvec3(dot(c.outside_0, at), dot(c.outside_1, at), dot(c.outside_2, at));
 }
 
+// True up to so many texels outside of the triangle. Beside an acute corner that is less than its edges alone say.
+bool within(chart c, rvec3 outside, real reach) {
+  rvec2 normal[3] = rvec2[3](c.outside_0.yz, c.outside_1.yz, c.outside_2.yz);  // unit, inward
+  bool inside = true;
+  for (int k = 0; k < 3; ++k) {
+    real d = outside[k];
+    if (d >= real(0.0)) continue;
+    inside = false;
+    // How far past the ends of the edge, where another one starts.
+    real past = real(0.0);
+    for (int other = 1; other < 3; ++other) {
+      int j = (k + other) % 3;
+      real c_kj = dot(normal[k], normal[j]);
+      real s_kj = sqrt(max(real(1.0) - c_kj * c_kj, real(1e-12)));
+      past = min(past, (outside[j] - c_kj * d) / s_kj);
+    }
+    if (d * d + past * past <= reach * reach) return true;
+  }
+  return inside;
+}
+
 // Point of the textured surface over a sample, or beside it. There is one place that reads a triangle and one that reads
 // texels, for both bodies and both ways of looking up: a shader is compiled as often as it names them.
 surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owner, rvec2 uv) {
@@ -113,7 +134,14 @@ surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owne
       enter = -1;
     }
     if (step == 0 || !holds(cell, c.base, z)) cell = read_cell(fixed_body, map, c.base, z);
-    if (!cell.whole) break;
+    if (!cell.whole) {
+      // A hole in the triangle is one in the surface; outside, the chart ends sooner than its gutter should.
+      if (beside || within(c, distances(c, z), real(0.0))) break;
+      beside = true;
+      enter = owner;
+      at = uv;
+      continue;
+    }
     surface_hit h = hit_at(cell, c.base, z);
     if (beside) return h;
     real det = h.along_x.x * h.along_y.y - h.along_x.y * h.along_y.x;
@@ -132,9 +160,8 @@ surface_hit look_up(bool fixed_body, window_map map, patch_place place, int owne
       z += dz;
       rvec3 outside = distances(c, z);
       int outermost = outside.x <= outside.y && outside.x <= outside.z ? 0 : (outside.y <= outside.z ? 1 : 2);
-      real farthest = min(outside.x, min(outside.y, outside.z));
       beside = step + 1 == SEARCH_STEPS;
-      if (!beside && farthest < real(-1.0)) {
+      if (!beside && !within(c, outside, real(1.0))) {
         enter = integers[c.integers + 2 + (outermost + 1) % 3];
         beside = enter < 0;
         rvec3 bary = outside / numbers3(c.numbers + TRIANGLE_ALTITUDES);

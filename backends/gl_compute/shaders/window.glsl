@@ -15,11 +15,13 @@ uniform int side;  // samples per side of the window
 
 rvec3 numbers3(int at) { return rvec3(numbers[at], numbers[at + 1], numbers[at + 2]); }
 
-// Body coordinates to window coordinates. The window's centre in the body's frame is near + rest: texels are single
-// precision, so the difference to `near` loses nothing, and `rest` is what `near` leaves.
+// Body coordinates to window coordinates. Texels and `near` are single precision and close to each other: their
+// difference loses nothing. What rounding `near` left over comes in window coordinates: as a vector to be taken off as
+// well, it would be lost to a compiler that adds the two up first, which not every GLSL can forbid.
 struct window_map {
   rvec3 u, v, n;
-  rvec3 near, rest;
+  rvec3 near;  // the window's centre in the body's frame, rounded
+  rvec3 rest;  // what that leaves, in window coordinates
 };
 
 window_map read_map(int at) {
@@ -28,11 +30,7 @@ window_map read_map(int at) {
 
 rvec3 direction(window_map map, rvec3 d) { return rvec3(dot(map.u, d), dot(map.v, d), dot(map.n, d)); }
 
-rvec3 point(window_map map, vec3 p) {
-  precise rvec3 to_near = rvec3(p) - map.near;
-  precise rvec3 to_centre = to_near - map.rest;
-  return direction(map, to_centre);
-}
+rvec3 point(window_map map, vec3 p) { return direction(map, rvec3(p) - map.near) - map.rest; }
 
 // f(u, v) over a projected triangle
 real affine(int at, rvec2 uv) { return numbers[at] + uv.x * numbers[at + 1] + uv.y * numbers[at + 2]; }

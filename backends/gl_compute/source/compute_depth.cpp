@@ -20,12 +20,11 @@ namespace asperity::gl {
 namespace {
 
 /// Names of the shader's types in single and double precision, and what its settings switch on.
-std::string definitions_of(const depth_settings& s, bool doubles, const context_facts& facts) {
+std::string definitions_of(const depth_settings& s, bool doubles) {
   std::string text = doubles ? "#define real double\n#define rvec2 dvec2\n#define rvec3 dvec3\n"
                                "#define TOLERANCE 1e-10\n#define LAST_TOLERANCE 1e-10\n#define SMALLEST_WEIGHT 1e-37\n"
                              : "#define real float\n#define rvec2 vec2\n#define rvec3 vec3\n"
                                "#define TOLERANCE 5e-7\n#define LAST_TOLERANCE 1e-5\n#define SMALLEST_WEIGHT 1e-37\n";
-  if (facts.dialect == dialect::es && facts.minor < 2) text += "#define precise\n";
   if (s.gradient == gradient_scheme::soft_max) text += "#define SOFT_MAX\n";
   if (s.parallax == parallax_mode::exact) text += "#define EXACT_PARALLAX\n";
   if (s.taper_window) text += "#define TAPER_WINDOW\n";
@@ -131,7 +130,7 @@ result<compute_depth> compute_depth::make(context_ptr context, const scene& s, c
   p->models = *std::move(models);
   if (result<void> r = p->take_buffers(); !r) return r.error();
   const shader_stage stage{GL_COMPUTE_SHADER,
-                           definitions_of(settings, p->doubles, facts),
+                           definitions_of(settings, p->doubles),
                            {shaders::window_glsl, shaders::lookup_glsl, shaders::taper_glsl, shaders::measure_glsl}};
   result<program_ptr> program = share_program(context, std::span(&stage, 1), "the compute depth");
   if (!program) return program.error();

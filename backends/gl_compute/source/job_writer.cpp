@@ -204,7 +204,8 @@ void job_writer::write_header(const contact& c, const pose& T_wa, const pose& T_
     const vec3 centre_b = glm::conjugate(T->rotation) * (c.window.centre_w - T->position);
     const vec3 near(numbers.rounded(centre_b.x), numbers.rounded(centre_b.y), numbers.rounded(centre_b.z));
     numbers.add_vector(near);
-    numbers.add_vector(centre_b - near);
+    const vec3 rest = centre_b - near;
+    numbers.add_vector(vec3(glm::dot(map.u_b, rest), glm::dot(map.v_b, rest), glm::dot(map.n_b, rest)) / half);
   }
   numbers.add(pairs_[c.body].tau_m / half);
   numbers.add(taper_width(sample_grid(settings_.grid, half)) / half);

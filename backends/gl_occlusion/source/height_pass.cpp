@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "asperity/gl/program.hpp"
 #include "contact_slot.hpp"
 #include "record_attributes.hpp"
 #include "shaders.hpp"
@@ -11,6 +10,29 @@ namespace asperity::gl {
 namespace {
 
 constexpr float no_surface = -1e30F;
+
+result<drawn_atlas> make_atlas(const context_ptr& context, const tile_atlas& tiles, std::uint32_t contacts,
+                               bool packed) {
+  drawn_atlas out{.contacts = contacts, .tiles = tiles};
+  auto heights = make_texture(context, packed ? GL_RGBA32F : GL_R32F, tiles.width(), tiles.height(),
+                              "occlusion depth: the tiles of heights");
+  if (!heights) return heights.error();
+  out.colour = *std::move(heights);
+  auto layers = make_texture(context, GL_DEPTH_COMPONENT32F, tiles.width(), tiles.height(),
+                             "occlusion depth: the layers of the heights");
+  if (!layers) return layers.error();
+  out.depth = *std::move(layers);
+  const functions& gl = context->gl();
+  out.framebuffer = make_name(context, name_kind::framebuffer);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, out.framebuffer.get());
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, out.colour.get(), 0);
+  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, out.depth.get(), 0);
+  const GLenum complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
+  gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+  if (complete == GL_FRAMEBUFFER_COMPLETE) return out;
+  return error{error_code::unsupported, "occlusion depth: " + context->facts().renderer +
+                                            " cannot render to floating-point textures; use another backend"};
+}
 
 }  // namespace
 
@@ -23,21 +45,17 @@ std::string tile_definitions(std::uint32_t depth_bits, bool packed) {
   return text;
 }
 
-result<height_pass> height_pass::make(const context_ptr& context, const tile_atlas& atlas, bool packed,
-                                      const std::string& definitions, std::array<int, 2> tile_samples,
+result<height_pass> height_pass::make(const context_ptr& context, const tile_atlas& largest, std::uint32_t contacts,
+                                      bool packed, const std::string& definitions, std::array<int, 2> tile_samples,
                                       std::size_t records) {
   height_pass out;
-  out.atlas_ = atlas;
   out.packed_ = packed;
   out.tile_samples_ = tile_samples;
-  auto heights = make_texture(context, packed ? GL_RGBA32F : GL_R32F, atlas.width(), atlas.height(),
-                              "occlusion depth: the tiles of heights");
-  if (!heights) return heights.error();
-  out.heights_ = *std::move(heights);
-  auto layers = make_texture(context, GL_DEPTH_COMPONENT32F, atlas.width(), atlas.height(),
-                             "occlusion depth: the layers of the heights");
-  if (!layers) return layers.error();
-  out.layers_ = *std::move(layers);
+  for (const std::uint32_t room : atlas_rooms(contacts)) {
+    auto atlas = make_atlas(context, largest.with_room(room), room, packed);
+    if (!atlas) return atlas.error();
+    out.atlases_.push_back(*std::move(atlas));
+  }
   const std::size_t lists = out.lists().size();
   auto memory = mapped_buffer::make(context, lists * records * sizeof(triangle_record), direction::to_device,
                                     "occlusion depth: triangles");
@@ -48,35 +66,24 @@ result<height_pass> height_pass::make(const context_ptr& context, const tile_atl
   }
 
   const functions& gl = context->gl();
-  out.framebuffer_ = make_name(context, name_kind::framebuffer);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, out.framebuffer_.get());
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, out.heights_.get(), 0);
-  gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, out.layers_.get(), 0);
-  const GLenum complete = gl.CheckFramebufferStatus(GL_FRAMEBUFFER);
-  gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
-  if (complete != GL_FRAMEBUFFER_COMPLETE) {
-    return error{error_code::unsupported, "occlusion depth: " + context->facts().renderer +
-                                              " cannot render to floating-point textures; use another backend"};
-  }
-
   const std::array stages{shader_stage{GL_VERTEX_SHADER, definitions, {shaders::height_vertex_glsl}},
                           shader_stage{GL_FRAGMENT_SHADER, definitions, {shaders::height_fragment_glsl}}};
-  auto program = make_program(context, stages, "the heights of the occlusion depth");
+  auto program = share_program(context, stages, "the heights of the occlusion depth");
   if (!program) return program.error();
   out.program_ = *std::move(program);
-  out.atlas_size_ = gl.GetUniformLocation(out.program_.get(), "atlas_size");
-  out.samples_ = gl.GetUniformLocation(out.program_.get(), "tile_samples");
-  out.mirrored_ = gl.GetUniformLocation(out.program_.get(), "mirrored");
+  out.atlas_size_ = gl.GetUniformLocation(out.program_->get(), "atlas_size");
+  out.samples_ = gl.GetUniformLocation(out.program_->get(), "tile_samples");
+  out.mirrored_ = gl.GetUniformLocation(out.program_->get(), "mirrored");
 
   out.vertices_ = make_record_vertices<triangle_record>(context);
   return out;
 }
 
 void height_pass::clear(std::size_t contacts) noexcept {
-  const functions& gl = heights_.owner()->gl();
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+  const functions& gl = vertices_.owner()->gl();
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer());
   gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(0, 0, static_cast<GLsizei>(atlas_.width()), static_cast<GLsizei>(atlas_.used_height(contacts)));
+  gl.Scissor(0, 0, static_cast<GLsizei>(atlas().width()), static_cast<GLsizei>(atlas().used_height(contacts)));
   gl.ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   const std::array none{no_surface, no_surface, no_surface, no_surface};
   gl.ClearBufferfv(GL_COLOR, 0, none.data());
@@ -84,19 +91,19 @@ void height_pass::clear(std::size_t contacts) noexcept {
 
 void height_pass::draw(std::span<const record_run> runs, std::size_t contacts, const uploaded_scene& models) noexcept {
   if (runs.empty()) return;
-  const functions& gl = heights_.owner()->gl();
+  const functions& gl = vertices_.owner()->gl();
   const std::size_t before_last = (lists().size() - 1) * lists_[0].memory.size();
   records_.send((before_last + lists().back().used) * sizeof(triangle_record));
-  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
-  gl.Viewport(0, 0, static_cast<GLsizei>(atlas_.width()), static_cast<GLsizei>(atlas_.height()));
+  gl.BindFramebuffer(GL_FRAMEBUFFER, framebuffer());
+  gl.Viewport(0, 0, static_cast<GLsizei>(atlas().width()), static_cast<GLsizei>(atlas().height()));
   gl.Enable(GL_SCISSOR_TEST);
-  gl.Scissor(0, 0, static_cast<GLsizei>(atlas_.width()), static_cast<GLsizei>(atlas_.used_height(contacts)));
+  gl.Scissor(0, 0, static_cast<GLsizei>(atlas().width()), static_cast<GLsizei>(atlas().used_height(contacts)));
   gl.Enable(GL_DEPTH_TEST);
   gl.DepthFunc(GL_GREATER);
   gl.DepthMask(GL_TRUE);
   gl.ClearDepthf(0.0F);
-  gl.UseProgram(program_.get());
-  gl.Uniform2f(atlas_size_, static_cast<float>(atlas_.width()), static_cast<float>(atlas_.height()));
+  gl.UseProgram(program_->get());
+  gl.Uniform2f(atlas_size_, static_cast<float>(atlas().width()), static_cast<float>(atlas().height()));
   gl.Uniform2i(samples_, tile_samples_[0], tile_samples_[1]);
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, models.probe->texture.get());

@@ -8,6 +8,7 @@
 #include "asperity/gl/functions.hpp"
 #include "asperity/gl/mapped_buffer.hpp"
 #include "asperity/gl/names.hpp"
+#include "asperity/gl/program.hpp"
 #include "asperity/gl/uploaded_model.hpp"
 #include "tile_layout.hpp"
 #include "tile_writer.hpp"
@@ -26,13 +27,15 @@ class height_pass {
  public:
   height_pass() = default;
   /// @pre the context is current in this thread   @return limit_exceeded | unsupported
-  [[nodiscard]] static result<height_pass> make(const context_ptr& context, const tile_atlas& atlas, bool packed,
-                                                const std::string& definitions, std::array<int, 2> tile_samples,
-                                                std::size_t records);
+  [[nodiscard]] static result<height_pass> make(const context_ptr& context, const tile_atlas& largest,
+                                                std::uint32_t contacts, bool packed, const std::string& definitions,
+                                                std::array<int, 2> tile_samples, std::size_t records);
 
-  [[nodiscard]] const tile_atlas& atlas() const noexcept { return atlas_; }
-  [[nodiscard]] GLuint texture() const noexcept { return heights_.get(); }
-  [[nodiscard]] GLuint framebuffer() const noexcept { return framebuffer_.get(); }
+  /// Takes the smallest atlas for as many, until the next call. @rt safe
+  void make_room(std::size_t contacts) noexcept { now_ = smallest_of(atlases_, contacts); }
+  [[nodiscard]] const tile_atlas& atlas() const noexcept { return atlases_[now_].tiles; }
+  [[nodiscard]] GLuint texture() const noexcept { return atlases_[now_].colour.get(); }
+  [[nodiscard]] GLuint framebuffer() const noexcept { return atlases_[now_].framebuffer.get(); }
   /// Where the records of each quarter go.
   [[nodiscard]] std::span<record_list> lists() noexcept { return std::span(lists_).first(packed_ ? 4 : 1); }
 
@@ -41,15 +44,16 @@ class height_pass {
   /// Renders runs of records, of which each quarter's follow each other. @rt safe, apart from what the driver does
   void draw(std::span<const record_run> runs, std::size_t contacts, const uploaded_scene& models) noexcept;
 
-  [[nodiscard]] std::size_t device_bytes() const noexcept {
-    return heights_.bytes() + layers_.bytes() + records_.size();
-  }
+  [[nodiscard]] std::size_t device_bytes() const noexcept { return bytes_of(atlases_) + records_.size(); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return atlases_.capacity() * sizeof(drawn_atlas); }
 
  private:
-  tile_atlas atlas_;
+  std::vector<drawn_atlas> atlases_;
+  std::size_t now_ = 0;
   bool packed_ = false;
   std::array<int, 2> tile_samples_{};
-  owned_name heights_, layers_, framebuffer_, vertices_, program_;
+  owned_name vertices_;
+  program_ptr program_;
   mapped_buffer records_;
   std::array<record_list, 4> lists_;
   GLint atlas_size_ = 0, samples_ = 0, mirrored_ = 0;

@@ -80,10 +80,10 @@ result<void> occlusion_depth::parts::set_up() {
   const std::string definitions = tile_definitions(options.depth_bits, options.packed);
   // Every triangle may be drawn at rest and after every motion.
   const std::size_t records = options.triangles * (height_tiles() - 1);
-  auto h = height_pass::make(context, for_heights, options.packed, definitions, tile_samples(), records);
+  auto h = height_pass::make(context, for_heights, contacts, options.packed, definitions, tile_samples(), records);
   if (!h) return h.error();
   heights = *std::move(h);
-  auto d = difference_pass::make(context, for_differences, options.depth_bits, definitions, tile_samples());
+  auto d = difference_pass::make(context, for_differences, contacts, options.depth_bits, definitions, tile_samples());
   if (!d) return d.error();
   differences = *std::move(d);
   auto q = query_pass::make(context, options.contacts, writer.settings().grid, options.depth_bits, options.packed,
@@ -150,8 +150,8 @@ std::size_t occlusion_depth::device_bytes() const noexcept {
 }
 std::size_t occlusion_depth::heap_bytes() const noexcept {
   const parts& p = *parts_;
-  return sizeof(parts) + p.writer.heap_bytes() + p.queries.heap_bytes() +
-         asperity::heap_bytes(p.models.fixed, p.slots, p.slot_of, p.look_for_bad, p.runs);
+  return sizeof(parts) + p.writer.heap_bytes() + p.queries.heap_bytes() + p.heights.heap_bytes() +
+         p.differences.heap_bytes() + asperity::heap_bytes(p.models.fixed, p.slots, p.slot_of, p.look_for_bad, p.runs);
 }
 
 }  // namespace asperity::gl

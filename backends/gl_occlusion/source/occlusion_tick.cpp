@@ -182,6 +182,8 @@ penetration occlusion_depth::parts::answer(const scene_pose& at, const contact& 
 
 status occlusion_depth::parts::draw(const scene_pose& at, const contact_set& contacts) noexcept {
   for (record_list& list : heights.lists()) list.used = 0;
+  heights.make_room(contacts.size());
+  differences.make_room(contacts.size());
   write_at_rest(at, contacts);
   if (!records_fit()) return status::capacity_reached;
   if (std::none_of(slots.begin(), slots.end(), [](const contact_slot& s) { return s.visible; })) return status::ok;

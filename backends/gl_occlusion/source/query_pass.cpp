@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "asperity/gl/program.hpp"
 #include "shaders.hpp"
 
 namespace asperity::gl {
@@ -42,7 +41,7 @@ result<query_pass> query_pass::make(const context_ptr& context, std::size_t cont
   const auto program = [&](const shader_source& fragment) {
     const std::array stages{shader_stage{GL_VERTEX_SHADER, all, {shaders::quad_vertex_glsl}},
                             shader_stage{GL_FRAGMENT_SHADER, all, {fragment}}};
-    return make_program(context, stages, "the queries of the occlusion depth");
+    return share_program(context, stages, "the queries of the occlusion depth");
   };
   auto threshold = program(shaders::threshold_fragment_glsl);
   if (!threshold) return threshold.error();
@@ -50,8 +49,8 @@ result<query_pass> query_pass::make(const context_ptr& context, std::size_t cont
   auto samples = program(shaders::sample_fragment_glsl);
   if (!samples) return samples.error();
   out.sample_program_ = *std::move(samples);
-  out.threshold_ = gl.GetUniformLocation(out.threshold_program_.get(), "threshold");
-  const auto of_sample = [&](const char* name) { return gl.GetUniformLocation(out.sample_program_.get(), name); };
+  out.threshold_ = gl.GetUniformLocation(out.threshold_program_->get(), "threshold");
+  const auto of_sample = [&](const char* name) { return gl.GetUniformLocation(out.sample_program_->get(), name); };
   out.tile_a_ = of_sample("tile_a");
   out.tile_b_ = of_sample("tile_b");
   out.tile_difference_ = of_sample("tile_difference");
@@ -111,7 +110,7 @@ void query_pass::coverage(const query_view& view, std::span<contact_slot> slots,
   const functions& gl = context_->gl();
   begin(view);
   gl.DepthFunc(GL_LESS);
-  gl.UseProgram(threshold_program_.get());
+  gl.UseProgram(threshold_program_->get());
   gl.Uniform1f(threshold_, 0.0F);
   for (std::size_t s = 0; s < slots.size(); ++s) {
     if (!slots[s].visible) continue;
@@ -122,7 +121,7 @@ void query_pass::coverage(const query_view& view, std::span<contact_slot> slots,
     }
   }
   gl.DepthFunc(GL_ALWAYS);
-  gl.UseProgram(sample_program_.get());
+  gl.UseProgram(sample_program_->get());
   gl.ActiveTexture(GL_TEXTURE0);
   gl.BindTexture(GL_TEXTURE_2D, view.heights);
   gl.Uniform2i(samples_, view.tile_samples[0], view.tile_samples[1]);
@@ -166,7 +165,7 @@ void query_pass::search(const query_view& view, std::span<contact_slot> slots) n
   const functions& gl = context_->gl();
   begin(view);
   gl.DepthFunc(GL_LESS);
-  gl.UseProgram(threshold_program_.get());
+  gl.UseProgram(threshold_program_->get());
   const tile_atlas& tiles = view.difference_tiles;
   for (std::uint32_t bit = levels_.bits; bit-- > 0;) {
     const std::uint32_t step = 1U << bit;

@@ -9,6 +9,7 @@
 
 #include "asperity/gl/functions.hpp"
 #include "asperity/gl/names.hpp"
+#include "asperity/gl/program.hpp"
 #include "contact_slot.hpp"
 #include "tile_layout.hpp"
 
@@ -84,7 +85,8 @@ class query_pass {
   std::uint32_t rings_ = 0;
   std::size_t per_slot_ = 0;
   query_names any_, counted_;
-  owned_name vertices_, threshold_program_, sample_program_;
+  owned_name vertices_;
+  program_ptr threshold_program_, sample_program_;
   GLint threshold_ = 0, tile_a_ = 0, tile_b_ = 0, tile_difference_ = 0, samples_ = 0, quarter_ = 0;
   std::uint64_t rounds_ = 0, queries_ = 0;
 };

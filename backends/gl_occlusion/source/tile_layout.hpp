@@ -1,10 +1,16 @@
 // Where the tiles of a contact lie: side by side in one row of an atlas, and rows of contacts one above the other, in
 // as many columns as it takes.
+//
+// A device goes over everything that is bound, drawn to or not: software does it with every flush. So there are several
+// atlases, each for four times as many contacts as the one before, and a tick takes the smallest that holds its own.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
+
+#include "asperity/gl/names.hpp"
 
 namespace asperity::gl {
 
@@ -27,6 +33,14 @@ struct tile_atlas {
     return out;
   }
 
+  /// The same tiles for fewer contacts.
+  [[nodiscard]] tile_atlas with_room(std::uint32_t contacts) const noexcept {
+    tile_atlas out = *this;
+    out.across = std::min(across, contacts);
+    out.rows = (contacts + out.across - 1) / out.across;
+    return out;
+  }
+
   [[nodiscard]] std::uint32_t width() const noexcept { return across * per_contact * tile; }
   [[nodiscard]] std::uint32_t height() const noexcept { return rows * tile; }
   /// First pixel of a tile.
@@ -41,5 +55,34 @@ struct tile_atlas {
     return static_cast<std::uint32_t>((contacts + across - 1) / across) * tile;
   }
 };
+
+/// Numbers of contacts that there are atlases for, the largest first.
+[[nodiscard]] inline std::vector<std::uint32_t> atlas_rooms(std::uint32_t contacts) {
+  std::vector<std::uint32_t> out{contacts};
+  std::uint32_t fewer = 1;
+  while (4 * fewer < contacts) fewer *= 4;
+  for (; fewer > 0 && fewer < contacts; fewer /= 4) out.push_back(fewer);
+  return out;
+}
+
+/// An atlas with the textures that hold it; `colour` is empty where nothing but depth is drawn.
+struct drawn_atlas {
+  std::uint32_t contacts = 0;  ///< most that it holds
+  tile_atlas tiles{};
+  owned_name colour{}, depth{}, framebuffer{};
+};
+
+/// @param atlases  the largest first   @return index of the smallest that holds so many contacts
+[[nodiscard]] inline std::size_t smallest_of(const std::vector<drawn_atlas>& atlases, std::size_t contacts) noexcept {
+  std::size_t at = 0;
+  while (at + 1 < atlases.size() && atlases[at + 1].contacts >= contacts) ++at;
+  return at;
+}
+
+[[nodiscard]] inline std::size_t bytes_of(const std::vector<drawn_atlas>& atlases) noexcept {
+  std::size_t bytes = 0;
+  for (const drawn_atlas& a : atlases) bytes += a.colour.bytes() + a.depth.bytes();
+  return bytes;
+}
 
 }  // namespace asperity::gl

@@ -36,8 +36,8 @@ struct fine_hit {
 
 /// The point of the textured surface that lies over the sample, by Newton's method on the bilinear surface.
 /// The search starts at the coarse hit. It may run into a chart's gutter by one texel; beyond that it goes on in the
-/// triangle on the other side of the edge. Where the surface folds over or its patch ends first, the paper's lookup
-/// stands in.
+/// triangle on the other side of the edge that it is farthest outside of. Where the surface folds over or its patch
+/// ends first, the paper's lookup stands in.
 /// @source spec section 2 (parallax)
 [[nodiscard]] inline fine_hit look_above(const body_view& body, const projected_triangle& start, const vec2& uv,
                                          double tolerance_m) noexcept {
@@ -49,7 +49,12 @@ struct fine_hit {
   for (int step = 0; step < max_steps; ++step) {
     if (!cell.holds(z)) cell = texture_cell(body.texture, z).seen_by(body.map);
     const auto [q, dx, dy] = cell.at(z);
-    if (!is_finite(q)) return {};
+    if (!is_finite(q)) {
+      // A hole in the triangle is one in the surface; outside, the chart ends sooner than its gutter should.
+      const texel_triangle& chart = body.index.texels[t->triangle];
+      if (chart.within(z, chart.barycentric(z), 0.0)) return {};
+      break;
+    }
     const double det = dx.x * dy.y - dx.y * dy.x;
     const double coarse_det = t->texel_x.per_u * t->texel_y.per_v - t->texel_x.per_v * t->texel_y.per_u;
     // On a fold the fine surface turns its other side to the window: its determinant has the wrong sign.
@@ -64,8 +69,8 @@ struct fine_hit {
 
     const texel_triangle& chart = body.index.texels[t->triangle];
     const vec3 bary = chart.barycentric(z);
+    if (chart.within(z, bary, gutter_texels)) continue;
     const std::size_t outermost = chart.outermost(bary);
-    if (bary[static_cast<int>(outermost)] * chart.altitude[outermost] >= -gutter_texels) continue;
     // The edge opposite to corner k is edge k + 1.
     const projected_triangle* next = body.patch.find(body.index.neighbour[t->triangle][(outermost + 1) % 3]);
     if (next == nullptr) break;

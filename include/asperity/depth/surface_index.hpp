@@ -34,6 +34,20 @@ struct texel_triangle {
     const double d0 = bary.x * altitude[0], d1 = bary.y * altitude[1], d2 = bary.z * altitude[2];
     return d0 <= d1 && d0 <= d2 ? 0 : (d1 <= d2 ? 1 : 2);
   }
+  /// True up to so many texels outside. An acute corner reaches far beyond itself where only the distances from its
+  /// edges count, which is why it is the distance from the triangle that does. @param bary  barycentric(z)
+  [[nodiscard]] bool within(const vec2& z, const vec3& bary, double reach_texels) const noexcept {
+    bool inside = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (bary[static_cast<int>(k)] >= 0.0) continue;
+      inside = false;
+      const vec2 from = corner[(k + 1) % 3], along = corner[(k + 2) % 3] - from;
+      const double share = glm::dot(z - from, along) / glm::dot(along, along);
+      const vec2 off = z - from - (share < 0.0 ? 0.0 : (share > 1.0 ? 1.0 : share)) * along;
+      if (glm::dot(off, off) <= reach_texels * reach_texels) return true;
+    }
+    return inside;
+  }
 };
 
 /// Edge k of a triangle runs from corner k to corner k + 1.

@@ -2,9 +2,12 @@
 #include "asperity/depth/height_lookup.hpp"
 
 #include <gtest/gtest.h>
+#include <limits>
+#include <numbers>
 #include <random>
 
 #include "support/height_models.hpp"
+#include "support/sharp_corner.hpp"
 
 namespace asperity::detail {
 namespace {
@@ -155,6 +158,29 @@ TEST(HeightLookup, WhereThePatchEndsFirstThePapersLookupStandsIn) {
   EXPECT_GE(beside, side / 2);
   EXPECT_LE(beside, 3 * side);
   for (const double h : l.field.height) EXPECT_TRUE(std::isfinite(h));
+}
+
+TEST(HeightLookup, PastASharpCornerThePapersLookupStandsIn) {
+  // Beyond the chart: nothing, and another one, 5 mm higher.
+  for (const double other : {std::numeric_limits<double>::quiet_NaN(), 5e-3}) {
+    lookup l{sharp_corner(vec3(0.0, 0.0, other))};
+    const contact_window w = window_downwards(8e-4, vec3(7e-4, 0.0, 0.0));
+    const std::size_t above = l.run(w, {face_down(), vec3(0.0)}, parallax_mode::exact);
+    const auto beside = static_cast<std::size_t>(std::count(l.field.kind.begin(), l.field.kind.end(), hit::beside));
+    std::size_t covered = 0;
+    const sample_grid grid(48, w.half_size_m);
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const double x = grid.position(i).x + 7e-4;
+      const bool there = x > 0.0 && std::fabs(grid.position(i).y) < x * std::tan(6.0 * std::numbers::pi / 180.0);
+      covered += there ? 1 : 0;
+      if (l.field.kind[i] != hit::none) {
+        EXPECT_NEAR(l.field.height[i], 1e-4, 1e-9) << x;
+      }
+    }
+    EXPECT_NEAR(static_cast<double>(above + beside), static_cast<double>(covered), 2.0);
+    EXPECT_GT(beside, 5U);
+    EXPECT_GT(above, 3 * beside);
+  }
 }
 
 }  // namespace
