@@ -9,6 +9,7 @@
 
 #include "asperity/can/socketcan.hpp"
 #include "kernel/can_support.hpp"
+#include "kernel/network.hpp"
 #include "support/counted_news.hpp"
 
 namespace asperity::can_kernel_test {
@@ -20,16 +21,14 @@ class vcan : public testing::Test {
  protected:
   void SetUp() override {
     if (const std::string reason = why_not(); !reason.empty()) GTEST_SKIP() << reason;
-    static_cast<void>(ip(std::string("link del ") + name));
-    if (!add("72")) GTEST_SKIP() << "this kernel has no virtual CAN interface (modprobe vcan)";
+    network::remove(name);
+    if (!add()) GTEST_SKIP() << "this kernel has no virtual CAN interface (modprobe vcan)";
   }
-  void TearDown() override { static_cast<void>(ip(std::string("link del ") + name)); }
+  void TearDown() override { network::remove(name); }
 
-  [[nodiscard]] static bool add(const std::string& mtu) {
-    return ip(std::string("link add ") + name + " mtu " + mtu + " type vcan") &&
-           ip(std::string("link set ") + name + " up");
+  [[nodiscard]] static bool add() {
+    return network::add_vcan(name) == 0 && network::set_mtu(name, 72) == 0 && network::set_up(name, true) == 0;
   }
-  [[nodiscard]] static bool set(const char* state) { return ip(std::string("link set ") + name + " " + state); }
 
   [[nodiscard]] static std::unique_ptr<can_bus> open(const can::socketcan_options& options = {}) {
     auto bus = can::open_socketcan(name, options);
@@ -103,9 +102,10 @@ TEST_F(vcan, says_why_an_interface_cannot_be_opened) {
   };
   EXPECT_NE(message("vcanasp9", false).find("no network interface \"vcanasp9\""), std::string::npos);
   EXPECT_NE(message("lo", false).find("lo is a network interface, but not CAN"), std::string::npos);
-  ASSERT_TRUE(set("down"));
+  ASSERT_EQ(network::set_up(name, false), 0);
   EXPECT_NE(message(name, false).find("ip link set vcanasp0 up"), std::string::npos) << message(name, false);
-  ASSERT_TRUE(set("mtu 16") && set("up"));
+  ASSERT_EQ(network::set_mtu(name, 16), 0);
+  ASSERT_EQ(network::set_up(name, true), 0);
   EXPECT_NE(message(name, true).find("set up for classic CAN"), std::string::npos) << message(name, true);
   EXPECT_EQ(message(name, false), "opened");
 }
@@ -120,7 +120,7 @@ TEST_F(vcan, is_listed_with_what_keeps_it_from_use) {
   EXPECT_EQ(s.name, name);
   EXPECT_TRUE(s.up && s.running && s.fd);
   EXPECT_EQ(s.problem, "");
-  ASSERT_TRUE(set("down"));
+  ASSERT_EQ(network::set_up(name, false), 0);
   s = find();
   EXPECT_FALSE(s.up);
   EXPECT_NE(s.problem.find("ip link set vcanasp0"), std::string::npos) << s.problem;
@@ -177,12 +177,12 @@ TEST_F(vcan, is_down_while_the_link_is_and_comes_back_by_itself) {
   const auto drive = open();
   ASSERT_TRUE(host && drive);
   can_frame in;
-  ASSERT_TRUE(set("down"));
+  ASSERT_EQ(network::set_up(name, false), 0);
   EXPECT_EQ(host->receive(now_ns(), in), io_status::down);
   EXPECT_EQ(host->receive(now_ns(), in), io_status::down) << "the kernel says it once, the bus until it is over";
   EXPECT_EQ(host->send(now_ns(), frame_of(1, {9})), io_status::down);
   EXPECT_EQ(drive->send(now_ns(), frame_of(1, {9})), io_status::down) << "it was the first to be told by send()";
-  ASSERT_TRUE(set("up"));
+  ASSERT_EQ(network::set_up(name, true), 0);
   ASSERT_TRUE(soon([&] { return host->receive(now_ns(), in) == io_status::nothing; }));
   ASSERT_EQ(drive->send(now_ns(), frame_of(1, {9})), io_status::ok);
   ASSERT_EQ(receive_soon(*host, in), io_status::ok);
@@ -193,12 +193,12 @@ TEST_F(vcan, is_gone_for_ever_when_the_interface_is_deleted) {
   const auto host = open();
   const auto silent = open();
   ASSERT_TRUE(host && silent);
-  ASSERT_TRUE(ip(std::string("link del ") + name));
+  ASSERT_EQ(network::remove(name), 0);
   can_frame in;
   EXPECT_EQ(host->receive(now_ns(), in), io_status::gone);
   EXPECT_EQ(host->send(now_ns(), frame_of(1, {})), io_status::gone);
   EXPECT_EQ(silent->send(now_ns(), frame_of(1, {})), io_status::gone);
-  ASSERT_TRUE(add("72")) << "another interface of the same name";
+  ASSERT_TRUE(add()) << "another interface of the same name";
   EXPECT_EQ(host->send(now_ns(), frame_of(1, {})), io_status::gone);
   EXPECT_EQ(host->receive(now_ns(), in), io_status::gone);
   EXPECT_TRUE(open());

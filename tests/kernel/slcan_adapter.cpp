@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "kernel/can_support.hpp"
+#include "kernel/network.hpp"
 
 namespace asperity::can_kernel_test {
 namespace {
@@ -50,9 +51,8 @@ std::string slcan_adapter::plug_in(int queue_frames) {
   if (::ioctl(slave_, SIOCGIFNAME, &about) != 0) return "slcan does not tell its interface";
   interface_ = about.ifr_name;
   thread_ = std::thread([this] { serve(); });
-  const std::string set = "link set " + interface_;
-  if (!ip(set + " type can bitrate 500000") || !ip(set + " txqueuelen " + std::to_string(queue_frames)) ||
-      !ip(set + " up")) {
+  if (network::set_bit_rate(interface_, 500'000) != 0 || network::set_queue(interface_, queue_frames) != 0 ||
+      network::set_up(interface_, true) != 0) {
     return "slcan's interface " + interface_ + " did not come up";
   }
   return {};

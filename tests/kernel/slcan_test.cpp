@@ -7,6 +7,7 @@
 
 #include "asperity/can/socketcan.hpp"
 #include "kernel/can_support.hpp"
+#include "kernel/network.hpp"
 #include "kernel/slcan_adapter.hpp"
 
 namespace asperity::can_kernel_test {
@@ -65,8 +66,8 @@ TEST_F(slcan, knows_every_state_of_the_controller_and_comes_back_from_bus_off) {
   EXPECT_NE(listed().problem.find("bus-off"), std::string::npos) << listed().problem;
 
   // The way out that every driver has: down and up again.
-  ASSERT_TRUE(ip("link set " + adapter.interface() + " down"));
-  ASSERT_TRUE(ip("link set " + adapter.interface() + " up"));
+  ASSERT_EQ(network::set_up(adapter.interface(), false), 0);
+  ASSERT_EQ(network::set_up(adapter.interface(), true), 0);
   ASSERT_TRUE(soon([&] { return bus->receive(now_ns(), in) == io_status::nothing; }));
   EXPECT_FALSE(bus->health().bus_off);
   ASSERT_EQ(bus->send(now_ns(), frame_of(0x124, {7})), io_status::ok);
@@ -115,8 +116,9 @@ TEST(kvaser_pci, two_ports_of_a_card_talk) {
   if (ports.size() < 2) GTEST_SKIP() << "there are no two ports of a Kvaser PCI card";
   std::vector<std::unique_ptr<can_bus>> buses;
   for (const std::string& port : {ports.front(), ports.back()}) {
-    static_cast<void>(ip("link set " + port + " down"));
-    ASSERT_TRUE(ip("link set " + port + " up type can bitrate 500000 restart-ms 100"));
+    ASSERT_EQ(network::set_up(port, false), 0);
+    ASSERT_EQ(network::set_bit_rate(port, 500'000), 0);
+    ASSERT_EQ(network::set_up(port, true), 0);
     EXPECT_FALSE(can::open_socketcan(port, {.fd = true})) << "the card has no FD";
     auto opened = can::open_socketcan(port);
     ASSERT_TRUE(opened) << opened.error().message;
@@ -130,13 +132,13 @@ TEST(kvaser_pci, two_ports_of_a_card_talk) {
     EXPECT_EQ(in.data[0], i);
     EXPECT_EQ(buses[i % 2]->receive(now_ns(), in), io_status::nothing);
   }
-  ASSERT_TRUE(ip("link set " + ports.front() + " down"));
+  ASSERT_EQ(network::set_up(ports.front(), false), 0);
   EXPECT_EQ(buses[0]->receive(now_ns(), in), io_status::down);
-  ASSERT_TRUE(ip("link set " + ports.front() + " up"));
+  ASSERT_EQ(network::set_up(ports.front(), true), 0);
   ASSERT_TRUE(soon([&] { return buses[0]->receive(now_ns(), in) == io_status::nothing; }));
   ASSERT_EQ(buses[1]->send(now_ns(), frame_of(0x77, {})), io_status::ok);
   ASSERT_EQ(receive_soon(*buses[0], in), io_status::ok);
-  for (const std::string& port : {ports.front(), ports.back()}) static_cast<void>(ip("link set " + port + " down"));
+  for (const std::string& port : {ports.front(), ports.back()}) EXPECT_EQ(network::set_up(port, false), 0);
 }
 
 }  // namespace
