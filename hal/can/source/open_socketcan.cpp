@@ -77,7 +77,8 @@ result<int> usable_interface(socket_calls& calls, int fd, const std::string& nam
   }
   if (const int answer = ask(SIOCGIFFLAGS, about); answer < 0) return failed("the state", answer);
   if ((static_cast<unsigned>(about.ifr_flags) & IFF_UP) == 0) {
-    return error{error_code::invalid_argument, name + " is down; as root, with the bit rate of the bus: " + line_that_brings_up(name, with_fd)};
+    return error{error_code::invalid_argument,
+                 name + " is down; as root, with the bit rate of the bus: " + line_that_brings_up(name, with_fd)};
   }
   if (const int answer = ask(SIOCGIFMTU, about); answer < 0) return failed("the frame size", answer);
   if (with_fd && about.ifr_mtu < static_cast<int>(fd_frame_bytes)) {

@@ -29,6 +29,8 @@ struct can_health {
   std::uint8_t transmit_errors = 0;  ///< the controller's counter, where it tells
   std::uint8_t receive_errors = 0;
   std::uint64_t lost = 0;  ///< received frames that were dropped before we read them, so far
+
+  friend bool operator==(const can_health&, const can_health&) = default;
 };
 
 /// One CAN interface, as one program sees it: socketCAN or an in-process twin of it.

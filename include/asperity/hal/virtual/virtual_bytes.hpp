@@ -13,7 +13,8 @@
 
 namespace asperity {
 
-/// Bytes on their way, one direction, in the order in which they arrive. Made to its capacity at construction.
+/// Bytes on their way, one direction. A line keeps their order: what is late holds up what was sent after it.
+/// Made to its capacity at construction.
 /// @rt safe after construction
 class byte_queue {
  public:
@@ -21,11 +22,10 @@ class byte_queue {
 
   [[nodiscard]] std::size_t room() const noexcept { return entries_.size() - size_; }
 
-  /// A line keeps its order: nothing arrives before what was sent earlier. @return whether there was room
+  /// @return whether there was room
   bool push(std::uint8_t byte, std::int64_t due_ns) noexcept {
     if (room() == 0) return false;
-    last_ns_ = size_ == 0 ? due_ns : std::max(due_ns, last_ns_);
-    entries_[(first_ + size_++) % entries_.size()] = {last_ns_, byte};
+    entries_[(first_ + size_++) % entries_.size()] = {due_ns, byte};
     return true;
   }
 
@@ -48,7 +48,6 @@ class byte_queue {
   std::vector<entry> entries_;
   std::size_t first_ = 0;
   std::size_t size_ = 0;
-  std::int64_t last_ns_ = 0;
 };
 
 /// The line: the host's end is a driver's byte_link, the far end what a fake peer reads and writes. A fault of the
