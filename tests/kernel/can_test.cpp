@@ -69,6 +69,20 @@ TEST_F(vcan, carries_classic_frames_both_ways_and_never_ones_own) {
   EXPECT_EQ(in, ask);
 }
 
+TEST_F(vcan, stamps_frames_when_they_arrive_and_not_when_they_are_read) {
+  const auto host = open();
+  const auto drive = open();
+  ASSERT_TRUE(host && drive);
+  const std::int64_t before_ns = now_ns();
+  ASSERT_EQ(drive->send(before_ns, frame_of(1, {})), io_status::ok);
+  const std::int64_t after_ns = now_ns();
+  sleep_ms(20);
+  can_frame in;
+  ASSERT_EQ(receive_soon(*host, in), io_status::ok);
+  EXPECT_GE(in.host_time_ns, before_ns - 1'000'000);
+  EXPECT_LE(in.host_time_ns, after_ns + 10'000'000);
+}
+
 TEST_F(vcan, carries_fd_frames_of_every_length) {
   const auto host = open({.fd = true});
   const auto drive = open({.fd = true});

@@ -11,6 +11,7 @@
 #include <random>
 #include <string>
 #include <string_view>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -176,8 +177,16 @@ TEST_F(serial_line, says_why_it_cannot_be_opened) {
   EXPECT_NE(message("/dev/absent-line").find("There is no serial line /dev/absent-line"), std::string::npos);
   EXPECT_NE(message("/dev/null").find("/dev/null is not a serial line"), std::string::npos);
   EXPECT_NE(message(far.path(), 0).find("0 bits per second"), std::string::npos);
-  if (::geteuid() == 0) return;  // root opens what is in use
   const auto first = open(far);
+  ASSERT_TRUE(first);
+  if (::geteuid() == 0) {  // root may open what is in use, and can only look
+    const int second = ::open(far.path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+    int exclusive = 0;
+    EXPECT_EQ(::ioctl(second, TIOCGEXCL, &exclusive), 0);
+    EXPECT_EQ(exclusive, 1);
+    ::close(second);
+    return;
+  }
   EXPECT_NE(message(far.path()).find("in use"), std::string::npos) << message(far.path());
 }
 
