@@ -21,7 +21,7 @@ void add_can_interfaces(answer& devices) {
                                                   {"problem", i.problem.empty() ? json() : json(i.problem)}});
     const std::string kind = std::string(i.fd ? "CAN FD" : "classic CAN") +
                              (i.driver.empty() ? ", no device behind it" : ", driver " + i.driver);
-    devices.text += row(i.name, kind + (i.problem.empty() ? "; drives can be used on it" : ": " + i.problem));
+    devices.text += row(i.name, kind + (i.problem.empty() ? "; up" : ": " + i.problem));
   }
 }
 

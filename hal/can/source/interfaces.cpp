@@ -45,7 +45,7 @@ interface_state state_of(const fs::path& folder) {
   s.up = (number_of(folder / "flags").value_or(0) & IFF_UP) != 0;
   s.running = s.up && line_of(folder / "carrier") == "1";
   if (!s.up) {
-    s.problem = "it is down; as root, with the bit rate of the bus: " + line_that_brings_up(s.name, s.fd);
+    s.problem = "it is down; " + how_to_bring_up(s.name, s.fd);
   } else if (!s.running) {
     s.problem =
         "its controller is not on the bus, bus-off most likely; see to wiring, termination and bit rate, then as "

@@ -77,16 +77,14 @@ result<int> usable_interface(socket_calls& calls, int fd, const std::string& nam
   }
   if (const int answer = ask(SIOCGIFFLAGS, about); answer < 0) return failed("the state", answer);
   if ((static_cast<unsigned>(about.ifr_flags) & IFF_UP) == 0) {
-    return error{error_code::invalid_argument,
-                 name + " is down; as root, with the bit rate of the bus: " + line_that_brings_up(name, with_fd)};
+    return error{error_code::invalid_argument, name + " is down; " + how_to_bring_up(name, with_fd)};
   }
   if (const int answer = ask(SIOCGIFMTU, about); answer < 0) return failed("the frame size", answer);
   if (with_fd && about.ifr_mtu < static_cast<int>(fd_frame_bytes)) {
-    return error{error_code::unsupported,
-                 name +
-                     " is set up for classic CAN, and CAN FD was asked for; if its controller has FD, as root: "
-                     "ip link set " +
-                     name + " down && " + line_that_brings_up(name, true)};
+    return error{
+        error_code::unsupported,
+        name + " is set up for classic CAN, and CAN FD was asked for; if its controller has FD, set it down and, " +
+            how_to_bring_up(name, true)};
   }
   return index;
 }
@@ -137,11 +135,11 @@ result<void> set_options(socket_calls& calls, int fd, const socketcan_options& o
 
 }  // namespace
 
-std::string line_that_brings_up(const std::string& name, bool with_fd) {
-  if (name.starts_with("vcan")) return std::string("ip link set ") + name + (with_fd ? " mtu 72 up" : " up");
-  std::string line = "ip link set " + name + " up type can bitrate 1000000";
-  if (with_fd) line += " dbitrate 5000000 fd on";
-  return line;
+std::string how_to_bring_up(const std::string& name, bool with_fd) {
+  const std::string set = "ip link set " + name;
+  if (name.starts_with("vcan")) return "as root: " + set + (with_fd ? " mtu 72 up" : " up");
+  return "as root, with the bit rate of the bus: " + set + " up type can bitrate 1000000" +
+         (with_fd ? " dbitrate 5000000 fd on" : "");
 }
 
 result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface, const socketcan_options& options,

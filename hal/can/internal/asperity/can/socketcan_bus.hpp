@@ -19,8 +19,8 @@ namespace asperity::can {
 /// check_support() with a kernel of one's own.
 [[nodiscard]] result<void> check_support(socket_calls& calls);
 
-/// What to type, as root, so that an interface comes up.
-[[nodiscard]] std::string line_that_brings_up(const std::string& name, bool with_fd);
+/// What to type, and as whom, so that an interface comes up.
+[[nodiscard]] std::string how_to_bring_up(const std::string& name, bool with_fd);
 
 class socketcan_bus final : public can_bus {
  public:
