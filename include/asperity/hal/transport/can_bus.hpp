@@ -47,8 +47,8 @@ class can_bus {
   /// @return ok | busy | down | gone | too_short | refused | failed
   [[nodiscard]] virtual io_status send(std::int64_t now_ns, const can_frame& frame) noexcept = 0;
 
-  /// The oldest frame that has arrived by now_ns. Error frames are not handed out: they change health(). Read until it is
-  /// not ok in every tick, whatever it is: only so are bus-off and its end noticed.
+  /// The oldest frame that has arrived by now_ns. Error frames are not handed out: they change health(). Read until it
+  /// is not ok in every tick, whatever it is: only so are bus-off and its end noticed.
   /// @return ok | nothing | down | gone | too_short | failed; `frame` changes with ok only
   [[nodiscard]] virtual io_status receive(std::int64_t now_ns, can_frame& frame) noexcept = 0;
 
