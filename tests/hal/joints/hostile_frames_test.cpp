@@ -16,7 +16,8 @@ TYPED_TEST_SUITE(HostileFrames, every_kind);
 // Frames that look right at first: the ids of this bus, sizes up to what a byte holds.
 can_frame make_hostile(std::mt19937_64& bits) {
   constexpr std::uint32_t ids[] = {
-      0, 1, 3U << 5U, 3U << 5U | 1, 3U << 5U | 3, 3U << 5U | 9, 3U << 5U | 0x14, 3U << 5U | 0x1c, 0x100, 0x8001, 0x7ff};
+      0,     0,      0,    0, 1, 3U << 5U, 3U << 5U | 1, 3U << 5U | 3, 3U << 5U | 9, 3U << 5U | 0x14, 3U << 5U | 0x1c,
+      0x100, 0x8001, 0x7ff};
   can_frame f;
   f.id = bits() % 8 == 0 ? static_cast<std::uint32_t>(bits()) : ids[bits() % std::size(ids)];
   f.extended = bits() % 8 == 0;

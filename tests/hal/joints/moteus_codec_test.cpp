@@ -41,9 +41,9 @@ TEST(MoteusCodec, writes_the_documents_example) {
   w.begin(action::write, resolution::int8, 1, reg::mode);
   w.value(10, q::plain);
   w.begin(action::write, resolution::int16, 3, reg::command_position);
-  w.value(0.0096, q::position_rev);
-  w.value(0.072, q::velocity_rev_per_s);
-  w.value(-1.76, q::torque_n_m);
+  w.value(96 * 0.0001, q::position_rev);
+  w.value(288 * 0.00025, q::velocity_rev_per_s);
+  w.value(-176 * 0.01, q::torque_n_m);
   w.begin(action::read, resolution::int16, 4, reg::mode);
   w.begin(action::read, resolution::int8, 3, reg::voltage);
   EXPECT_EQ(finished(w), golden_command);
@@ -80,7 +80,7 @@ TEST(MoteusCodec, the_replys_bytes_can_be_made_too) {
   frame_writer w;
   w.begin(action::reply, resolution::int16, 4, reg::mode);
   w.value(10, q::plain);
-  w.value(0.008, q::position_rev);
+  w.value(80 * 0.0001, q::position_rev);
   w.value(0.064, q::velocity_rev_per_s);
   w.value(-1.44, q::torque_n_m);
   w.begin(action::reply, resolution::int8, 3, reg::voltage);

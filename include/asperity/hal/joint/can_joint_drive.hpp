@@ -96,7 +96,7 @@ class can_joint_drive : public joint_drive {
   }
 
   [[nodiscard]] io_status step(std::int64_t now_ns, can_bus& bus) noexcept final {
-    if (phase_ == phase::off) return io_status::ok;
+    if (phase_ == phase::off || !usable_) return io_status::ok;
     watch(now_ns);
     worst_ = io_status::ok;
     if (facts_.needs_fd && !bus.takes_fd()) {
@@ -231,16 +231,19 @@ class can_joint_drive : public joint_drive {
       case phase::idle:
         if (silent) enter(phase::seeking, now_ns);
         break;
-      case phase::enabled:
+      case phase::enabled: {
+        // Also where the application is back by now: what was held for too long does not go on by itself.
+        const bool late_torque = ever_set_ && now_ns - renewed_ns_ > options_.hold_ns;
         ever_set_ = ever_set_ || renewed_;
         fed_ = renewed_ || !ever_set_;
         if (fed_) renewed_ns_ = now_ns;
         if (silent) {
           fail("the drive fell silent", 0, now_ns);
-        } else if (now_ns - renewed_ns_ > options_.hold_ns) {
-          fail("the application renewed its torque no more", 0, now_ns);
+        } else if (late_torque) {
+          fail("the application did not renew its torque in time", 0, now_ns);
         }
         break;
+      }
       case phase::off:
       case phase::seeking:
       case phase::faulted:

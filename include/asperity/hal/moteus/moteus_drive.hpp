@@ -132,6 +132,8 @@ class moteus_drive final : public can_joint_drive {
     known_ = false;
     clearing_ = clearing;
     mode_ = unknown;
+    stops_ = 0;
+    stopped_answers_ = 0;
   }
 
   void take_version(std::int64_t now_ns, const answer& a) noexcept {
@@ -153,7 +155,9 @@ class moteus_drive final : public can_joint_drive {
     switch (at()) {
       case phase::leading:
       case phase::leaving:
-        if (a.mode == stopped && (known_ || at() == phase::leaving)) reached(phase::idle, now_ns);
+        // Answers do not say to which frame: several in a row, so that none is from before the stop.
+        stopped_answers_ = a.mode == stopped && stops_ > 0 ? stopped_answers_ + 1 : 0;
+        if (stopped_answers_ >= repeats && stops_ >= repeats) reached(phase::idle, now_ns);
         break;
       case phase::idle:
         if (a.mode != stopped) fail("the drive left its stop by itself", static_cast<std::uint32_t>(a.mode), now_ns);
@@ -190,6 +194,8 @@ class moteus_drive final : public can_joint_drive {
         ask(now_ns, bus);
         break;
       case phase::arming:
+        stops_ = 0;
+        stopped_answers_ = 0;
         command(now_ns, bus, 0.0);
         break;
       case phase::enabled:
@@ -200,10 +206,12 @@ class moteus_drive final : public can_joint_drive {
         }
         break;
       case phase::leaving:
-        // Zero torque as a command enables, so only a drive that is known to be enabled gets it.
+        // Zero torque as a command enables, so only a drive that is known to be enabled gets it, and none after a stop:
+        // an answer from before the stop must not bring it back.
         if (owes_zero() && mode_ == position_mode && !is_quiet(now_ns)) {
           if (command(now_ns, bus, 0.0)) zero_was_sent();
         } else {
+          zero_was_sent();
           stop(now_ns, bus);
         }
         break;
@@ -237,7 +245,9 @@ class moteus_drive final : public can_joint_drive {
     w.begin(moteus::action::write, moteus::resolution::int8, 1, moteus::reg::mode);
     w.value(stopped, moteus::quantity::plain);
     add_query(w);
-    return send(now_ns, bus, w);
+    const bool taken = send(now_ns, bus, w);
+    stops_ += taken && stops_ < repeats ? 1 : 0;
+    return taken;
   }
 
   bool command(std::int64_t now_ns, can_bus& bus, double joint_n_m) noexcept {
@@ -259,8 +269,7 @@ class moteus_drive final : public can_joint_drive {
     w.begin(action::write, resolution::real, 1, reg::maximum_torque);
     w.value(limit, quantity::torque_n_m);
     w.begin(action::write, resolution::int16, 1, reg::watchdog_timeout);
-    // Half a count more, so that rounding towards zero keeps the whole milliseconds.
-    w.value((static_cast<double>(moteus_.watchdog_ms) + 0.5) * 1e-3, quantity::time_s);
+    w.value(moteus_.watchdog_ms * moteus::unit_of(quantity::time_s, resolution::int16), quantity::time_s);
     w.begin(action::write, resolution::int8, 1, reg::integral_scale);
     w.value(0.0, quantity::scale);
     add_query(w);
@@ -283,10 +292,13 @@ class moteus_drive final : public can_joint_drive {
   }
 
   static constexpr std::int32_t unknown = -1;
+  static constexpr int repeats = 3;
 
   moteus_options moteus_;
   float limit_;
   std::int32_t mode_ = unknown;  // as last heard
+  int stops_ = 0;                // sent on this way to idle, up to `repeats`
+  int stopped_answers_ = 0;      // in a row
   bool known_ = false;           // its version was read, and is the right one
   bool clearing_ = false;
 };

@@ -141,7 +141,7 @@ class odrive_drive final : public can_joint_drive {
         }
         break;
       case phase::leaving:
-        if (axis_state_ == odrive::axis_idle && !owes_zero()) reached(phase::idle, now_ns);
+        if (is_off()) reached(phase::idle, now_ns);
         break;
       case phase::idle:
         if (axis_state_ != odrive::axis_idle) fail("the drive left idle by itself", axis_state_, now_ns);
@@ -225,15 +225,23 @@ class odrive_drive final : public can_joint_drive {
   void disarm(std::int64_t now_ns, can_bus& bus) noexcept {
     if (owes_zero()) {
       first_ = true;
+      idle_requests_ = 0;
       if (send_torque(now_ns, bus, 0.0)) zero_was_sent();
       return;
     }
-    const bool off = beat_ && axis_state_ == odrive::axis_idle && beat_ns_ > since_ns();
-    if (!off && is_due(now_ns)) {
-      send(now_ns, bus, odrive::set_axis_state(odrive_.node, odrive::axis_idle));
+    if (!is_off() && is_due(now_ns)) {
+      if (send(now_ns, bus, odrive::set_axis_state(odrive_.node, odrive::axis_idle))) {
+        idle_requests_ += idle_requests_ < 2 ? 1 : 0;
+        if (idle_requests_ == 1) asked_ns_ = now_ns;
+      }
       if (now_ns - since_ns() > estop_ns) send(now_ns, bus, odrive::estop(odrive_.node));
     }
     if (at() == phase::leaving) ask_estimates(now_ns, bus);
+  }
+
+  // A heartbeat of an idle axis, and not one from before it was asked to be idle.
+  [[nodiscard]] bool is_off() const noexcept {
+    return !owes_zero() && idle_requests_ >= 2 && axis_state_ == odrive::axis_idle && beat_ns_ > asked_ns_;
   }
 
   // Once at the beginning of something, and then at a pace.
@@ -262,9 +270,11 @@ class odrive_drive final : public can_joint_drive {
   odrive::firmware firmware_ = odrive::firmware::v0_5;
   std::int64_t paced_ns_ = 0;
   std::int64_t beat_ns_ = 0;
+  std::int64_t asked_ns_ = 0;  // when it was first asked to be idle
   std::uint8_t axis_state_ = 0;
-  bool known_ = false;  // which table
-  bool beat_ = false;   // a heartbeat was heard on this way to idle
+  int idle_requests_ = 0;  // in this phase, up to 2
+  bool known_ = false;     // which table
+  bool beat_ = false;      // a heartbeat was heard on this way to idle
   bool has_estimate_ = false;
   bool clearing_ = false;
   bool owes_clearing_ = false;
