@@ -32,13 +32,13 @@ namespace asperity {
 }
 
 /// A number in units of `unit`, rounded towards zero and within +-`most`.
-/// @pre unit > 0; 0 <= most <= 2^53
+/// @pre unit > 0; 0 <= most <= 2^48
 [[nodiscard]] constexpr std::int64_t wire_count(double value, double unit, double most) noexcept {
   const double wanted = saturated(value, std::numeric_limits<double>::max());
   const double size = wanted < 0.0 ? -wanted : wanted;
-  const double share = size / unit;
+  const double share = size * (1.0 / unit);
   auto n = static_cast<std::int64_t>(share < most ? share : most);
-  // The division rounds to nearest: it can step over a whole number, or stop short of it.
+  // Rounded twice: it can step over a whole number, or stop short of it.
   n -= n > 0 && static_cast<double>(n) * unit > size ? 1 : 0;
   n += static_cast<double>(n + 1) <= most && static_cast<double>(n + 1) * unit <= size ? 1 : 0;
   return wanted < 0.0 ? -n : n;

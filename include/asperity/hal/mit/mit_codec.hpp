@@ -42,8 +42,7 @@ class symmetric_field {
  public:
   /// @param limit nothing is encoded that decodes to more than that, in double or in the drive's float.
   /// @pre range > 0; limit >= range / (2^bits - 1); bits <= 16
-  constexpr symmetric_field(double range, unsigned bits, double limit) noexcept
-      : range_(range), top_(static_cast<int>((1U << bits) - 1U)), most_(top_ / 2) {
+  constexpr symmetric_field(double range, unsigned bits, double limit) noexcept : symmetric_field(range, bits) {
     const auto over = [&](int n) {
       return magnitude(n) > limit || static_cast<double>(drive_value(middle() + n)) > limit ||
              -static_cast<double>(drive_value(middle() - 1 - n)) > limit;
@@ -51,15 +50,19 @@ class symmetric_field {
     while (most_ > 0 && over(most_)) --most_;
   }
   constexpr symmetric_field(double range, unsigned bits) noexcept
-      : range_(range), top_(static_cast<int>((1U << bits) - 1U)), most_(top_ / 2) {}
+      : range_(range),
+        top_(static_cast<int>((1U << bits) - 1U)),
+        most_(top_ / 2),
+        half_step_(range / static_cast<double>(top_)),
+        per_step_(static_cast<double>(top_) / (2.0 * range)) {}
 
   /// What is not finite is 0.
   [[nodiscard]] constexpr std::uint16_t encode(double value) const noexcept {
     const double wanted = saturated(value, range_);
     const double size = wanted < 0.0 ? -wanted : wanted;
-    const double steps = size * static_cast<double>(top_) / (2.0 * range_) - 0.5;
+    const double steps = size * per_step_ - 0.5;
     int n = steps > 0.0 ? static_cast<int>(steps) : 0;
-    n -= n > 0 && magnitude(n) > size ? 1 : 0;
+    n -= n > 0 && half_step_ * static_cast<double>(2 * n + 1) > size ? 1 : 0;
     n = n < most_ ? n : most_;
     return static_cast<std::uint16_t>(wanted > 0.0 ? middle() + n : middle() - 1 - n);
   }
@@ -68,7 +71,7 @@ class symmetric_field {
   }
 
   /// Half the distance of two values: what is lost at most, and what a zero decodes to, with a minus.
-  [[nodiscard]] constexpr double half_step() const noexcept { return range_ / static_cast<double>(top_); }
+  [[nodiscard]] constexpr double half_step() const noexcept { return half_step_; }
   /// The largest value that is ever encoded.
   [[nodiscard]] constexpr double largest() const noexcept { return magnitude(most_); }
 
@@ -88,6 +91,8 @@ class symmetric_field {
   double range_;
   int top_;
   int most_;  // steps from the middle that the limit allows
+  double half_step_;
+  double per_step_;
 };
 
 /// What a drive is told: it puts out stiffness (position - its own) + damping (velocity - its own) + torque.
