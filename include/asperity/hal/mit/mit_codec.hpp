@@ -1,5 +1,6 @@
 // Frames of the MIT mini-cheetah protocol, which CubeMars (T-Motor) AK actuators speak as "MIT mode".
-// Source: B. Katz, motorcontrol firmware (MIT licence); ranges of the AK series from its manual.
+// Source: B. Katz, motorcontrol firmware (MIT licence); ranges and error codes of the AK series as public drivers give
+// them; its manual was not at hand.
 #pragma once
 
 #include <array>
