@@ -1,0 +1,421 @@
+// Joint drives against fake peers that speak the protocol: to torque and back, and what must not bring torque.
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+
+#include "hal/joints/rig.hpp"
+#include "support/counted_news.hpp"
+
+namespace asperity::test_support {
+namespace {
+
+TYPED_TEST_SUITE(JointDrives, every_kind);
+
+TYPED_TEST(JointDrives, comes_up_follows_torques_and_goes_down) {
+  rig<TypeParam> r;
+  EXPECT_EQ(r.drive.state(), drive_state::silent);
+  r.run(5 * ms);
+  EXPECT_EQ(r.peer.frames(), 0U) << "nothing is sent before start()";
+  EXPECT_FALSE(r.drive.enable(r.clock.now_ns()));
+  ASSERT_TRUE(r.bring_up()) << r.drive.fault().what;
+  EXPECT_FALSE(r.peer.enabled());
+  EXPECT_FALSE(r.drive.clear_fault(r.clock.now_ns()));
+  ASSERT_TRUE(r.drive.enable(r.clock.now_ns()));
+  ASSERT_TRUE(r.run_until(drive_state::enabled)) << r.drive.fault().what;
+  EXPECT_TRUE(r.is_limp());
+  for (int i = 0; i < 300; ++i) {
+    r.wanted_n_m = 15.0 * std::sin(0.05 * i);
+    r.peer.position_rad = 3.0 * std::sin(0.01 * i);
+    r.tick();
+    r.clock.advance_ns(ms / 10);
+    EXPECT_NEAR(r.joint_torque(), r.wanted_n_m, r.drive.facts().torque_resolution_n_m * 1.01);
+  }
+  for (const double over : {21.0, 1e300, -21.0, -1e300}) {
+    r.wanted_n_m = over;
+    r.run(2 * ms);
+    EXPECT_NEAR(std::fabs(r.joint_torque()), 20.0, r.drive.facts().torque_resolution_n_m * 1.01);
+    EXPECT_GT(r.joint_torque() * over, 0.0);
+  }
+  for (const double none : {std::nan(""), HUGE_VAL, -HUGE_VAL, 0.0, -0.0}) {
+    r.wanted_n_m = none;
+    r.run(2 * ms);
+    EXPECT_TRUE(r.is_limp());
+  }
+  EXPECT_EQ(r.drive.fault().code, 0U) << r.drive.fault().what;
+  r.wanted_n_m = 10.0;
+  r.run(3 * ms);
+  r.drive.disable(r.clock.now_ns());
+  EXPECT_NE(r.drive.state(), drive_state::enabled);
+  r.run(2 * ms);
+  EXPECT_TRUE(r.is_limp()) << "zero torque goes out first";
+  ASSERT_TRUE(r.run_until(drive_state::idle)) << r.drive.fault().what;
+  EXPECT_FALSE(r.peer.enabled());
+  EXPECT_EQ(r.peer.enables(), 1);
+}
+
+TYPED_TEST(JointDrives, measures_the_joint_and_not_the_shaft) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.bring_up());
+  r.peer.position_rad = 2.4;
+  r.peer.velocity_rad_per_s = 3.0;
+  r.run(5 * ms);
+  const joint_reading& now = r.drive.reading();
+  EXPECT_NEAR(now.position_rad, 0.25 - 2.4 / 6.0, r.drive.facts().position_resolution_rad * 2.0);
+  ASSERT_TRUE(now.has_velocity);
+  EXPECT_NEAR(now.velocity_rad_per_s, -0.5, 0.01);
+  EXPECT_LE(r.clock.now_ns() - now.host_time_ns, 2 * ms);
+  const std::uint64_t before = now.sequence;
+  r.run(10 * ms);
+  EXPECT_GE(r.drive.reading().sequence, before + 9);
+  ASSERT_TRUE(r.drive.enable(r.clock.now_ns()));
+  ASSERT_TRUE(r.run_until(drive_state::enabled));
+  r.wanted_n_m = 12.0;
+  r.run(5 * ms);
+  ASSERT_TRUE(r.drive.reading().has_torque);
+  EXPECT_NEAR(r.drive.reading().torque_n_m, 12.0, 0.1);
+}
+
+TYPED_TEST(JointDrives, a_silent_host_is_caught_by_the_drives_own_watchdog) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(20 * ms);
+  EXPECT_FALSE(r.is_limp());
+  r.clock.advance_ns(100 * ms);
+  EXPECT_TRUE(r.peer.watchdog_expired());
+  EXPECT_TRUE(r.is_limp());
+  r.run(40 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+  EXPECT_TRUE(r.is_limp());
+  EXPECT_EQ(r.peer.enables(), 1) << "nothing re-enables";
+}
+
+TYPED_TEST(JointDrives, an_application_that_stops_commanding_is_not_covered_up) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(20 * ms);
+  r.feeding = false;
+  r.run(23 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+  EXPECT_TRUE(r.why_contains("application") || r.peer.watchdog_expired()) << r.drive.fault().what;
+  r.run(3 * ms);
+  EXPECT_TRUE(r.is_limp());
+}
+
+TYPED_TEST(JointDrives, a_torque_that_was_never_set_needs_no_renewing) {
+  rig<TypeParam> r;
+  r.feeding = false;
+  ASSERT_TRUE(r.go());
+  r.run(300 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::enabled) << r.drive.fault().what;
+  EXPECT_TRUE(r.is_limp());
+}
+
+TYPED_TEST(JointDrives, the_drives_own_fault_is_told_with_its_code) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  r.peer.fail(static_cast<std::uint8_t>(TypeParam::broken.told));
+  if constexpr (requires { r.peer.leave_behind(0.0F); }) r.peer.fail(TypeParam::broken.told);
+  ASSERT_TRUE(r.run_until(drive_state::fault, 50 * ms));
+  EXPECT_EQ(r.drive.fault().code, TypeParam::broken.code);
+  EXPECT_TRUE(r.why_contains(TypeParam::broken.word)) << r.drive.fault().what;
+  r.run(3 * ms);
+  EXPECT_TRUE(r.is_limp());
+  EXPECT_FALSE(r.drive.enable(r.clock.now_ns())) << "latched";
+  r.run(200 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+  EXPECT_EQ(r.peer.enables(), 1);
+}
+
+TYPED_TEST(JointDrives, a_cleared_fault_leads_to_idle_and_not_to_torque) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  r.feeding = false;
+  ASSERT_TRUE(r.run_until(drive_state::fault, 100 * ms));
+  r.feeding = true;
+  r.run(50 * ms);
+  ASSERT_TRUE(r.drive.clear_fault(r.clock.now_ns()));
+  EXPECT_STREQ(r.drive.fault().what, "none");
+  ASSERT_TRUE(r.run_until(drive_state::idle)) << r.drive.fault().what;
+  r.run(200 * ms);
+  EXPECT_EQ(r.peer.enables(), 1);
+  EXPECT_EQ(r.drive.state(), drive_state::idle);
+  ASSERT_TRUE(r.drive.enable(r.clock.now_ns()));
+  ASSERT_TRUE(r.run_until(drive_state::enabled));
+  EXPECT_EQ(r.peer.enables(), 2);
+}
+
+TYPED_TEST(JointDrives, a_fault_that_stays_in_the_drive_comes_back) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.bring_up());
+  r.peer.mute(true);
+  ASSERT_TRUE(r.run_until(drive_state::silent, 200 * ms)) << "idle and silent is no fault";
+  ASSERT_FALSE(r.drive.enable(r.clock.now_ns()));
+  r.run(300 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::silent);
+  r.peer.mute(false);
+  ASSERT_TRUE(r.run_until(drive_state::idle)) << r.drive.fault().what;
+  EXPECT_EQ(r.peer.enables(), 0) << "a drive that comes back is not enabled";
+}
+
+TYPED_TEST(JointDrives, a_drive_that_never_answers_ends_in_a_fault) {
+  rig<TypeParam> r;
+  r.peer.mute(true);
+  r.drive.start(r.clock.now_ns());
+  ASSERT_TRUE(r.run_until(drive_state::fault, 600 * ms));
+  EXPECT_TRUE(r.why_contains("does not answer")) << r.drive.fault().what;
+  r.run(50 * ms);
+  r.peer.mute(false);
+  r.run(300 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::fault) << "latched";
+}
+
+TYPED_TEST(JointDrives, a_drive_that_falls_silent_gets_no_torque) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  r.peer.mute(true);
+  ASSERT_TRUE(r.run_until(drive_state::fault, 60 * ms));
+  EXPECT_TRUE(r.why_contains("silent")) << r.drive.fault().what;
+  r.run(3 * ms);
+  EXPECT_TRUE(r.is_limp());
+  r.peer.mute(false);
+  r.run(300 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+  EXPECT_FALSE(r.peer.enabled());
+  EXPECT_EQ(r.peer.enables(), 1);
+}
+
+TYPED_TEST(JointDrives, a_reset_in_the_middle_does_not_bring_torque_back) {
+  for (const std::int64_t boot_ns : {15 * ms, 40 * ms, 300 * ms}) {
+    rig<TypeParam> r;
+    r.peer.position_rad = 4.0;
+    ASSERT_TRUE(r.go(10.0)) << r.drive.fault().what;
+    r.run(20 * ms);
+    r.peer.reset(r.clock.now_ns(), boot_ns);
+    for (int i = 0; i < 600; ++i) {
+      r.tick();
+      ASSERT_TRUE(r.is_limp()) << TypeParam::name << " boot " << boot_ns << " tick " << i;
+    }
+    EXPECT_EQ(r.drive.state(), drive_state::fault) << boot_ns;
+    EXPECT_EQ(r.peer.enables(), 1) << boot_ns;
+    EXPECT_FALSE(r.peer.enabled());
+  }
+}
+
+TYPED_TEST(JointDrives, options_out_of_range_are_a_fault_and_no_torque) {
+  const auto refused = [](const joint_drive_options& joint) {
+    rig<TypeParam> r({}, TypeParam::options(joint));
+    r.drive.start(r.clock.now_ns());
+    r.run(20 * ms);
+    return r.drive.state() == drive_state::fault && r.why_contains("options") && r.peer.frames() == 0;
+  };
+  joint_drive_options o = geared();
+  for (const double bad : {std::nan(""), 0.0, -1.0, HUGE_VAL}) {
+    o = geared();
+    o.peak_torque_n_m = bad;
+    EXPECT_TRUE(refused(o)) << bad;
+    o = geared();
+    o.scale.gear_ratio = bad;
+    EXPECT_TRUE(refused(o)) << bad;
+  }
+  o = geared();
+  o.hold_ns = 0;
+  EXPECT_TRUE(refused(o));
+}
+
+TYPED_TEST(JointDrives, nothing_in_a_session_allocates) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  std::size_t news = 0;
+  can_frame f;
+  for (int i = 0; i < 200; ++i) {
+    r.clock.advance_ns(ms);
+    const std::size_t before = news_in_this_thread();
+    const std::int64_t now_ns = r.clock.now_ns();
+    while (r.host.receive(now_ns, f) == io_status::ok) r.drive.take(now_ns, f);
+    r.drive.set_torque(5.0);
+    EXPECT_EQ(r.drive.step(now_ns, r.host), io_status::ok);
+    if (i == 150) r.drive.disable(now_ns);
+    news += news_in_this_thread() - before;
+  }
+  EXPECT_EQ(news, 0U);
+  EXPECT_EQ(r.drive.state(), drive_state::idle);
+}
+
+TEST(MitDrive, unwraps_a_position_beyond_the_range) {
+  rig<mit_kind> r;
+  ASSERT_TRUE(r.bring_up());
+  for (int i = 0; i <= 4000; ++i) {
+    r.peer.position_rad = 0.01 * i;
+    r.tick();
+  }
+  r.run(2 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::idle) << r.drive.fault().what;
+  EXPECT_NEAR(r.drive.reading().position_rad, 0.25 - 40.0 / 6.0, 0.01);
+}
+
+TEST(MitDrive, an_answer_of_another_form_is_no_answer) {
+  rig<mit_kind> r;
+  r.peer.answer_size(5);
+  r.drive.start(r.clock.now_ns());
+  ASSERT_TRUE(r.run_until(drive_state::fault, 600 * ms));
+  EXPECT_TRUE(r.why_contains("protocol")) << r.drive.fault().what;
+  for (const std::uint8_t size : {std::uint8_t{6}, std::uint8_t{7}, std::uint8_t{8}}) {
+    rig<mit_kind> other;
+    other.peer.answer_size(size);
+    EXPECT_TRUE(other.go(5.0)) << int{size};
+  }
+}
+
+TEST(MitDrive, a_reset_too_short_to_be_a_silence_shows_in_the_torque) {
+  rig<mit_kind> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(20 * ms);
+  r.peer.reset(r.clock.now_ns(), 0);
+  ASSERT_TRUE(r.run_until(drive_state::fault, 110 * ms));
+  EXPECT_TRUE(r.why_contains("no torque")) << r.drive.fault().what;
+  EXPECT_EQ(r.peer.enables(), 1);
+}
+
+TEST(MitDrive, a_limit_below_the_zero_of_the_wire_is_refused) {
+  joint_drive_options o = geared();
+  o.peak_torque_n_m = 0.02;  // 15 N m / 4095 * 6 is more
+  rig<mit_kind> r({}, mit_kind::options(o));
+  r.drive.start(r.clock.now_ns());
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+}
+
+TEST(OdriveDrive, picks_the_table_by_the_version) {
+  rig<odrive_0_5_kind> old;
+  ASSERT_TRUE(old.bring_up());
+  EXPECT_EQ(old.drive.firmware(), odrive::firmware::v0_5);
+  EXPECT_GT(old.peer.remote_frames(), 0U) << "getters of 0.5 are remote frames";
+  rig<odrive_0_6_kind> current;
+  ASSERT_TRUE(current.bring_up());
+  EXPECT_EQ(current.drive.firmware(), odrive::firmware::v0_6);
+}
+
+TEST(OdriveDrive, another_firmware_is_refused) {
+  fake_odrive::config c;
+  c.version = {2, 5, 0, 0, 0, 7, 1, 0};
+  rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
+  r.drive.start(r.clock.now_ns());
+  ASSERT_TRUE(r.run_until(drive_state::fault));
+  EXPECT_TRUE(r.why_contains("0.5 nor 0.6")) << r.drive.fault().what;
+  EXPECT_EQ(r.drive.fault().code, 0x000701U);
+}
+
+TEST(OdriveDrive, what_another_program_left_running_is_stopped_first) {
+  fake_odrive::config c;
+  c.watchdog_ns = 0;
+  rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
+  r.peer.leave_behind(2.0F);
+  EXPECT_FALSE(r.is_limp());
+  ASSERT_TRUE(r.bring_up()) << r.drive.fault().what;
+  EXPECT_FALSE(r.peer.enabled());
+}
+
+TEST(OdriveDrive, an_axis_that_does_not_obey_is_stopped_harder) {
+  fake_odrive::config c;
+  c.watchdog_ns = 0;
+  rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
+  ASSERT_TRUE(r.go(10.0));
+  r.peer.stick();
+  r.drive.disable(r.clock.now_ns());
+  r.run(2 * ms);
+  EXPECT_TRUE(r.is_limp());
+  r.run(600 * ms);
+  EXPECT_TRUE(r.peer.stopped_hard());
+  EXPECT_FALSE(r.peer.enabled());
+}
+
+TEST(OdriveDrive, feeds_the_drives_watchdog_with_the_applications_commands_only) {
+  for (const auto v : {odrive::firmware::v0_5, odrive::firmware::v0_6}) {
+    fake_odrive::config c;
+    c.firmware = v;
+    c.watchdog_ns = 5 * ms;
+    rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
+    ASSERT_TRUE(r.go(10.0)) << r.drive.fault().what;
+    r.run(20 * ms);
+    const std::uint64_t before = r.peer.frames();
+    r.feeding = false;
+    r.run(10 * ms);
+    EXPECT_TRUE(r.peer.watchdog_expired());
+    EXPECT_LE(r.peer.frames(), before + 2);
+    EXPECT_TRUE(r.is_limp());
+  }
+}
+
+TEST(OdriveDrive, heartbeats_that_stop_are_a_fault_though_estimates_come) {
+  fake_odrive::config c;
+  rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  // Heartbeats are not heard; everything else is.
+  for (int i = 0; i < 400 && r.drive.state() != drive_state::fault; ++i) {
+    r.clock.advance_ns(ms);
+    can_frame f;
+    while (r.host.receive(r.clock.now_ns(), f) == io_status::ok) {
+      if ((f.id & 0x1fU) != 1) r.drive.take(r.clock.now_ns(), f);
+    }
+    r.drive.set_torque(10.0);
+    static_cast<void>(r.drive.step(r.clock.now_ns(), r.watched));
+  }
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+  EXPECT_TRUE(r.why_contains("heartbeat")) << r.drive.fault().what;
+}
+
+TEST(MoteusDrive, another_version_of_the_registers_is_refused) {
+  fake_moteus::config c;
+  c.register_map = 4;
+  rig<moteus_kind> r({}, moteus_kind::options(geared()), c);
+  r.drive.start(r.clock.now_ns());
+  ASSERT_TRUE(r.run_until(drive_state::fault));
+  EXPECT_EQ(r.drive.fault().code, 4U);
+  EXPECT_TRUE(r.why_contains("version")) << r.drive.fault().what;
+}
+
+TEST(MoteusDrive, a_refused_register_is_a_fault) {
+  rig<moteus_kind> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.peer.refuse_next_read();
+  ASSERT_TRUE(r.run_until(drive_state::fault, 10 * ms));
+  EXPECT_TRUE(r.why_contains("refused")) << r.drive.fault().what;
+}
+
+TEST(MoteusDrive, every_command_carries_its_watchdog_and_its_limit) {
+  rig<moteus_kind> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(5 * ms);
+  EXPECT_DOUBLE_EQ(r.peer.watchdog_s(), 0.02);
+  EXPECT_LE(r.peer.most_torque_n_m() * 6.0, 20.0);
+  EXPECT_NEAR(r.peer.most_torque_n_m() * 6.0, 20.0, 1e-5);
+}
+
+TEST(MoteusDrive, the_drives_own_fault_is_not_wiped_out_before_it_is_cleared) {
+  rig<moteus_kind> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.peer.fail(34);
+  r.run(100 * ms);
+  EXPECT_EQ(r.peer.mode(), 1);
+  EXPECT_EQ(r.drive.fault().code, 34U);
+  ASSERT_TRUE(r.drive.clear_fault(r.clock.now_ns()));
+  ASSERT_TRUE(r.run_until(drive_state::idle)) << r.drive.fault().what;
+  EXPECT_EQ(r.peer.mode(), 0);
+}
+
+TEST(MoteusDrive, a_classic_bus_is_refused) {
+  virtual_can classic(false);
+  virtual_can_node host(classic);
+  moteus_drive drive(moteus_kind::options(geared()));
+  drive.start(0);
+  EXPECT_EQ(drive.step(ms, host), io_status::refused);
+  EXPECT_EQ(drive.state(), drive_state::fault);
+  EXPECT_EQ(classic.frames(), 0U);
+}
+
+}  // namespace
+}  // namespace asperity::test_support
