@@ -1,4 +1,4 @@
-# The package: find_package(asperity [COMPONENTS io bake gl gl_compute gl_occlusion]), pkg-config for the header-only core, the command.
+# The package: find_package(asperity [COMPONENTS io bake gl gl_compute gl_occlusion usb]), pkg-config for the header-only core, the command.
 include(CMakePackageConfigHelpers)
 
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
@@ -7,7 +7,7 @@ set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 install(TARGETS asperity asperity_reproducible EXPORT asperity-core FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT asperity-core NAMESPACE asperity:: FILE asperity-core.cmake DESTINATION ${_config_dir})
 
-foreach(_component io bake gl gl_compute gl_occlusion)
+foreach(_component io bake gl gl_compute gl_occlusion usb)
   if(TARGET asperity_${_component})
     set_target_properties(asperity_${_component} PROPERTIES EXPORT_NAME ${_component})
     install(TARGETS asperity_${_component} EXPORT asperity-${_component}
