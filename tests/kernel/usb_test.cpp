@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <deque>
+#include <fstream>
 #include <functional>
 #include <gtest/gtest.h>
 #include <string>
@@ -403,6 +404,14 @@ TEST_F(kernel_usb_link, without_permission_the_reason_has_the_line_for_udev) {
   ASSERT_EQ(::waitpid(child, &state, 0), child);
   EXPECT_TRUE(WIFEXITED(state));
   EXPECT_EQ(WEXITSTATUS(state), 0);
+}
+
+TEST(udev_rule, is_the_line_of_the_installed_file) {
+  std::ifstream file(ASPERITY_FALCON_RULES);
+  if (!file) GTEST_SKIP() << "the source tree is not here: " << ASPERITY_FALCON_RULES;
+  std::string line;
+  while (std::getline(file, line) && line.starts_with('#')) continue;
+  EXPECT_EQ(line, usb::udev_rule(falcon_vendor, falcon_product));
 }
 
 TEST_F(kernel_usb, a_falcon_from_power_on_to_an_unplugged_cable_and_back) {

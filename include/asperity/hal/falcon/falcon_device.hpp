@@ -276,7 +276,7 @@ class falcon_device {
       return error{error_code::invalid_argument,
                    "the Falcon at " + which_.path +
                        " has no firmware yet and no image was given: name your copy of Novint's image as its firmware "
-                       "path; asperity ships none, because its licence does not allow it"};
+                       "path; asperity ships none, because its licence is Novint's own and noncommercial"};
     }
     const auto image = read_falcon_image(config_.firmware_path);
     if (!image) return image.error();
