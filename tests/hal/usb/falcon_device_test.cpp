@@ -264,6 +264,38 @@ TEST(falcon_device, a_tick_takes_no_memory) {
   EXPECT_EQ(news, 0U);
 }
 
+TEST(falcon_wire, says_why_a_report_is_not_believed) {
+  virtual_usb cable;
+  falcon_wire wire;
+  wire.attach(cable.open());
+  wire.demand_homing(true);
+  std::int64_t now_ns = 1'000'000'000;
+  const auto hear = [&](std::array<std::int16_t, 3> encoders, std::uint8_t homed = falcon_all_homed) {
+    now_ns += 1'000'000;
+    EXPECT_EQ(wire.send(now_ns, {}), io_status::ok);
+    std::array<std::uint8_t, 18> packet{};
+    const falcon_frame f = encode_falcon_report({.encoder_counts = encoders, .homed = homed});
+    std::copy(f.begin(), f.end(), packet.begin() + 2);
+    cable.give(now_ns, packet);
+    EXPECT_EQ(wire.receive(now_ns), io_status::ok);
+    std::array<std::uint8_t, 16> sent{};
+    while (cable.take(now_ns, sent) != 0) continue;
+    return wire.fresh() ? falcon_doubt::none : wire.doubt();
+  };
+  EXPECT_EQ(hear({2601, 0, 0}), falcon_doubt::out_of_range);
+  EXPECT_EQ(hear({0, -2601, 0}), falcon_doubt::out_of_range);
+  EXPECT_EQ(hear({0, 0, 0}, 3), falcon_doubt::not_homed);
+  EXPECT_EQ(hear({2600, -2600, 2600}), falcon_doubt::no_position);
+  wire.forget_encoders();
+  EXPECT_EQ(hear({0, 0, 0}), falcon_doubt::none);
+  EXPECT_EQ(hear({0, 0, 151}), falcon_doubt::jump);
+  EXPECT_EQ(hear({0, 0, 151}), falcon_doubt::none);  // 2 ms after the last that was believed
+  EXPECT_EQ(hear({150, 150, 301}), falcon_doubt::none);
+  EXPECT_EQ(wire.positions(), 3U);
+  EXPECT_EQ(wire.doubted_in_a_row(), 0);
+  EXPECT_EQ(wire.lost(), 5U);
+}
+
 TEST(falcon_driver, lists_and_makes_two_at_once) {
   manual_clock clock(1'000'000'000, 250'000);
   virtual_usb first;

@@ -159,7 +159,7 @@ TEST(falcon_torque, the_peak_force_is_possible_everywhere_in_the_workspace) {
 TEST(falcon_torque, a_force_of_any_size_keeps_its_direction) {
   everywhere([&](const vec3& p, auto&& unit) {
     const vec3 way = glm::normalize(vec3(unit() - 0.5, unit() - 0.5, unit() - 0.5));
-    for (const double size : {1.0, 20.0, 62.0, 1e3, 1e9, 1e200, 1e300}) {
+    for (const double size : {1.0, 20.0, 62.0, 1e3, 1e9, 1e200, 1e300, 1.7e308}) {
       for (const std::int16_t limit : {std::int16_t{4096}, std::int16_t{1000}, std::int16_t{32767}, std::int16_t{-5}}) {
         const auto counts = falcon_counts_for(p, *falcon_angles_at(p), size * way, limit);
         const int allowed = std::clamp<int>(limit, 0, 4096);

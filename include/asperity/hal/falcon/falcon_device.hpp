@@ -128,6 +128,9 @@ class falcon_device {
     wire_.attach(std::move(*link));
     machine_.apply(device_event::opened);
     fault_ = falcon_fault::none;
+    command_ = {};
+    busy_ = 0;
+    wrote_ = false;
     result<void> ready = prepare();
     if (!ready) {
       close();
@@ -154,7 +157,7 @@ class falcon_device {
   status disarm() noexcept {
     command_ = {};
     const bool possible = machine_.apply(device_event::disarmed);
-    const status sent = put_out(last_now_ns_, {});
+    const status sent = put_out(last_now_ns_, vec3(0.0));
     return possible ? sent : status::not_ready;
   }
 

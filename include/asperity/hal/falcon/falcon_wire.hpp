@@ -132,14 +132,13 @@ class falcon_wire {
 
   [[nodiscard]] falcon_doubt judge(const falcon_report& report, std::int64_t host_time_ns) const noexcept {
     if (homing_demanded_ && report.homed != falcon_all_homed) return falcon_doubt::not_homed;
-    // After a pause in which nobody asked the hand may have been anywhere.
-    const std::int64_t passed_ns = host_time_ns - last_encoders_ns_;
-    const bool compared = judged_before_ && passed_ns <= 2 * outdated_after_ns;
-    const std::int64_t passed_ms = std::max<std::int64_t>(passed_ns / 1'000'000, 1);
+    // The longer nothing was heard, the farther the hand may have gone.
+    const std::int64_t passed_ms = std::max<std::int64_t>((host_time_ns - last_encoders_ns_) / 1'000'000, 1);
     for (std::size_t i = 0; i < 3; ++i) {
       const int counts = report.encoder_counts[i];
       if (std::abs(counts) > most_counts) return falcon_doubt::out_of_range;
-      if (compared && std::abs(counts - last_encoders_[i]) > most_counts_per_ms * passed_ms) return falcon_doubt::jump;
+      if (judged_before_ && std::abs(counts - last_encoders_[i]) > most_counts_per_ms * passed_ms)
+        return falcon_doubt::jump;
     }
     return falcon_doubt::none;
   }

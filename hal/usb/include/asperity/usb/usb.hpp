@@ -24,9 +24,10 @@ namespace asperity::usb {
 /// write(), by one call of libusb that does not wait, in the thread that calls them. So nothing runs between two ticks,
 /// the order of events is that of the calls, and no lock is ever held by anybody else. The price is the time stamp: a
 /// packet is as old as the tick that collects it, which is the last moment at which it can have arrived.
-/// Inside a tick this polls and, where transfers are submitted again, enters the kernel once for each; it takes locks
-/// of libusb that nobody contends for. libusb itself frees a few bytes in the first tick after anything was plugged in
-/// or pulled on this machine.
+/// Inside a tick this polls, and enters the kernel once for each transfer that is submitted. It takes locks of libusb
+/// that nobody contends for. libusb itself takes a block of heap for every transfer that it submits and gives it back
+/// when that ends: a call of calloc() per packet and per write, which is all that stands between this and a tick
+/// without allocation.
 ///
 /// The destructor waits at most 100 ms for what was written to go out, cancels the rest and waits at most 500 ms more.
 /// @return invalid_argument: the device has no such endpoints | io_failed: gone, in use or not permitted; the message
