@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -155,7 +156,7 @@ class falcon_wire {
     for (std::size_t i = 0; i < 3; ++i) angles[i] = falcon_angle_rad(candidate_.encoder_counts[i]);
     falcon_position p = falcon_position_at(angles, position_.grip_d);
     if (!p.converged) p = falcon_position_at(angles);
-    if (!p.converged || p.grip_d.z <= 0.0) {
+    if (!p.converged || !is_reached(p.grip_d, angles)) {
       reject(falcon_doubt::no_position);
       fresh_ = false;
       return;
@@ -166,6 +167,18 @@ class falcon_wire {
     report_ns_ = candidate_ns_;
     ++positions_;
     doubted_in_a_row_ = 0;
+  }
+
+  // The legs can meet in more than one way; on the device they do in the one that falcon_angles_at() takes.
+  [[nodiscard]] static bool is_reached(const vec3& grip_d, const falcon_angles& angles) noexcept {
+    constexpr double wide_m = 0.1;  // twice what its maker says of it
+    if (!(std::fabs(grip_d.x) < wide_m && std::fabs(grip_d.y) < wide_m && grip_d.z > 0.0)) return false;
+    const std::optional<falcon_angles> back = falcon_angles_at(grip_d);
+    if (!back) return false;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(std::fabs((*back)[i] - angles[i]) < falcon_rad_per_count)) return false;
+    }
+    return true;
   }
 
   std::unique_ptr<usb_link> link_{};
