@@ -44,11 +44,16 @@ class echo_function final : public usb_function {
   }
   bool take(std::span<const std::uint8_t> bytes) override {
     if (deaf) return false;
-    waiting.emplace_back(bytes.begin(), bytes.end());
+    taken.assign(bytes.begin(), bytes.end());
+    waiting.push_back(taken);
     return true;
   }
   answer give(std::span<std::uint8_t> room, std::size_t& size) override {
     if (stalled) return answer::stall;
+    if (broken > 0) {
+      --broken;
+      return answer::broken;
+    }
     if (waiting.empty()) return answer::nothing;
     size = std::min(room.size(), waiting.front().size());
     std::copy_n(waiting.front().begin(), size, room.begin());
@@ -60,8 +65,10 @@ class echo_function final : public usb_function {
   std::vector<std::uint8_t> stored{};
   usb_setup last{};
   std::deque<std::vector<std::uint8_t>> waiting{};
+  std::vector<std::uint8_t> taken{};  // last
   bool deaf = false;
   bool stalled = false;
+  int broken = 0;
 };
 
 // The fake Falcon at the kernel's end of the cable, with the FTDI chip's packet in every millisecond.
@@ -163,6 +170,7 @@ class kernel_usb_link : public kernel_usb {
     device().with_lock([] {
       echo().waiting.clear();
       echo().deaf = echo().stalled = false;
+      echo().broken = 0;
     });
   }
 
@@ -335,6 +343,19 @@ TEST_F(kernel_usb_link, a_stalled_pipe_is_a_failure_and_not_a_hang) {
   EXPECT_EQ(back, pattern(5, 5));
 }
 
+TEST_F(kernel_usb_link, a_transfer_that_breaks_is_told_once_and_the_pipe_goes_on) {
+  const auto link = opened(listing(), {.in_transfers = 1});
+  ASSERT_TRUE(link);
+  std::vector<std::uint8_t> back;
+  for (std::size_t i = 0; i < 3; ++i) {
+    device().with_lock([] { echo().broken = 1; });
+    ASSERT_EQ(next(*link, back), io_status::failed) << i;
+    ASSERT_EQ(link->write(clock.now_ns(), pattern(9, i)), io_status::ok);
+    ASSERT_EQ(next(*link, back), io_status::ok);
+    EXPECT_EQ(back, pattern(9, i));
+  }
+}
+
 TEST_F(kernel_usb_link, closing_sends_what_was_written_and_takes_back_what_was_asked) {
   const usb_listing& l = listing();
   for (int i = 0; i < 3; ++i) {
@@ -344,6 +365,22 @@ TEST_F(kernel_usb_link, closing_sends_what_was_written_and_takes_back_what_was_a
     const unsigned before = device().taken_back();
     link.reset();
     EXPECT_GE(device().taken_back() - before, 5U);  // the echo may have ended one
+  }
+  // What was written goes out although the device takes its time.
+  {
+    auto link = opened(l);
+    device().with_lock([] {
+      echo().deaf = true;
+      echo().waiting.clear();
+    });
+    ASSERT_EQ(link->write(clock.now_ns(), pattern(16, 7)), io_status::ok);
+    std::thread listening([] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      device().with_lock([] { echo().deaf = false; });
+    });
+    link.reset();
+    listening.join();
+    device().with_lock([] { EXPECT_EQ(echo().taken, pattern(16, 7)); });
   }
   // A device that takes nothing cannot hold the destructor for ever.
   device().with_lock([] { echo().deaf = true; });
@@ -370,7 +407,7 @@ TEST_F(kernel_usb, pulled_in_mid_transfer_it_is_gone_for_ever) {
     EXPECT_TRUE(eventually([&] {
       usb_packet p;
       read = link->read(clock.now_ns(), bytes, p);
-      written = link->write(clock.now_ns(), pattern(16, 1));
+      if (run > 0) written = link->write(clock.now_ns(), pattern(16, 1));
       return read == io_status::gone;
     })) << to_string(read)
         << ", " << to_string(written);

@@ -220,8 +220,9 @@ void usbip_device::move_waiting() {
     if (answer == usb_function::answer::nothing) return;
     const std::uint32_t number = waiting_in_.front().number;
     waiting_in_.pop_front();
-    const bool stalled = answer == usb_function::answer::stall;
-    reply(number, stalled ? -EPIPE : 0, std::span(room).first(stalled ? 0 : size), stalled ? 0 : size);
+    const bool good = answer == usb_function::answer::data;
+    const std::int32_t trouble = answer == usb_function::answer::stall ? -EPIPE : -EPROTO;
+    reply(number, good ? 0 : trouble, std::span(room).first(good ? size : 0), good ? size : 0);
   }
 }
 

@@ -29,7 +29,7 @@ class usb_function {
   /// Bytes on the bulk endpoint to the device. @return false: not taken now; asked again later
   [[nodiscard]] virtual bool take(std::span<const std::uint8_t> bytes) = 0;
 
-  enum class answer { data, nothing, stall };
+  enum class answer { data, nothing, stall, broken };
   /// The next transfer to the host, at most `room.size()` bytes.
   [[nodiscard]] virtual answer give(std::span<std::uint8_t> room, std::size_t& size) = 0;
   /// Once in a millisecond.
