@@ -105,7 +105,10 @@ class arm_rig {
       d.reversed = i == 1 || i == 4;
       d.zero_offset_rad = zero_rad(i);
       drives[i] = std::make_unique<cia402_drive>(d);
-      c.joints.push_back({.drive = drives[i].get(), .bus = b, .reflected_inertia_kg_m2 = mechanics.reflected_kg_m2[i]});
+      c.joints.push_back({.drive = drives[i].get(),
+                          .bus = b,
+                          .continuous_torque_n_m = i < 3 ? 8.0 : 2.0,
+                          .reflected_inertia_kg_m2 = mechanics.reflected_kg_m2[i]});
     }
     move_joints();
     clock.on_advance([this](std::int64_t now_ns) { pass(now_ns); });
