@@ -19,7 +19,8 @@ namespace asperity {
 /// - In session these are faults: a heartbeat or process data that stop, an emergency message, a boot-up message, an
 /// NMT
 ///   state or power state that nobody asked for, another mode than torque, a frame that the bus does not take. In
-///   fault, torque 0 and "disable voltage" (or quick stop, see the configuration) go out in every period.
+///   fault, torque 0 and "disable voltage" (or quick stop, see the configuration) go out in every period; a drive that
+///   is not operational and so would not hear them is reset.
 /// @source CiA 301; CiA 402-2 through descriptions of drives that implement it
 /// @rt safe after construction
 class cia402_drive final : public joint_drive {
@@ -96,6 +97,7 @@ class cia402_drive final : public joint_drive {
   static constexpr std::int64_t repeat_reset_ns = 1'000'000'000;
   static constexpr std::int64_t repeat_start_ns = 100'000'000;
   static constexpr int most_busy_in_a_row = 5;
+  static constexpr int most_resets = 3;  // against loss on the bus
 
   [[nodiscard]] bool exchanges_data() const noexcept {
     return phase_ == phase::lead || phase_ == phase::idle || phase_ == phase::switch_on || phase_ == phase::enabled ||
@@ -107,7 +109,7 @@ class cia402_drive final : public joint_drive {
     torque_n_m_ = 0.0;
     operational_ = has_status_ = has_motion_ = false;
     was_started_ = false;
-    busy_in_a_row_ = 0;
+    busy_in_a_row_ = resets_sent_ = 0;
     last_emergency_ = 0;
     reset_step_ = 0;
     restart_configuration();
@@ -171,6 +173,7 @@ class cia402_drive final : public joint_drive {
   int reset_step_ = 0;  // of the fault reset: 0 not tried, 1 bit 7 is low, 2 it has risen
   bool zero_sent_ = false;
   int busy_in_a_row_ = 0;
+  int resets_sent_ = 0;  // in fault
 };
 
 inline drive_state cia402_drive::state() const noexcept {
@@ -475,6 +478,13 @@ inline io_status cia402_drive::step(std::int64_t now_ns, can_bus& bus) noexcept 
       return answer;
     case phase::fault:
       if (!was_started_) return answer;
+      if (!operational_ && resets_sent_ < most_resets) {
+        // It hears no process data, and may still hold a torque: only NMT reaches it.
+        if (send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::reset_node, config_.node), answer)) {
+          ++resets_sent_;
+        }
+        return answer;
+      }
       break;
     default:
       break;
