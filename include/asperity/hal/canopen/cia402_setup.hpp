@@ -54,7 +54,8 @@ using setup_steps = fixed_vector<setup_step, 64>;
 /// Largest command of a drive, thousandths of its rated torque; 0 where the configuration makes no sense.
 [[nodiscard]] inline std::int16_t torque_limit_permille(const cia402_config& c) noexcept {
   if (!(c.rated_torque_n_m > 0.0) || !(c.gear_ratio > 0.0) || !(c.peak_torque_n_m > 0.0)) return 0;
-  const double permille = std::floor(c.peak_torque_n_m / c.gear_ratio / c.rated_torque_n_m * 1000.0);
+  // 3 N m of 1.5 N m rated is 2000, not the 1999 that rounding can make of it.
+  const double permille = std::floor(c.peak_torque_n_m / c.gear_ratio / c.rated_torque_n_m * 1000.0 * (1.0 + 1e-12));
   return static_cast<std::int16_t>(std::clamp(permille, 0.0, 32767.0));
 }
 
