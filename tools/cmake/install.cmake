@@ -1,4 +1,4 @@
-# The package: find_package(asperity [COMPONENTS io bake gl gl_compute gl_occlusion]), pkg-config for the header-only core, the command.
+# The package: find_package(asperity [COMPONENTS io bake gl gl_compute gl_occlusion can serial urdf]), pkg-config for the header-only core, the command.
 include(CMakePackageConfigHelpers)
 
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
@@ -7,7 +7,7 @@ set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 install(TARGETS asperity asperity_reproducible EXPORT asperity-core FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT asperity-core NAMESPACE asperity:: FILE asperity-core.cmake DESTINATION ${_config_dir})
 
-foreach(_component io bake gl gl_compute gl_occlusion)
+foreach(_component io bake gl gl_compute gl_occlusion can serial urdf)
   if(TARGET asperity_${_component})
     set_target_properties(asperity_${_component} PROPERTIES EXPORT_NAME ${_component})
     install(TARGETS asperity_${_component} EXPORT asperity-${_component}
@@ -22,6 +22,7 @@ endforeach()
 # What find_dependency has to find before a component is used; the core needs GLM only.
 set(ASPERITY_PACKAGES_io TinyGLTF nlohmann_json PNG TIFF JPEG OpenEXR)
 set(ASPERITY_PACKAGES_bake Threads)
+set(ASPERITY_PACKAGES_urdf tinyxml2)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/asperity-config.cmake.in
                               ${PROJECT_BINARY_DIR}/asperity-config.cmake INSTALL_DESTINATION ${_config_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/asperity-config-version.cmake

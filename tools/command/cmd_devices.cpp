@@ -4,6 +4,9 @@
 #include <utility>
 
 #include "asperity/hal/simulated/simulated_device.hpp"
+#ifdef ASPERITY_HAS_CAN
+#include "can_devices.hpp"
+#endif
 #include "cli.hpp"
 #include "gpu_devices.hpp"
 #include "model_report.hpp"
@@ -46,6 +49,9 @@ result<answer> list_devices() {
       row("simulated", "no hardware: a handle, a hand and their dynamics in software; " + brief(c.peak_force_n) +
                            " N and " + brief(c.peak_torque_n_m) + " N m at most, " + brief(c.nominal_rate_hz) + " Hz");
   out.text += "  This build has no driver for hardware.\n";
+#ifdef ASPERITY_HAS_CAN
+  add_can_interfaces(out);
+#endif
   return out;
 }
 

@@ -26,6 +26,9 @@ class byte_link {
   /// @return ok (all) | too_short (some: the rest is the caller's) | busy (none) | gone | failed
   [[nodiscard]] virtual io_status write(std::int64_t now_ns, std::span<const std::uint8_t> bytes,
                                         std::size_t& done) noexcept = 0;
+
+  /// What the kernel said to the last call that did not go well; 0 where there is no kernel behind the link.
+  [[nodiscard]] virtual int errno_value() const noexcept { return 0; }
 };
 
 }  // namespace asperity

@@ -29,6 +29,8 @@ struct can_health {
   std::uint8_t transmit_errors = 0;  ///< the controller's counter, where it tells
   std::uint8_t receive_errors = 0;
   std::uint64_t lost = 0;  ///< received frames that were dropped before we read them, so far
+
+  friend bool operator==(const can_health&, const can_health&) = default;
 };
 
 /// One CAN interface, as one program sees it: socketCAN or an in-process twin of it.
@@ -42,14 +44,18 @@ class can_bus {
 
   /// Hands a frame to the controller. ok says that it was queued, not that anybody heard it: a controller that is
   /// bus-off takes frames and loses them, so health() is to be looked at as well.
-  /// @return ok | busy | down | gone | refused | failed
+  /// @return ok | busy | down | gone | too_short | refused | failed
   [[nodiscard]] virtual io_status send(std::int64_t now_ns, const can_frame& frame) noexcept = 0;
 
-  /// The oldest frame that has arrived by now_ns. Error frames are not handed out: they change health().
-  /// @return ok | nothing | down | gone | failed; `frame` changes with ok only
+  /// The oldest frame that has arrived by now_ns. Error frames are not handed out: they change health(). Read until it is
+  /// not ok in every tick, whatever it is: only so are bus-off and its end noticed.
+  /// @return ok | nothing | down | gone | too_short | failed; `frame` changes with ok only
   [[nodiscard]] virtual io_status receive(std::int64_t now_ns, can_frame& frame) noexcept = 0;
 
+  /// As of the last receive().
   [[nodiscard]] virtual can_health health() const noexcept = 0;
+  /// What the kernel said to the last call that did not go well; 0 where there is no kernel behind the bus.
+  [[nodiscard]] virtual int errno_value() const noexcept { return 0; }
   /// Whether CAN FD frames can be sent.
   [[nodiscard]] virtual bool takes_fd() const noexcept = 0;
 };
