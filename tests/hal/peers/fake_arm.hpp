@@ -60,9 +60,10 @@ struct fake_arm_config {
   motion_config motion{};
   std::uint64_t seed = 1;
   bool hand_holds = true;
+  std::int64_t step_ns = 50'000;
 };
 
-/// Integrates in steps of 50 us: semi-implicit, dampers at the end of the step. Full rigid-body dynamics.
+/// Integrates in steps of one length: semi-implicit, dampers at the end of the step. Full rigid-body dynamics.
 class fake_arm {
  public:
   explicit fake_arm(const fake_arm_config& config)
@@ -79,7 +80,7 @@ class fake_arm {
       started_ = true;
       origin_ns_ = now_ns_ = now_ns;
     }
-    while (now_ns_ + step_ns <= now_ns) step();
+    while (now_ns_ + config_.step_ns <= now_ns) step();
   }
 
   [[nodiscard]] const joint_vector& q() const { return q_; }
@@ -101,11 +102,10 @@ class fake_arm {
   }
 
  private:
-  static constexpr std::int64_t step_ns = 50'000;
   [[nodiscard]] std::size_t n() const { return config_.chain.joints.size(); }
 
   void step() {
-    const double h = 1e-9 * static_cast<double>(step_ns);
+    const double h = 1e-9 * static_cast<double>(config_.step_ns);
     const hand_target hand = motion_.at(1e-9 * static_cast<double>(now_ns_ - origin_ns_));
     const hand_config& g = config_.hand;
     joint_matrix m = inertia_of(config_.chain, at_, config_.reflected_kg_m2);
@@ -141,7 +141,7 @@ class fake_arm {
       q_[i] += h * qd_[i];
     }
     at_ = forward(config_.chain, q_);
-    now_ns_ += step_ns;
+    now_ns_ += config_.step_ns;
   }
 
   fake_arm_config config_;
