@@ -31,7 +31,7 @@ struct arm_fault {
 ///   without brakes or counterweights falls when it is disarmed.
 /// - A fault of one joint is a fault of all: zero torque on every drive in the same call, latched with its cause. In
 ///   fault write() goes on to lead the drives to idle.
-/// - read() and write() keep the drives' own watchdogs fed, and nothing else does: whoever stops calling is stopped.
+/// - write() keeps the drives' own watchdogs fed, and nothing else does: whoever stops calling it is stopped.
 /// - open() and arm() tick by themselves while they wait. The application has to tick soon after arm().
 /// - open() after clear_fault() also resets faults that the drives hold.
 /// A moved-from device may only be destroyed.
