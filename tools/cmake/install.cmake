@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 set(ASPERITY_TOOLS_COMPONENTS io bake)
 set(ASPERITY_GL_COMPONENTS gl gl_compute gl_occlusion)
-set(ASPERITY_HAL_COMPONENTS hid can serial usb)
+set(ASPERITY_HAL_COMPONENTS hid can serial usb urdf)
 set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} ${ASPERITY_HAL_COMPONENTS})
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 
@@ -31,6 +31,7 @@ endforeach()
 # What find_dependency has to find before a component is used; the core needs GLM only.
 set(ASPERITY_PACKAGES_io TinyGLTF nlohmann_json PNG TIFF JPEG OpenEXR)
 set(ASPERITY_PACKAGES_bake Threads)
+set(ASPERITY_PACKAGES_urdf tinyxml2)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/asperity-config.cmake.in
                               ${PROJECT_BINARY_DIR}/asperity-config.cmake INSTALL_DESTINATION ${_config_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/asperity-config-version.cmake
