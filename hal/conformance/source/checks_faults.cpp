@@ -63,8 +63,10 @@ void check_departures(subject& device, ledger& found) {
   static_cast<void>(device.provoke(ASPERITY_PROVOKE_RETURN));
   for (int i = 0; i < ticks_to_notice; ++i) {
     static_cast<void>(device.tick(w));
-    found.look("departure.return_not_armed", !may_put_out(device.state()) && rests(device),
-               [&] { return is(device) + " after it returned, and nobody armed it"; });
+    found.look("departure.return_not_armed", !may_put_out(device.state()) && rests(device), [&] {
+      return is(device) +
+             (rests(device) ? " after it returned, and nobody armed it" : " and puts something out after it returned");
+    });
   }
 
   found.begin("a departure while ready");

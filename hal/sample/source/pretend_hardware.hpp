@@ -22,14 +22,18 @@ class pretend_hardware {
   static constexpr double newtons_per_count = 0.001;
   static constexpr std::int64_t frame_period_ns = 1'000'000;
 
-  /// The cable. A handle without one does not answer.
-  bool plugged_in = true;
+  /// The cable. A handle without one does not answer, and its motors have no power.
+  [[nodiscard]] bool plugged_in() const noexcept { return plugged_in_; }
+  void plug(bool in) noexcept {
+    plugged_in_ = in;
+    motors_ = {};
+  }
   /// The next transfer to the controller fails.
   bool next_transfer_fails = false;
 
   /// Sends motor counts, which the controller holds until its watchdog ends them. @return false where the link failed
   [[nodiscard]] bool send(std::array<std::int16_t, 3> counts, std::int64_t watchdog_ns) noexcept {
-    if (!plugged_in) return false;
+    if (!plugged_in_) return false;
     if (next_transfer_fails) {
       next_transfer_fails = false;
       return false;
@@ -41,7 +45,7 @@ class pretend_hardware {
 
   /// The newest frame that the controller has sent by now_ns. @return false where the link failed
   [[nodiscard]] bool receive(std::int64_t now_ns, encoder_frame& out) noexcept {
-    if (!plugged_in) return false;
+    if (!plugged_in_) return false;
     run_until(now_ns);
     out = frame_;
     return true;
@@ -49,7 +53,7 @@ class pretend_hardware {
 
   /// What is on the motors now.
   [[nodiscard]] std::array<std::int16_t, 3> motors(std::int64_t now_ns) const noexcept {
-    return plugged_in && now_ns <= watchdog_ns_ ? motors_ : std::array<std::int16_t, 3>{};
+    return plugged_in_ && now_ns <= watchdog_ns_ ? motors_ : std::array<std::int16_t, 3>{};
   }
 
  private:
@@ -91,6 +95,7 @@ class pretend_hardware {
     next_frame_ns_ += frame_period_ns;
   }
 
+  bool plugged_in_ = true;
   std::array<std::int16_t, 3> motors_{};
   std::int64_t watchdog_ns_ = -1;
   bool started_ = false;

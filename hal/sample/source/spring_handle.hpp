@@ -68,7 +68,7 @@ class spring_handle {
   [[nodiscard]] asperity::device_state state() const noexcept { return machine_.state(); }
 
   [[nodiscard]] asperity::result<void> open() {
-    if (!hardware_.plugged_in) {
+    if (!hardware_.plugged_in()) {
       machine_.apply(asperity::device_event::departed);
       return asperity::error{asperity::error_code::io_failed, "the spring handle is not plugged in; plug it in"};
     }
@@ -161,10 +161,10 @@ class spring_handle {
   [[nodiscard]] bool provoke(asperity::provocation what) {
     switch (what) {
       case asperity::provocation::departure:
-        hardware_.plugged_in = false;
+        hardware_.plug(false);
         return true;
       case asperity::provocation::comeback:
-        hardware_.plugged_in = true;
+        hardware_.plug(true);
         return true;
       case asperity::provocation::write_failure:
         hardware_.next_transfer_fails = true;
@@ -184,7 +184,7 @@ class spring_handle {
   [[nodiscard]] asperity::status lost(const char* cause) noexcept {
     static_cast<void>(hardware_.send({}, no_output));
     cause_ = cause;
-    machine_.apply(hardware_.plugged_in ? asperity::device_event::failed : asperity::device_event::departed);
+    machine_.apply(hardware_.plugged_in() ? asperity::device_event::failed : asperity::device_event::departed);
     return asperity::status::backend_failed;
   }
 

@@ -190,7 +190,8 @@ class simulated_device {
     if (fault_at(device_fault::depart, now_ns)) depart();
     if (!measures()) return status::not_ready;
     if (fault_at(device_fault::drop, now_ns)) return status::backend_failed;
-    if (!fault_at(device_fault::stale, now_ns) || sequence_ == 0) measure(now_ns);
+    const bool asked_again = sequence_ != 0 && newest_.host_time_ns == now_ns;
+    if (sequence_ == 0 || !(asked_again || fault_at(device_fault::stale, now_ns))) measure(now_ns);
     in = newest_;
     spoil(now_ns, in);
     return status::ok;
