@@ -135,9 +135,10 @@ class broken_handle {
       ::nanosleep(&t, nullptr);
     }
     if (is_slow_) {
-      for (int i = 0; i < 1'000'000; ++i) slow_work_ = i;
+      for (int i = 0; i < 500'000; ++i) slow_work_ = slow_work_ + 1;
     }
-    if (prints_) std::fputs("", stderr);
+    if (prints_) std::fputs("printed in write()\n", stderr);
+    if (is_real_ && (out.on_hand.force != vec3(0.0) || out.on_hand.torque != vec3(0.0))) std::raise(SIGABRT);
     device_command c = out;
     if (ignores_valid_until_) c.valid_until_ns = now_ns + 10'000'000'000;
     if (takes_any_frame_) c.frame = wrench_frame::device_base;
@@ -187,6 +188,8 @@ class broken_handle {
   std::int64_t last_write_ns_ = 0;
   volatile int slow_work_ = 0;
 
+  // Stands for hardware that nobody holds: a command other than zero ends it.
+  const bool is_real_ = is_broken("real");
   const bool hangs_ = is_broken("hangs_in_open");
   const bool throws_in_open_ = is_broken("throws_in_open");
   const bool open_arms_ = is_broken("open_arms");
@@ -239,7 +242,8 @@ struct broken_driver {
                    .identity = "broken:1",
                    .path = "here",
                    .name = "broken handle",
-                   .maturity = description.maturity,
+                   .maturity = is_broken("real") || is_broken("real_and_held") ? driver_maturity::protocol_tested
+                                                                               : description.maturity,
                    .capabilities = sample::spring_handle_capabilities()});
     return out;
   }
