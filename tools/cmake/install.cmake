@@ -1,4 +1,4 @@
-# The package: find_package(asperity [COMPONENTS io bake gl gl_compute gl_occlusion]), pkg-config for the header-only core, the command.
+# The package: find_package(asperity [COMPONENTS io bake gl gl_compute gl_occlusion plugin]), pkg-config for the header-only core, the command.
 include(CMakePackageConfigHelpers)
 
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
@@ -7,7 +7,7 @@ set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 install(TARGETS asperity asperity_reproducible EXPORT asperity-core FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT asperity-core NAMESPACE asperity:: FILE asperity-core.cmake DESTINATION ${_config_dir})
 
-foreach(_component io bake gl gl_compute gl_occlusion)
+foreach(_component io bake gl gl_compute gl_occlusion plugin)
   if(TARGET asperity_${_component})
     set_target_properties(asperity_${_component} PROPERTIES EXPORT_NAME ${_component})
     install(TARGETS asperity_${_component} EXPORT asperity-${_component}
@@ -40,6 +40,13 @@ if(TARGET asperity_command)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/command/manual/asperity.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/command/manual/asperity.bash
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME asperity)
+endif()
+# The driver that a vendor copies, and the kit that he tries his own with.
+if(ASPERITY_BUILD_HAL)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/hal/sample/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asperity/sample)
+endif()
+if(TARGET asperity_conformance)
+  install(TARGETS asperity_conformance RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 file(GLOB _schemas CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/docs/reference/*.schema.json)

@@ -112,7 +112,7 @@ check_tidy() {
   {
     local status=0
     clang-tidy --quiet build/check/core.cpp -- -std=c++20 -Iinclude || status=1
-    git ls-files 'tools/*.cpp' 'examples/*.cpp' 'backends/*.cpp' | xargs -P "$(nproc)" -n 1 clang-tidy --quiet -p build/tidy || status=1
+    git ls-files 'tools/*.cpp' 'examples/*.cpp' 'backends/*.cpp' 'hal/*.cpp' | xargs -P "$(nproc)" -n 1 clang-tidy --quiet -p build/tidy || status=1
     exit "$status"
   } 2>&1 | sed '/^[0-9]* warnings\{0,1\} generated\.$/d'
 }

@@ -87,8 +87,9 @@ class plugin_device::body {
       return done;
     }
     if (reported() != device_state::ready) {
+      const std::string state = reported_name();
       silence();
-      return fail(std::string("reports the state ") + reported_name() + " after open(), and should be ready");
+      return fail("reports the state " + state + " after open(), and should be ready");
     }
     if (result<void> known = learn_capabilities(); !known) {
       silence();
@@ -107,8 +108,9 @@ class plugin_device::body {
       return done;
     }
     if (reported() != device_state::armed) {
+      const std::string state = reported_name();
       trip(plugin_fault::unexpected_state);
-      return fail(std::string("reports the state ") + reported_name() + " after arm(), and should be armed");
+      return fail("reports the state " + state + " after arm(), and should be armed");
     }
     machine_.apply(device_event::armed);
     return {};
@@ -125,9 +127,9 @@ class plugin_device::body {
     }
     const std::optional<device_state> now = reported();
     if (now != device_state::closed && now != device_state::present && now != device_state::absent) {
+      const std::string state = reported_name();
       silence();
-      return fail(std::string("reports the state ") + reported_name() +
-                  " after its fault was cleared, and should be closed");
+      return fail("reports the state " + state + " after its fault was cleared, and should be closed");
     }
     fault_ = plugin_fault::none;
     machine_.apply(device_event::cleared);

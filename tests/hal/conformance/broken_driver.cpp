@@ -135,7 +135,9 @@ class broken_handle {
       ::nanosleep(&t, nullptr);
     }
     if (is_slow_) {
-      for (int i = 0; i < 500'000; ++i) slow_work_ = slow_work_ + 1;
+      const std::clock_t begin = std::clock();
+      while (std::clock() - begin < CLOCKS_PER_SEC / 1500) {
+      }
     }
     if (prints_) std::fputs("printed in write()\n", stderr);
     if (is_real_ && (out.on_hand.force != vec3(0.0) || out.on_hand.torque != vec3(0.0))) std::raise(SIGABRT);
@@ -186,7 +188,6 @@ class broken_handle {
   wrench left_over_{};
   vec3 wrapped_{0.0};
   std::int64_t last_write_ns_ = 0;
-  volatile int slow_work_ = 0;
 
   // Stands for hardware that nobody holds: a command other than zero ends it.
   const bool is_real_ = is_broken("real");

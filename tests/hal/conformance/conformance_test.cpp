@@ -57,7 +57,9 @@ TEST(conformance, our_own_drivers_conform) {
   {
     const json d = document_of(examine(test_support::sample_driver, "--json --date 2026-11-21"));
     EXPECT_EQ(with_result(d, "fail"), names{});
-    if (calls_are_watched(d)) EXPECT_EQ(with_result(d, "not_applicable"), names{});
+    if (calls_are_watched(d)) {
+      EXPECT_EQ(with_result(d, "not_applicable"), names{});
+    }
     EXPECT_EQ(d.at("driver").at("name"), "spring_handle");
     EXPECT_EQ(d.at("date"), "2026-11-21");
     EXPECT_EQ(d.at("clock"), "virtual");
@@ -66,7 +68,9 @@ TEST(conformance, our_own_drivers_conform) {
   }
   const json d = document_of(examine(test_support::simulated_driver, "--json"));
   EXPECT_EQ(with_result(d, "fail"), names{});
-  if (calls_are_watched(d)) EXPECT_EQ(with_result(d, "not_applicable"), names{"fault.write_failure"});
+  if (calls_are_watched(d)) {
+    EXPECT_EQ(with_result(d, "not_applicable"), names{"fault.write_failure"});
+  }
 }
 
 struct broken_case {
@@ -146,8 +150,12 @@ TEST(conformance, every_broken_driver_fails_for_what_is_broken) {
     if (!watched) std::erase_if(expected, [](const std::string& name) { return name.starts_with("rt."); });
     EXPECT_EQ(with_result(d, "fail"), expected);
     for (const json& check : d.at("checks")) {
-      if (check.at("result") != "pass") EXPECT_NE(check.value("reason", ""), "") << check;
-      if (check.at("result") == "pass") EXPECT_GT(check.at("looks"), 0U) << check;
+      if (check.at("result") != "pass") {
+        EXPECT_NE(check.value("reason", ""), "") << check;
+      }
+      if (check.at("result") == "pass") {
+        EXPECT_GT(check.at("looks"), 0U) << check;
+      }
     }
   }
 }
