@@ -87,6 +87,9 @@ watched call_watch::end() noexcept {
 
 }  // namespace asperity::conformance
 
+// NOLINTBEGIN(bugprone-macro-parentheses, bugprone-reserved-identifier, readability-identifier-naming): the names are
+// those of the C library, and a list of parameters takes no further parentheses.
+
 // Ours has its name for the linker only: headers declare some of these inline, with exception specifications of their
 // own.
 #define ASPERITY_WATCH(kind, result, name, parameters, arguments)                                    \
@@ -206,5 +209,7 @@ int watched_fprintf(FILE* file, const char* format, ...) {
 // The first thing that a throw-expression does is to take memory for its object.
 ASPERITY_WATCH(thrown, void*, __cxa_allocate_exception, (std::size_t size), (size))
 ASPERITY_WATCH(thrown, void, __cxa_rethrow, (), ())
+
+// NOLINTEND(bugprone-macro-parentheses, bugprone-reserved-identifier, readability-identifier-naming)
 
 #endif

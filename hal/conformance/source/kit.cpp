@@ -133,6 +133,7 @@ report examine(const kit_options& options, progress& shared) {
       check_faults(device, r.found);
     }
     r.found.begin("the end");
+    r.found.measured("times_opened", device.times_opened(), "");
   }
   r.found.look("process.survives", true, [] { return ""; });
 

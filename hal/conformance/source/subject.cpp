@@ -136,6 +136,7 @@ std::int32_t subject::open() {
     // what was stated in between.
     capabilities_ = c;
     opened_once_ = true;
+    ++times_opened_;
   }
   observe("open");
   return code;

@@ -66,6 +66,7 @@ class subject {
   /// Newest sample, and how long calls took; for the report.
   [[nodiscard]] const asperity_sample& newest() const noexcept { return newest_; }
   [[nodiscard]] const std::vector<std::int64_t>& pair_times_ns() const noexcept { return pair_times_ns_; }
+  [[nodiscard]] int times_opened() const noexcept { return times_opened_; }
   void measure_pairs(bool on) noexcept { measure_pairs_ = on; }
   /// Whether a non-zero wrench may be commanded: the device is simulated, or a person holds it.
   bool may_push = false;
@@ -90,6 +91,7 @@ class subject {
   device_state state_ = device_state::absent;
   asperity_capabilities capabilities_{};
   bool opened_once_ = false;
+  int times_opened_ = 0;
   asperity_sample newest_{};
   bool has_sample_ = false;
   std::uint64_t command_sequence_ = 0;
