@@ -101,9 +101,14 @@ class broken_handle {
         ++reads_;
       }
     }
+    if (vanishes_ && reads_ == 20) static_cast<void>(inner_.provoke(provocation::departure));
     const status s = inner_.read(now_ns, in);
     if (s != status::ok) return s;
     ++reads_;
+    if (arms_in_read_ && reads_ == 20) {
+      lie_ = true;
+      lied_ = device_state::armed;
+    }
     if (nan_) in.T_dh.position.x = std::nan("");
     if (millimetres_) in.T_dh.position *= 1000.0;
     if (long_quaternion_) in.T_dh.rotation *= 2.0;
@@ -191,6 +196,8 @@ class broken_handle {
 
   // Stands for hardware that nobody holds: a command other than zero ends it.
   const bool is_real_ = is_broken("real");
+  const bool vanishes_ = is_broken("vanishes");
+  const bool arms_in_read_ = is_broken("arms_in_read");
   const bool hangs_ = is_broken("hangs_in_open");
   const bool throws_in_open_ = is_broken("throws_in_open");
   const bool open_arms_ = is_broken("open_arms");

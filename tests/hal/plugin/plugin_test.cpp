@@ -237,6 +237,40 @@ TEST(plugin, nothing_but_arm_arms_whatever_the_driver_says) {
   }
 }
 
+TEST(plugin, a_driver_that_arms_itself_in_a_tick_is_in_fault) {
+  plugin_device device = make_broken("arms_in_read");
+  ASSERT_TRUE(device.open());
+  std::int64_t now_ns = 0;
+  run(device, now_ns, 18, {0.5, 0.0, 0.0});
+  ASSERT_EQ(device.state(), device_state::ready);
+  run(device, now_ns, 10, {0.5, 0.0, 0.0});
+  EXPECT_EQ(device.state(), device_state::fault);
+  EXPECT_EQ(device.fault(), plugin_fault::armed_itself);
+}
+
+TEST(plugin, a_device_that_leaves_is_absent_or_in_fault) {
+  std::int64_t now_ns = 0;
+  {
+    plugin_device device = make_broken("vanishes");
+    ASSERT_TRUE(device.open());
+    run(device, now_ns, 30, vec3(0.0));
+    EXPECT_EQ(device.state(), device_state::absent);
+    EXPECT_EQ(device.fault(), plugin_fault::none);
+  }
+  plugin_device device = make_broken("vanishes");
+  ASSERT_TRUE(device.open() && device.arm());
+  EXPECT_EQ(run(device, now_ns, 15, {0.5, 0.0, 0.0}), status::ok);
+  EXPECT_EQ(run(device, now_ns, 15, {0.5, 0.0, 0.0}), status::not_ready);
+  EXPECT_EQ(device.state(), device_state::fault);
+  EXPECT_EQ(device.fault(), plugin_fault::device_fault);
+  EXPECT_NE(device.fault_text().find("its cable is out"), std::string::npos) << device.fault_text();
+  EXPECT_TRUE(device.clear_fault());
+  const result<void> opened = device.open();
+  ASSERT_FALSE(opened);
+  EXPECT_NE(opened.error().message.find("not plugged in"), std::string::npos) << opened.error().message;
+  EXPECT_FALSE(may_put_out(device.state()));
+}
+
 TEST(plugin, exceptions_become_errors_and_faults) {
   {
     plugin_device device = make_broken("throws_in_open");
