@@ -10,9 +10,9 @@
 #else /* C99 has no static_assert */
 #define HOLDS(name, condition) typedef char name[(condition) ? 1 : -1]
 #endif
-#define AT(type, field, offset, size)                                                          \
-  HOLDS(type##_##field##_has_moved, offsetof(struct type, field) == (offset) &&                \
-                                        sizeof(((struct type*)NULL)->field) == (size))
+#define AT(type, field, offset, size) \
+  HOLDS(type##_##field##_has_moved,   \
+        offsetof(struct type, field) == (offset) && sizeof(((struct type*)NULL)->field) == (size))
 #define SIZE(type, size) HOLDS(type##_has_another_size, sizeof(struct type) == (size))
 #define IS(constant, value) HOLDS(constant##_has_another_value, (constant) == (value))
 
