@@ -10,7 +10,7 @@
 namespace asperity::plugin {
 
 /// Answer of a call that threw: no driver can give it.
-inline constexpr std::int32_t threw = INT32_MIN;
+inline constexpr std::int32_t call_threw = INT32_MIN;
 
 /// Costs nothing where nothing is thrown. @return the call's answer, ASPERITY_OK for one without, `threw` where it
 /// threw
@@ -24,14 +24,14 @@ template <class Call>
       return call();
     }
   } catch (...) {
-    return threw;
+    return call_threw;
   }
 }
 
 /// One sentence about a call that failed, from what the driver left in its buffer.
 template <std::size_t N>
 [[nodiscard]] std::string driver_error(std::int32_t code, char (&text)[N]) {
-  if (code == threw) return "the driver threw an exception across its C interface, which it must not";
+  if (code == call_threw) return "the driver threw an exception across its C interface, which it must not";
   text[N - 1] = '\0';  // whatever the driver did
   std::string out(text);
   for (char& c : out) {

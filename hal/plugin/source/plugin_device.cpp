@@ -140,7 +140,7 @@ class plugin_device::body {
     const std::int32_t code = guarded_call([this] { return t().disarm(handle_); });
     const bool was_armed = may_put_out(machine_.state());
     const bool applied = machine_.apply(device_event::disarmed);
-    if (code == threw) trip(plugin_fault::threw);
+    if (code == call_threw) trip(plugin_fault::threw);
     observe();
     if (machine_.state() == device_state::fault && was_armed) return status::backend_failed;
     if (!applied) return status::not_ready;
@@ -156,7 +156,7 @@ class plugin_device::body {
     if (!measures()) return status::not_ready;
     auto s = abi::blank<asperity_sample>();
     const std::int32_t code = guarded_call([&] { return t().read(handle_, now_ns, &s); });
-    if (code == threw) trip(plugin_fault::threw);
+    if (code == call_threw) trip(plugin_fault::threw);
     observe();
     if (!measures()) return status::backend_failed;
     if (code != ASPERITY_OK) return abi::to_status(code);
@@ -186,7 +186,7 @@ class plugin_device::body {
     }
     const asperity_command c = abi::to_abi(given);
     const std::int32_t code = guarded_call([&] { return t().write(handle_, now_ns, &c); });
-    if (code == threw) trip(plugin_fault::threw);
+    if (code == call_threw) trip(plugin_fault::threw);
     if (allowed) machine_.apply(is_zero(given.on_hand) ? device_event::released : device_event::engaged);
     if (allowed && !sound) trip(plugin_fault::bad_command);
     observe();
@@ -224,7 +224,7 @@ class plugin_device::body {
     char text[ASPERITY_TEXT_SIZE] = "";
     const std::int32_t code = guarded_call([&] { return call(text, static_cast<std::uint32_t>(sizeof text)); });
     if (code == ASPERITY_OK) return {};
-    if (code == threw) trip(plugin_fault::threw);
+    if (code == call_threw) trip(plugin_fault::threw);
     return error{code == ASPERITY_INVALID ? error_code::invalid_argument : error_code::io_failed,
                  module_->where() + ": " + driver_error(code, text)};
   }

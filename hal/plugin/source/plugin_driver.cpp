@@ -22,7 +22,7 @@ struct gathering {
   static std::int32_t add(void* context, const asperity_listing* listing) noexcept {
     auto& self = *static_cast<gathering*>(context);
     const std::int32_t code = guarded_call([&] { return self.take(listing); });
-    if (code == threw) self.problem = "a device could not be taken down: out of memory";
+    if (code == call_threw) self.problem = "a device could not be taken down: out of memory";
     return code;
   }
 
