@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
+#include <unistd.h>
 
 #include "document.hpp"
 #include "kit.hpp"
@@ -50,7 +51,12 @@ int main(int argc, char** argv) {
 
   const kit::process_end end = kit::in_own_process(
       [&](kit::progress& shared) {
+        // What a driver prints goes to stderr: stdout is the report's.
+        const int out = ::dup(STDOUT_FILENO);
+        ::dup2(STDERR_FILENO, STDOUT_FILENO);
         const kit::report r = kit::examine(options, shared);
+        std::fflush(stdout);
+        ::dup2(out, STDOUT_FILENO);
         print(r, as_json);
         return r.found.failed() ? 1 : 0;
       },

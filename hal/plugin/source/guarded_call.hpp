@@ -12,8 +12,7 @@ namespace asperity::plugin {
 /// Answer of a call that threw: no driver can give it.
 inline constexpr std::int32_t call_threw = INT32_MIN;
 
-/// Costs nothing where nothing is thrown. @return the call's answer, ASPERITY_OK for one without, `threw` where it
-/// threw
+/// Costs nothing where nothing is thrown. @return the call's answer, ASPERITY_OK for one without, call_threw
 template <class Call>
 [[nodiscard]] std::int32_t guarded_call(Call&& call) noexcept {
   try {

@@ -52,6 +52,7 @@ class broken_handle {
 
   [[nodiscard]] result<void> open() {
     if (hangs_) ::sleep(3600);
+    if (prints_) std::puts("printed in open()");
     if (throws_in_open_) throw std::runtime_error("thrown in open()");
     result<void> done = inner_.open();
     if (done && open_arms_) done = inner_.arm();
@@ -145,7 +146,7 @@ class broken_handle {
       while (std::clock() - begin < CLOCKS_PER_SEC / 1500) {
       }
     }
-    if (prints_) std::fputs("printed in write()\n", stderr);
+    if (prints_) std::fputs("printed in write()\n", stdout);
     if (is_real_ && (out.on_hand.force != vec3(0.0) || out.on_hand.torque != vec3(0.0))) std::raise(SIGABRT);
     told_ = out.on_hand.force;
     device_command c = out;

@@ -154,6 +154,19 @@ TEST(plugin, a_file_that_is_no_driver_is_refused) {
   EXPECT_EQ(failure.fault, table_fault::no_entry) << failure.why.message;
 }
 
+TEST(plugin, a_driver_that_is_part_of_the_program) {
+  const result<std::shared_ptr<const driver_module>> loaded = driver_module::load(test_support::sample_driver);
+  ASSERT_TRUE(loaded);
+  const result<std::shared_ptr<const driver_module>> built_in =
+      driver_module::from_table(&(*loaded)->table(), "in this program");
+  ASSERT_TRUE(built_in);
+  plugin_driver driver(*built_in);
+  plugin_device device = make_first(driver);
+  EXPECT_TRUE(device.open());
+  EXPECT_EQ((*built_in)->where(), "in this program");
+  EXPECT_FALSE(driver_module::from_table(nullptr, "nowhere"));
+}
+
 TEST(plugin, older_and_newer_tables_work_with_what_both_sides_know) {
   for (const char* way : {"older", "newer", "nothing_optional"}) {
     SCOPED_TRACE(way);
