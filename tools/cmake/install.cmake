@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 set(ASPERITY_TOOLS_COMPONENTS io bake)
 set(ASPERITY_GL_COMPONENTS gl gl_compute gl_occlusion)
-set(ASPERITY_HAL_COMPONENTS hid can serial usb urdf)
+set(ASPERITY_HAL_COMPONENTS hid can serial usb urdf plugin)
 set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} ${ASPERITY_HAL_COMPONENTS})
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 
@@ -51,7 +51,12 @@ if(TARGET asperity_command)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/command/manual/asperity.bash
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME asperity)
 endif()
+if(TARGET asperity_conformance)
+  install(TARGETS asperity_conformance RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 if(ASPERITY_BUILD_HAL)
+  # The driver that a vendor copies.
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/hal/sample/ DESTINATION ${CMAKE_INSTALL_DATADIR}/asperity/sample)
   # Where udev looks for the rules of packages: below a prefix of /usr it takes effect by itself.
   install(FILES ${PROJECT_SOURCE_DIR}/hal/udev/70-asperity.rules DESTINATION lib/udev/rules.d)
 endif()

@@ -190,7 +190,8 @@ class simulated_device {
     if (fault_at(device_fault::depart, now_ns)) depart();
     if (!measures()) return status::not_ready;
     if (fault_at(device_fault::drop, now_ns)) return status::backend_failed;
-    if (!fault_at(device_fault::stale, now_ns) || sequence_ == 0) measure(now_ns);
+    const bool asked_again = sequence_ != 0 && newest_.host_time_ns == now_ns;
+    if (sequence_ == 0 || !(asked_again || fault_at(device_fault::stale, now_ns))) measure(now_ns);
     in = newest_;
     spoil(now_ns, in);
     return status::ok;
@@ -213,8 +214,19 @@ class simulated_device {
     const bool zero = out.on_hand.force == vec3(0.0) && out.on_hand.torque == vec3(0.0);
     machine_.apply(zero ? device_event::released : device_event::engaged);
     command_ = out;
+    command_.on_hand = {saturated(out.on_hand.force, config_.capabilities.peak_force_n),
+                        saturated(out.on_hand.torque, config_.capabilities.peak_torque_n_m)};
     return status::ok;
   }
+
+  /// What the motors put out at now_ns. @rt safe
+  [[nodiscard]] status applied(std::int64_t now_ns, wrench& out) const noexcept {
+    out = now_ns <= command_.valid_until_ns ? command_.on_hand : wrench{};
+    return status::ok;
+  }
+
+  /// Takes the device off its bus, as device_fault::depart does.
+  void unplug() noexcept { depart(); }
 
   /// Puts a departed device back on its bus: present, or still in its fault until clear_fault().
   void plug_in() noexcept {
@@ -276,6 +288,15 @@ class simulated_device {
   [[nodiscard]] error refused(const char* what) const {
     return {error_code::invalid_argument,
             std::string(what) + "() is not possible while the simulated device is " + to_string(machine_.state())};
+  }
+
+  // What the output gate let through stays as it is, to the bit; its certificate leaves room for rounding.
+  [[nodiscard]] static vec3 saturated(const vec3& v, double limit) noexcept {
+    const double largest = std::max(std::fabs(v.x), std::max(std::fabs(v.y), std::fabs(v.z)));
+    if (!(largest > 0.0)) return v;
+    const vec3 direction = v / largest;  // first, so that no square of an ordinary number is infinite
+    const double length = std::sqrt(glm::dot(direction, direction));
+    return largest * length > limit * 1.00000001 ? (limit / length) * direction : v;
   }
 
   void advance(std::int64_t now_ns) noexcept {
