@@ -87,6 +87,8 @@ class real_session {
   /// Timing so far. @pre the session does not run: the threads write without a lock
   [[nodiscard]] const tick_timing& device_timing() const noexcept { return device_timing_; }
   [[nodiscard]] const tick_timing& contact_timing() const noexcept { return contact_timing_; }
+  /// A sign of life of the application, from any of its threads. Only these feed control_config::watchdog_ns.
+  void beat() noexcept { shared_.application.beat(); }
   /// The loops. @pre the session does not run
   [[nodiscard]] contact_loop<Renderer>& contact() noexcept { return contact_; }
   [[nodiscard]] device_loop<Device, Observer>& device() noexcept { return device_; }
