@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <gtest/gtest.h>
-#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -57,19 +56,6 @@ bool is_odd(const std::array<double, 5>& out) {
 std::string ordinary_bounds() {
   const std::string ten = smt_literal(10.0);
   return "(assert (and (= limit " + ten + ") (= saturation " + ten + ") (= max_change " + smt_literal(100.0) + ")))\n";
-}
-
-// For a counter-example the search may be narrowed: what is found is found. Every component of the wanted and the
-// previous vector is one of six numbers, limit and saturation are 10, the change 100; the solver chooses.
-std::string from_a_menu() {
-  const double infinity = std::numeric_limits<double>::infinity();
-  std::string out = ordinary_bounds();
-  for (std::size_t i = 0; i < 6; ++i) {
-    out += "(assert (or (fp.isNaN " + inputs[i] + ')';
-    for (const double x : {0.0, 8.0, 20.0, 1e200, infinity}) out += " (= " + inputs[i] + ' ' + smt_literal(x) + ')';
-    out += "))\n";
-  }
-  return out;
 }
 
 // The flag and the truth differ.
@@ -128,7 +114,7 @@ class prove_gate : public testing::Test {
     EXPECT_EQ(t->cuts, cut ? 3U : 0U);
     const bool real = form_ == form::ieee754;
     const std::string question = t->smt + assumed + "(assert " + violation + ")\n";
-    const verdict v = ask(*solver_, folder_, real ? question : any_arithmetic(question), inputs, 60);
+    const verdict v = ask(*solver_, folder_, real ? question : any_arithmetic(question), inputs, 120);
     std::printf("%zu lines of IR, %zu values cut: %s in %.1f s\n", t->lines, t->cuts,
                 v.said == answer::proved    ? "proved"
                 : v.said == answer::refuted ? "counter-example"
@@ -218,50 +204,64 @@ TEST_F(prove_gate, lets_through_what_is_within_the_limits) {
 }
 
 // Broken copies. Each loses what its line is there for; where the solver found nothing, the proofs above would mean
-// nothing.
+// nothing. The solver searches the whole broken function, which lets it go through few multipliers: the slew is taken
+// out of the copies, and one axis is searched where one is enough.
+std::vector<change> broken(std::vector<change> changes) {
+  for (const char* const axis : {"x", "y", "z"}) {
+    const std::string a = axis;
+    changes.push_back({a + " = previous." + a + " + d" + a + " * part;", a + " += 0.0;"});
+  }
+  return changes;
+}
 const change without_certificate{"{certified ? x : 0.0, certified ? y : 0.0, certified ? z : 0.0}", "{x, y, z}"};
+const std::string along_x = "(assert (and (fp.isZero wanted_y) (fp.isZero wanted_z)))\n";
 
-TEST_F(prove_gate, finds_a_certificate_that_is_ignored) {
+const change without_saturation{"length > bound.saturation", "false"};
+
+TEST_F(prove_gate, finds_limits_that_are_ignored) {
   NEEDS_TOOLS();
-  const auto out = counter_example({without_certificate}, from_a_menu(), too_long());
-  EXPECT_TRUE(is_odd(out) || is_long(out, found("limit")));
+  const auto out = counter_example(broken({without_certificate, without_saturation}),
+                                   from_rest + ordinary_bounds() + along_x, too_long());
+  EXPECT_TRUE(is_long(out, found("limit")));
 }
 
+// A NaN is neither above the limit nor below it.
 TEST_F(prove_gate, finds_a_certificate_that_nan_passes) {
   NEEDS_TOOLS();
-  const auto out =
-      counter_example({{"measured <= bound.limit", "!(measured > bound.limit"}, {"* 1.00000001;", "* 1.00000001);"}},
-                      from_a_menu(), not_finite);
+  const auto out = counter_example(broken({without_saturation,
+                                           {"finite & allowed", "allowed"},
+                                           {"measured <= bound.limit", "!(measured > bound.limit"},
+                                           {"* 1.00000001;", "* 1.00000001);"}}),
+                                   from_rest + ordinary_bounds() + along_x, not_finite);
   EXPECT_TRUE(is_odd(out));
+  EXPECT_EQ(out[4], 1.0);
 }
 
-// From rest, with limits as any device has them, an infinite wrench makes the usual clamp multiply infinity by zero.
+// From rest, with limits as a device has them, an infinite wrench makes the usual clamp multiply infinity by zero.
 TEST_F(prove_gate, finds_the_usual_clamp_without_a_test_for_nan) {
   NEEDS_TOOLS();
   const auto out =
-      counter_example({without_certificate, {"finite & allowed", "allowed"}}, from_rest + from_a_menu(), not_finite);
+      counter_example(broken({without_certificate, {"finite & allowed", "allowed"}}),
+                      from_rest + ordinary_bounds() + along_x + "(assert (not (fp.isNaN wanted_x)))\n", not_finite);
   EXPECT_TRUE(is_odd(out));
 }
 
 TEST_F(prove_gate, finds_a_limit_per_axis) {
   NEEDS_TOOLS();
+  const auto per_axis = [](const std::string& a) {
+    return change{a + " *= shrink;", a + " = " + a + " > bound.saturation ? bound.saturation : (" + a +
+                                         " < -bound.saturation ? -bound.saturation : " + a + ");"};
+  };
   const auto out = counter_example(
-      {{"x *= shrink;",
-        "x = x > bound.saturation ? bound.saturation : (x < -bound.saturation ? -bound.saturation : x);"},
-       {"y *= shrink;",
-        "y = y > bound.saturation ? bound.saturation : (y < -bound.saturation ? -bound.saturation : y);"},
-       {"z *= shrink;",
-        "z = z > bound.saturation ? bound.saturation : (z < -bound.saturation ? -bound.saturation : z);"},
-       {"measured = x * x + y * y + z * z",
-        "measured = x * x > y * y ? (x * x > z * z ? x * x : z * z) : (y * y > z * z ? y * y : z * z)"}},
-      from_rest + from_a_menu() + "(assert allowed)\n", too_long());
+      broken({per_axis("x"), per_axis("y"), per_axis("z"), {"measured = x * x + y * y + z * z", "measured = x * x"}}),
+      from_rest + ordinary_bounds() + "(assert (and allowed (fp.isZero wanted_z)))\n", too_long());
   EXPECT_TRUE(is_long(out, found("limit")));
 }
 
 TEST_F(prove_gate, finds_a_stale_command_that_is_obeyed) {
   NEEDS_TOOLS();
-  const auto out =
-      counter_example({{"finite & allowed", "finite"}}, from_rest + from_a_menu() + "(assert (not allowed))\n", leaves);
+  const auto out = counter_example(broken({without_saturation, {"finite & allowed", "finite"}}),
+                                   from_rest + ordinary_bounds() + along_x + "(assert (not allowed))\n", leaves);
   EXPECT_TRUE(out[0] != 0.0 || out[1] != 0.0 || out[2] != 0.0);
 }
 

@@ -113,8 +113,8 @@ class device_loop {
         guarded = guard_.adjust(wanted_d);
       }
     }
-    if (guard_.exhausted()) gate_.trip(gate_fault::energy);
-    if (is_application_silent()) gate_.trip(gate_fault::watchdog);
+    if (guard_.exhausted()) gate_.trip(gate_fault::energy, now_ns);
+    if (is_application_silent()) gate_.trip(gate_fault::watchdog, now_ns);
     if (!may_put_out(device_->state())) {
       gate_.rest();
       guarded.on_hand = {};
@@ -143,7 +143,7 @@ class device_loop {
   [[nodiscard]] Device& device() noexcept { return *device_; }
 
   /// Shuts the gate: the wrench goes to zero at the slew rate and the device is disarmed.
-  void stop(gate_fault cause = gate_fault::stopped) noexcept { gate_.trip(cause); }
+  void stop(gate_fault cause = gate_fault::stopped) noexcept { gate_.trip(cause, now_ns_); }
 
   /// After a person has seen the fault: opens the gate and starts anew from the device's next pose. Arms nothing.
   /// @return false while the wrench is not zero yet

@@ -158,11 +158,13 @@ class output_gate {
     return {last_, wrench_frame::device_base, now_ns + hold_ns_, ++sequence_};
   }
 
-  /// Shuts the gate for a cause found elsewhere. The first cause stays.
-  void trip(gate_fault cause) noexcept {
+  /// Shuts the gate for a cause found elsewhere, in the tick of the last pass(). The first cause stays.
+  void trip(gate_fault cause) noexcept { trip(cause, last_ns_); }
+  /// The same for a cause found at another time.
+  void trip(gate_fault cause, std::int64_t at_ns) noexcept {
     if (fault_ != gate_fault::none) return;
     fault_ = cause;
-    fault_ns_ = last_ns_;
+    fault_ns_ = at_ns;
     flight_.freeze();
   }
 
@@ -178,7 +180,7 @@ class output_gate {
   }
 
   [[nodiscard]] gate_fault fault() const noexcept { return fault_; }
-  /// Time of the tick in which the first cause was found. @pre fault() is not none
+  /// When the first cause was found. @pre fault() is not none
   [[nodiscard]] std::int64_t fault_time_ns() const noexcept { return fault_ns_; }
   /// Whether nothing is put out.
   [[nodiscard]] bool at_rest() const noexcept { return last_.force == vec3(0.0) && last_.torque == vec3(0.0); }
