@@ -42,7 +42,7 @@ struct verdict {
   std::string text;                           ///< all that the solver printed
 };
 
-/// Asks whether all that `smt` asserts can be true at once. Proved: it cannot.
+/// Asks whether all that `smt` asserts can be true at once, for at most `limit_s` of processor time. Proved: it cannot.
 [[nodiscard]] verdict ask(const std::string& solver, const std::filesystem::path& folder, const std::string& smt,
                           const std::vector<std::string>& inputs, int limit_s);
 

@@ -193,25 +193,15 @@ TEST(simulated_device, leaves_its_bus_and_comes_back_unarmed) {
   EXPECT_EQ(d.state(), device_state::ready);
 }
 
-simulated_device opened(const simulated_config& config) {
-  simulated_device dev(config);
-  EXPECT_TRUE(dev.open() && dev.arm());
-  return dev;
-}
-
-device_command push(const vec3& force, std::int64_t now_ns) {
-  return {{force, vec3(0.0)}, wrench_frame::device_base, now_ns + 20'000'000, 1};
-}
-
 TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
   simulated_config config;
   config.actuator = {.peak_force_n = 3.0, .force_slew_n_per_s = 1000.0};
-  simulated_device dev = opened(config);
+  simulated_device dev = armed(config);
   vec3 before{0.0};
   for (std::int64_t t = 0; t < 20'000'000; t += 50'000) {  // every step of the plant
     device_sample in;
     ASSERT_EQ(dev.read(t, in), status::ok);
-    ASSERT_EQ(dev.write(t, push({6, 8, 0}, t)), status::ok);
+    ASSERT_EQ(dev.write(t, push({6, 8, 0}, t + 20 * ms)), status::ok);
     EXPECT_LE(glm::length(dev.put_out().force - before), 0.05 + 1e-12);
     before = dev.put_out().force;
   }
@@ -222,12 +212,12 @@ TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
 TEST(simulated_device, motors_warm_up_derate_and_end_in_a_fault) {
   simulated_config config;
   config.actuator = {.peak_force_n = 10.0, .continuous_force_n = 4.0, .thermal_time_s = 0.5};
-  simulated_device dev = opened(config);
+  simulated_device dev = armed(config);
   double at_first = 0.0, least = 10.0;
   device_sample in;
   std::int64_t t = 0;
   for (; t < 5'000'000'000 && dev.read(t, in) == status::ok; t += 1'000'000) {
-    static_cast<void>(dev.write(t, push({10, 0, 0}, t)));
+    static_cast<void>(dev.write(t, push({10, 0, 0}, t + 20 * ms)));
     if (t == 10'000'000) at_first = dev.put_out().force.x;
     if (t > 10'000'000) least = std::min(least, dev.put_out().force.x);
   }
@@ -239,9 +229,9 @@ TEST(simulated_device, motors_warm_up_derate_and_end_in_a_fault) {
   EXPECT_EQ(dev.state(), device_state::active);
 
   config.actuator.derate_from = 1.99;  // a device without foresight
-  simulated_device careless = opened(config);
+  simulated_device careless = armed(config);
   for (t = 0; t < 5'000'000'000 && careless.read(t, in) == status::ok; t += 1'000'000) {
-    static_cast<void>(careless.write(t, push({10, 0, 0}, t)));
+    static_cast<void>(careless.write(t, push({10, 0, 0}, t + 20 * ms)));
   }
   EXPECT_LT(careless.actuator().warmth(), 2.1);
 }
@@ -249,7 +239,7 @@ TEST(simulated_device, motors_warm_up_derate_and_end_in_a_fault) {
 TEST(simulated_device, loses_measurements_and_says_how_many) {
   simulated_config config;
   config.measurement.loss = 0.25;
-  simulated_device dev = opened(config);
+  simulated_device dev = armed(config);
   std::uint64_t news = 0, last = 0, gaps = 0;
   device_sample in;
   for (std::int64_t t = 0; t < 4000; ++t) {
@@ -268,15 +258,15 @@ TEST(simulated_device, one_axis_sticks_and_the_others_go_on) {
   simulated_config config;
   config.motion = {.kind = motion_kind::scrub, .depth_m = 0.05, .approach_s = 0.05, .amplitude_m = 0.02};
   config.faults = {{device_fault::stuck_encoder, 500'000'000, 800'000'000}};
-  simulated_device dev = opened(config);
+  simulated_device dev = armed(config);
   device_sample in, at_begin;
   double x_range = 0.0;
   for (std::int64_t t = 0; t < 1000; ++t) {
     ASSERT_EQ(dev.read(t * 1'000'000, in), status::ok);
     if (t == 499) at_begin = in;
-    if (t >= 500 && t < 800) EXPECT_EQ(in.T_dh.position.x, at_begin.T_dh.position.x);
-    if (t >= 500 && t < 800)
-      x_range = std::max(x_range, std::fabs(dev.true_T_dh().position.x - at_begin.T_dh.position.x));
+    if (t < 500 || t >= 800) continue;
+    EXPECT_EQ(in.T_dh.position.x, at_begin.T_dh.position.x);
+    x_range = std::max(x_range, std::fabs(dev.true_T_dh().position.x - at_begin.T_dh.position.x));
   }
   EXPECT_GT(x_range, 1e-3);
   EXPECT_NE(in.T_dh.position.x, at_begin.T_dh.position.x);
@@ -285,7 +275,7 @@ TEST(simulated_device, one_axis_sticks_and_the_others_go_on) {
 TEST(simulated_device, answers_slowly) {
   simulated_config config;
   config.faults = {{device_fault::slow_reply, 100'000'000, 200'000'000}};
-  simulated_device dev = opened(config);
+  simulated_device dev = armed(config);
   std::uint64_t last = 0;
   int news = 0;
   for (std::int64_t t = 0; t < 200; ++t) {
