@@ -187,10 +187,11 @@ json fault_json(const session_outcome& ended) {
   if (ended.fault == gate_fault::none) return nullptr;
   json ticks = json::array();
   for (const flight_entry& e : ended.last_ticks) {
-    ticks.push_back({{"time", 1e-9 * static_cast<double>(e.time_ns)},
-                     {"sample", {{"sequence", e.seen.sequence}, {"pose", to_json(e.seen.T_dh)}}},
-                     {"wanted", {{"force", to_json(e.wanted.force)}, {"torque", to_json(e.wanted.torque)}}},
-                     {"sent", {{"force", to_json(e.sent.force)}, {"torque", to_json(e.sent.torque)}}}});
+    ticks.push_back(
+        {{"time", 1e-9 * static_cast<double>(e.time_ns)},
+         {"sample", {{"sequence", e.seen.sequence}, {"pose", to_json(e.seen.T_dh)}}},
+         {"wanted", {{"force", command::to_json(e.wanted.force)}, {"torque", command::to_json(e.wanted.torque)}}},
+         {"sent", {{"force", command::to_json(e.sent.force)}, {"torque", command::to_json(e.sent.torque)}}}});
   }
   return {{"cause", to_string(ended.fault)}, {"time", ended.ended_at_s}, {"last_ticks", ticks}};
 }
