@@ -310,17 +310,19 @@ TEST_F(documents, run) {
   const json d = expect_document({"run", "--probe", block(), "--fixed", block(), "--seconds", "0.8", "--record",
                                   path("session.csv"), "--plot", path("session.svg")},
                                  "asperity.run/1");
-  expect_keys(d, {"schema",      "formulation",      "probe",        "fixed",
-                  "start",       "device",           "clock",        "motion",
-                  "seed",        "seconds",          "backend",      "gradient_scheme",
-                  "grid",        "lookup",           "contacts",     "max_depth",
-                  "probe_force", "probe_torque",     "hand_force",   "hand_torque",
-                  "energy",      "contact_loop",     "device_loop",  "tick_time_is",
-                  "memory",      "rejected_samples", "lost_records", "fault",
-                  "interrupted", "recording",        "plot",         "units"});
+  expect_keys(d, {"schema",       "formulation",      "probe",        "fixed",
+                  "start",        "device",           "clock",        "motion",
+                  "seed",         "seconds",          "backend",      "gradient_scheme",
+                  "grid",         "lookup",           "contacts",     "max_depth",
+                  "probe_force",  "probe_torque",     "hand_force",   "hand_torque",
+                  "energy",       "contact_loop",     "device_loop",  "tick_time_is",
+                  "memory",       "rejected_samples", "lost_records", "fault",
+                  "fault_record", "interrupted",      "recording",    "plot",
+                  "units"});
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
   EXPECT_EQ(d["interrupted"], false);
+  EXPECT_TRUE(d["fault_record"].is_null());
   EXPECT_GT(d["contacts"]["share_of_ticks"], 0.3);
   EXPECT_GT(d["hand_force"]["max"], 0.1);
   EXPECT_GT(d["device_loop"]["tick_time"]["p50"], 0.0);

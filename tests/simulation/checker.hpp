@@ -161,6 +161,7 @@ class checker {
            "fault: none where there is a cause");
     if (r.fault == gate_fault::none) return;
     expect((r.fault == gate_fault::bad_samples && given_up) || (r.fault == gate_fault::device_failed && refused) ||
+               (r.fault == gate_fault::device_departed && device_->write_status() == status::not_ready) ||
                (r.fault == gate_fault::energy && spent) || (r.fault == gate_fault::stopped && stop_asked_),
            "fault: without its cause");
     fault_ = r.fault;

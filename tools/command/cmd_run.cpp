@@ -182,6 +182,20 @@ struct memory_use {
   std::shared_ptr<gpu_use> gpu{};  ///< null where no GPU is used
 };
 
+// The flight recorder. What was not finite is null, as JSON has no word for it.
+json fault_json(const session_outcome& ended) {
+  if (ended.fault == gate_fault::none) return nullptr;
+  json ticks = json::array();
+  for (const flight_entry& e : ended.last_ticks) {
+    ticks.push_back(
+        {{"time", 1e-9 * static_cast<double>(e.time_ns)},
+         {"sample", {{"sequence", e.seen.sequence}, {"pose", to_json(e.seen.T_dh)}}},
+         {"wanted", {{"force", command::to_json(e.wanted.force)}, {"torque", command::to_json(e.wanted.torque)}}},
+         {"sent", {{"force", command::to_json(e.sent.force)}, {"torque", command::to_json(e.sent.torque)}}}});
+  }
+  return {{"cause", to_string(ended.fault)}, {"time", ended.ended_at_s}, {"last_ticks", ticks}};
+}
+
 answer report(const run_command& options, const given_poses& poses, const session_outcome& ended,
               const session_summary& summary, const memory_use& memory) {
   const time_summary contact = summarise(ended.contact.seconds);
@@ -212,6 +226,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
   out.document["rejected_samples"] = ended.rejected_samples;
   out.document["lost_records"] = ended.lost_records;
   out.document["fault"] = to_string(ended.fault);
+  out.document["fault_record"] = fault_json(ended);
   out.document["interrupted"] = ended.interrupted;
   out.document["recording"] = options.record.empty() ? json() : json(options.record);
   out.document["plot"] = options.plot.empty() ? json() : json(options.plot);

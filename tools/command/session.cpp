@@ -52,6 +52,15 @@ std::uint64_t count_above(const std::vector<double>& seconds, std::int64_t perio
       std::count_if(seconds.begin(), seconds.end(), [&](double t) { return t > period_s; }));
 }
 
+// Of this program on the real clock, where it beats every few milliseconds; a disk may keep it for a while.
+constexpr std::int64_t longest_silence_ns = 1'000'000'000;
+
+// What the gate saw last, where it shut by itself.
+void keep_fault(const output_gate& gate, session_outcome& out) {
+  if (out.fault == gate_fault::none) return;
+  for (std::size_t i = 0; i < gate.flight().size(); ++i) out.last_ticks.push_back(gate.flight()[i]);
+}
+
 result<void> open_and_arm(simulated_device& dev) {
   if (result<void> opened = dev.open(); !opened) return opened;
   return dev.arm();
@@ -74,6 +83,7 @@ result<session_outcome> run_virtual(session_setup setup, simulated_device& dev, 
   std::optional<error> failed;
   const auto step = [&] {
     const double begin = cpu_seconds();
+    session.beat();
     static_cast<void>(session.step());
     const double taken = cpu_seconds() - begin - session.contact().renderer().take_taken();
     if (out.device.seconds.size() < device_ticks) out.device.seconds.push_back(taken);
@@ -92,7 +102,8 @@ result<session_outcome> run_virtual(session_setup setup, simulated_device& dev, 
   out.ended_at_s = 1e-9 * static_cast<double>(session.now_ns());
   out.device.ticks = session.device_ticks();
   out.contact.ticks = session.contact().computed();
-  session.device().stop();
+  keep_fault(session.device().gate(), out);
+  session.device().stop(out.interrupted ? gate_fault::interrupted : gate_fault::stopped);
   constexpr int longest_wind_down = 200;
   for (int i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
   static_cast<void>(dev.disarm());
@@ -119,6 +130,7 @@ result<session_outcome> run_real(session_setup setup, simulated_device& dev, pro
   const real_schedule schedule{.device_period_ns = device_period_ns,
                                .contact_period_ns = setup.contact_period_ns,
                                .timed_ticks = static_cast<std::size_t>(std::min(wanted, most_timed))};
+  setup.control.watchdog_ns = longest_silence_ns;
   const auto queue = std::make_unique<record_queue>();
   real_session session(std::move(setup.feel), setup.placement, dev, setup.control, schedule,
                        record_queue::writer{queue.get()});
@@ -141,16 +153,21 @@ result<session_outcome> run_real(session_setup setup, simulated_device& dev, pro
   for (double elapsed = 0.0; elapsed < setup.seconds && !failed && !shut && !interrupted();) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     drain();
+    session.beat();
     elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     progress.show("session", std::min(1.0, elapsed / setup.seconds));
   }
   out.interrupted = interrupted();
-  session.stop();
+  session.stop(out.interrupted ? gate_fault::interrupted : gate_fault::stopped);
   drain();
   if (failed) return *failed;
 
   const gate_fault fault = session.device().gate().fault();
-  out.fault = fault == gate_fault::stopped ? gate_fault::none : fault;  // stopping is how every session ends
+  // Stopping is how every session ends.
+  const bool ended = fault == gate_fault::stopped || fault == gate_fault::interrupted;
+  out.fault = ended ? gate_fault::none : fault;
+  keep_fault(session.device().gate(), out);
+  for (flight_entry& e : out.last_ticks) e.time_ns -= origin_ns.value_or(0);
   out.contact = to_times(session.contact_timing());
   out.device = to_times(session.device_timing());
   out.rejected_samples = session.device().samples().rejected();

@@ -46,7 +46,8 @@ struct session_outcome {
   std::uint64_t rejected_samples = 0;
   std::uint64_t lost_records = 0;  ///< device ticks that on_tick never saw, because writing them was too slow
   gate_fault fault = gate_fault::none;
-  double ended_at_s = 0.0;  ///< when the session ended, by its own clock
+  std::vector<flight_entry> last_ticks;  ///< up to and including the one in which the gate shut; empty without a fault
+  double ended_at_s = 0.0;               ///< when the session ended, by its own clock
   bool interrupted = false;
 };
 

@@ -31,8 +31,11 @@ struct control_config {
                      .peak_torque_n_m = 1e6,
                      .continuous_torque_n_m = 1e6,
                      .torque_slew_n_m_per_s = 1e6};  ///< the application's; the device's own apply where they are lower
-  int substeps = 8;                                  ///< of the probe in one device period
-  std::int64_t longest_step_ns = 5'000'000;          ///< a later tick advances the probe by this much only
+  double low_pass_hz = output_gate::no_low_pass;     ///< cut-off of the gate's low-pass on the wrench; infinite: none
+  /// Silence of the application after which the gate shuts (watchdog); 0: no watchdog. See exchange::application.
+  std::int64_t watchdog_ns = 0;
+  int substeps = 8;                          ///< of the probe in one device period
+  std::int64_t longest_step_ns = 5'000'000;  ///< a later tick advances the probe by this much only
 };
 
 /// Owns the stages between one device and the exchange: sample check, probe and coupling, passivity guard, output gate.
@@ -50,7 +53,12 @@ struct control_config {
 ///   sample_check_config::reject_limit rejections in a row the gate shuts (bad_samples).
 /// - A probe step that fails (a contact that is not finite): the wanted wrench is zero in this tick.
 /// - Energy past the guard's cut-off shuts the gate (energy).
-/// - A device that refuses a command shuts the gate (device_failed). A shut gate disarms the device once the wrench is
+/// - An application that has not beaten exchange::application for longer than watchdog_ns shuts the gate (watchdog).
+/// The
+///   loop itself never beats.
+/// - A device that is gone shuts the gate (device_departed), one that refuses a command too (device_failed). A shut
+/// gate
+///   disarms the device once the wrench is
 ///   zero. Nothing here ever arms.
 /// @tparam Device see haptic_device; not owned, outlives the loop
 template <haptic_device Device, session_observer Observer = no_observer>
@@ -69,7 +77,14 @@ class device_loop {
         coupling_(config.coupling, config.probe.mass_kg, mean_inertia(config.probe)),
         probe_(config.probe),
         guard_(guard_for(config.guard, dev.capabilities())),
-        gate_(tighter(limits_of(dev.capabilities()), config.limits)) {}
+        gate_(tighter(limits_of(dev.capabilities()), config.limits), hold_ns, config.low_pass_hz) {}
+
+  // Who takes a loop away takes the force away: at once, because nobody is left to take it down slowly.
+  device_loop(const device_loop&) = delete;
+  device_loop& operator=(const device_loop&) = delete;
+  ~device_loop() {
+    if (may_put_out(device_->state())) static_cast<void>(device_->disarm());
+  }
 
   /// One period.
   /// @param clock_ns the session's clock
@@ -98,15 +113,16 @@ class device_loop {
         guarded = guard_.adjust(wanted_d);
       }
     }
-    if (guard_.exhausted()) gate_.trip(gate_fault::energy);
+    if (guard_.exhausted()) gate_.trip(gate_fault::energy, now_ns);
+    if (is_application_silent()) gate_.trip(gate_fault::watchdog, now_ns);
     if (!may_put_out(device_->state())) {
       gate_.rest();
       guarded.on_hand = {};
     }
     const device_command sent =
         gate_.pass(now_ns, seen, {guarded.on_hand, wrench_frame::device_base, now_ns, ++sequence_});
+    judge_device(device_->write(now_ns, sent));
     if (check_.exhausted()) gate_.trip(gate_fault::bad_samples);
-    if (device_->write(now_ns, sent) != status::ok) gate_.trip(gate_fault::device_failed);
     if (gate_.fault() != gate_fault::none && gate_.at_rest() && may_put_out(device_->state())) {
       static_cast<void>(device_->disarm());
     }
@@ -127,7 +143,7 @@ class device_loop {
   [[nodiscard]] Device& device() noexcept { return *device_; }
 
   /// Shuts the gate: the wrench goes to zero at the slew rate and the device is disarmed.
-  void stop() noexcept { gate_.trip(gate_fault::stopped); }
+  void stop(gate_fault cause = gate_fault::stopped) noexcept { gate_.trip(cause, now_ns_); }
 
   /// After a person has seen the fault: opens the gate and starts anew from the device's next pose. Arms nothing.
   /// @return false while the wrench is not zero yet
@@ -137,6 +153,7 @@ class device_loop {
     guard_.reset();
     placed_ = false;
     touched_ = {};
+    beat_ns_ = now_ns_;
     return true;
   }
 
@@ -151,6 +168,24 @@ class device_loop {
       g.inertia_kg_m2 = c.moving_inertia_kg_m2;
     }
     return g;
+  }
+
+  // A device that is not there answers not_ready, and so does a closed one: its state tells them apart.
+  void judge_device(status written) noexcept {
+    if (written == status::ok) return;
+    const device_state s = device_->state();
+    const bool gone = written == status::not_ready &&
+                      (s == device_state::absent || s == device_state::present || s == device_state::fault);
+    gate_.trip(gone ? gate_fault::device_departed : gate_fault::device_failed);
+  }
+
+  // The first tick counts as a sign of life: somebody started the session.
+  [[nodiscard]] bool is_application_silent() noexcept {
+    const std::uint64_t beats = shared_->application.beats();
+    if (beats != beats_ || !heard_) beat_ns_ = now_ns_;
+    beats_ = beats;
+    heard_ = true;
+    return config_.watchdog_ns > 0 && now_ns_ - beat_ns_ > config_.watchdog_ns;
   }
 
   // The loop's time follows the clock forward only. @return what of the step the probe takes, s
@@ -235,6 +270,8 @@ class device_loop {
     return probe_status;
   }
 
+  static constexpr std::int64_t hold_ns = 20'000'000;  // a device's own watchdog falls to zero so long after a tick
+
   Device* device_;
   control_config config_;
   pose T_hc_;
@@ -254,6 +291,9 @@ class device_loop {
   std::int64_t now_ns_ = 0;    // the loop's time: the clock's steps forward, summed up
   double unobserved_s_ = 0.0;  // time since the guard saw a pose
   std::uint64_t sequence_ = 0;
+  std::uint64_t beats_ = 0;   // of the application, as last seen ...
+  std::int64_t beat_ns_ = 0;  // ... to change at this time
+  bool heard_ = false;
   pose target_T_wc_{};
   twist target_velocity_w_{};
   contact_evaluation touched_{};

@@ -1,6 +1,7 @@
 // The two hand-overs between the contact thread and the device thread.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "asperity/control/linear_contact.hpp"
@@ -15,10 +16,23 @@ struct timed_pose {
   std::int64_t time_ns = 0;
 };
 
+/// How an application shows that it is alive: any of its threads beats, the device thread counts. It carries no time,
+/// so nobody needs the session's clock.
+class heartbeat {
+ public:
+  /// One sign of life. From any thread. @rt safe
+  void beat() noexcept { beats_.fetch_add(1, std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t beats() const noexcept { return beats_.load(std::memory_order_relaxed); }
+
+ private:
+  std::atomic<std::uint64_t> beats_{0};
+};
+
 /// Data goes round once: the device thread publishes poses, the contact thread publishes contacts. Neither waits.
 struct exchange {
   triple_buffer<timed_pose> poses;         ///< written by the device thread
   triple_buffer<linear_contact> contacts;  ///< written by the contact thread
+  heartbeat application;                   ///< beaten by the application, never by a loop; see watchdog_ns
 };
 
 }  // namespace asperity

@@ -63,6 +63,7 @@ class real_session {
     device_timing_.durations_ns.reserve(schedule_.timed_ticks);
     contact_timing_.durations_ns.reserve(schedule_.timed_ticks);
     contact_running_.store(true, std::memory_order_relaxed);
+    stop_cause_.store(gate_fault::stopped, std::memory_order_relaxed);
     device_running_.store(true, std::memory_order_relaxed);
     const std::int64_t origin_ns = clock_ns();
     contact_thread_ = std::thread([this, origin_ns] {
@@ -77,8 +78,10 @@ class real_session {
   }
 
   /// Brings the wrench to zero at the slew rate, disarms the device and joins both threads. Harmless when not running.
-  void stop() noexcept {
-    device_running_.store(false, std::memory_order_relaxed);
+  /// @param cause what the gate is told: stopped or interrupted
+  void stop(gate_fault cause = gate_fault::stopped) noexcept {
+    if (device_running_.load(std::memory_order_relaxed)) stop_cause_.store(cause, std::memory_order_relaxed);
+    device_running_.store(false, std::memory_order_release);
     if (device_thread_.joinable()) device_thread_.join();
     contact_running_.store(false, std::memory_order_relaxed);
     if (contact_thread_.joinable()) contact_thread_.join();
@@ -87,6 +90,8 @@ class real_session {
   /// Timing so far. @pre the session does not run: the threads write without a lock
   [[nodiscard]] const tick_timing& device_timing() const noexcept { return device_timing_; }
   [[nodiscard]] const tick_timing& contact_timing() const noexcept { return contact_timing_; }
+  /// A sign of life of the application, from any of its threads. Only these feed control_config::watchdog_ns.
+  void beat() noexcept { shared_.application.beat(); }
   /// The loops. @pre the session does not run
   [[nodiscard]] contact_loop<Renderer>& contact() noexcept { return contact_; }
   [[nodiscard]] device_loop<Device, Observer>& device() noexcept { return device_; }
@@ -103,7 +108,7 @@ class real_session {
             tick_timing& timing, Tick tick) noexcept {
     if (schedule_.set_up_thread != nullptr) schedule_.set_up_thread(which);
     std::int64_t due_ns = origin_ns;
-    while (running.load(std::memory_order_relaxed)) {
+    while (running.load(std::memory_order_acquire)) {
       sleep_until(due_ns);
       const std::int64_t begin_ns = clock_ns();
       tick(begin_ns);
@@ -126,7 +131,7 @@ class real_session {
 
   // After the last ordinary tick: a stopped gate takes the wrench down at its slew rate, for 200 ms at the most.
   void wind_down() noexcept {
-    device_.stop();
+    device_.stop(stop_cause_.load(std::memory_order_relaxed));
     for (std::int64_t i = 0; i < 200'000'000 / schedule_.device_period_ns && !device_.gate().at_rest(); ++i) {
       sleep_until(clock_ns() + schedule_.device_period_ns);
       static_cast<void>(device_.tick(clock_ns()));
@@ -145,6 +150,7 @@ class real_session {
   device_loop<Device, Observer> device_;
   std::atomic<bool> contact_running_{false};
   std::atomic<bool> device_running_{false};
+  std::atomic<gate_fault> stop_cause_{gate_fault::stopped};
   tick_timing contact_timing_{};
   tick_timing device_timing_{};
   std::thread contact_thread_;

@@ -62,6 +62,8 @@ class virtual_session {
     return s;
   }
 
+  /// A sign of life of the application. Only these feed control_config::watchdog_ns.
+  void beat() noexcept { shared_.application.beat(); }
   /// Time of the next device tick.
   [[nodiscard]] std::int64_t now_ns() const noexcept { return next_device_ns_; }
   [[nodiscard]] std::uint64_t device_ticks() const noexcept { return device_ticks_; }

@@ -284,7 +284,7 @@ TEST(device_loop, a_device_that_leaves_and_returns_stays_in_its_fault) {
   rig r(hand);
   r.run_ms(900);
   EXPECT_EQ(r.dev.state(), device_state::fault);
-  EXPECT_EQ(r.last().fault, gate_fault::device_failed);
+  EXPECT_EQ(r.last().fault, gate_fault::device_departed);
   r.dev.plug_in();
   r.run_ms(100);
   EXPECT_EQ(r.dev.state(), device_state::fault);
@@ -300,6 +300,58 @@ TEST(device_loop, goes_to_zero_when_told_to_stop) {
   EXPECT_EQ(force_of(r.last()), 0.0);
   EXPECT_EQ(r.last().fault, gate_fault::stopped);
   EXPECT_EQ(r.dev.state(), device_state::ready);
+}
+
+TEST(device_loop, a_device_that_is_closed_has_failed_and_not_departed) {
+  rig r(pressing_hand());
+  r.run_ms(800);
+  r.dev.close();
+  r.run_ms(1);
+  EXPECT_EQ(r.last().fault, gate_fault::device_failed);
+}
+
+TEST(device_loop, a_silent_application_shuts_the_gate_and_ticks_alone_do_not_feed_its_watchdog) {
+  control_config control;
+  control.watchdog_ns = 50 * ms;
+  rig r(pressing_hand(), control);
+  for (int i = 0; i < 1000; ++i) {
+    if (i % 50 == 0) r.session.beat();
+    r.run_ms(1);
+    ASSERT_EQ(r.last().fault, gate_fault::none) << i;
+  }
+  EXPECT_GT(force_of(r.last()), 1.0);
+  r.session.beat();
+  r.run_ms(51);
+  EXPECT_EQ(r.last().fault, gate_fault::none);
+  r.run_ms(1);
+  EXPECT_EQ(r.last().fault, gate_fault::watchdog);
+  EXPECT_EQ(r.session.device().gate().fault_time_ns(), 1051 * ms);
+  r.session.beat();  // too late: the fault is latched
+  r.run_ms(static_cast<int>(time_to_zero_ns(r.session.device().gate().limits(), ms) / ms));
+  EXPECT_EQ(force_of(r.last()), 0.0);
+  EXPECT_EQ(r.last().fault, gate_fault::watchdog);
+  EXPECT_EQ(r.dev.state(), device_state::ready);
+  EXPECT_TRUE(r.session.device().clear_fault());
+  EXPECT_EQ(r.dev.state(), device_state::ready);
+  r.run_ms(50);
+  EXPECT_EQ(r.last().fault, gate_fault::none);  // cleared by a person, who counts as a sign of life
+  r.run_ms(1);
+  EXPECT_EQ(r.last().fault, gate_fault::watchdog);
+}
+
+TEST(device_loop, a_loop_that_goes_away_leaves_no_force_behind) {
+  simulated_device dev(pressing_hand());
+  {
+    virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, rig::opened(dev), {});
+    static_cast<void>(session.run_until(1000 * ms));
+    ASSERT_GT(glm::length(session.device().gate().last().force), 1.0);
+    ASSERT_EQ(dev.state(), device_state::active);
+  }
+  EXPECT_EQ(dev.state(), device_state::ready);
+  const double delivered_j = dev.delivered_j();
+  device_sample in;
+  ASSERT_EQ(dev.read(1010 * ms, in), status::ok);  // within the last command's time of validity
+  EXPECT_EQ(dev.delivered_j(), delivered_j);
 }
 
 TEST(device_loop, a_contact_that_stays_away_fades) {

@@ -245,4 +245,82 @@ TEST(output_gate, derates_nothing_below_the_continuous_limit) {
   EXPECT_DOUBLE_EQ(gate.last().force.x, 3.9);
 }
 
+TEST(output_gate, low_pass_takes_its_time_and_nothing_of_what_is_not_finite) {
+  gate_limits l = plain();
+  l.force_slew_n_per_s = 1e5;
+  l.torque_slew_n_m_per_s = 1e5;
+  constexpr double cut_off_hz = 10.0;
+  output_gate gate(l, 20 * ms, cut_off_hz);
+  // A step reaches 1 - 1/e after one time constant, 15.9 ms.
+  double at_tau = 0.0;
+  for (int i = 0; i <= 16; ++i) at_tau = gate.pass(i * ms, {}, want({6, 0, 0}, {0, 0.3, 0})).on_hand.force.x;
+  EXPECT_NEAR(at_tau, 6.0 * (1.0 - std::exp(-16.0e-3 * 2.0 * 3.14159265 * cut_off_hz)), 0.15);
+  for (int i = 17; i < 300; ++i) at_tau = gate.pass(i * ms, {}, want({6, 0, 0}, {0, 0.3, 0})).on_hand.force.x;
+  EXPECT_NEAR(at_tau, 6.0, 1e-6);
+
+  // NaN, then a fault, then a person: what comes afterwards starts from zero, and is not NaN.
+  EXPECT_LT(gate.pass(300 * ms, {}, want({nan_value, 0, 0})).on_hand.force.x, 6.0);
+  EXPECT_EQ(gate.fault(), gate_fault::not_finite);
+  EXPECT_EQ(gate.fault_time_ns(), 300 * ms);
+  EXPECT_EQ(gate.pass(301 * ms, {}, want({6, 0, 0})).on_hand.force, vec3(0.0));  // zero does not wait for the filter
+  ASSERT_TRUE(gate.clear());
+  const double first = gate.pass(302 * ms, {}, want({6, 0, 0})).on_hand.force.x;
+  EXPECT_GT(first, 0.0);
+  EXPECT_LT(first, 0.5);
+  for (const double bad : {nan_value, infinity, -infinity, 1e300}) {
+    output_gate fresh(l, 20 * ms, cut_off_hz);
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_TRUE(is_finite(fresh.pass(i * ms, {}, want({i == 10 ? bad : 1.0, 0, 0})).on_hand));
+    }
+    EXPECT_EQ(fresh.fault(), gate_fault::not_finite);
+  }
+}
+
+TEST(output_gate, a_low_pass_without_a_cut_off_is_shut) {
+  for (const double cut_off_hz : {0.0, -1.0, nan_value}) {
+    output_gate gate(plain(), 20 * ms, cut_off_hz);
+    for (int i = 0; i < 100; ++i) EXPECT_EQ(gate.pass(i * ms, {}, want({6, 0, 0})).on_hand.force, vec3(0.0));
+    EXPECT_EQ(gate.fault(), gate_fault::none);
+  }
+}
+
+TEST(output_gate, zero_is_reached_within_the_time_that_is_stated) {
+  std::mt19937_64 bits(7);
+  const auto draw = [&](double low, double high) {
+    return low * std::pow(high / low, static_cast<double>(bits() >> 11) * 0x1.0p-53);
+  };
+  for (int i = 0; i < 2000; ++i) {
+    gate_limits l = plain();
+    l.peak_force_n = l.continuous_force_n = draw(0.1, 100.0);
+    l.peak_torque_n_m = l.continuous_torque_n_m = draw(0.01, 10.0);
+    l.force_slew_n_per_s = draw(10.0, 1e5);
+    l.torque_slew_n_m_per_s = draw(1.0, 1e4);
+    const auto period = static_cast<std::int64_t>(draw(1e5, 2e7));
+    output_gate gate(l);
+    std::int64_t now = 0;
+    const std::int64_t stated = time_to_zero_ns(l, period);
+    for (std::int64_t t = 0; t <= stated; t += period) {
+      static_cast<void>(gate.pass(now += period, {}, want({1e9, 1e9, 0}, {0, 1e9, 1e9})));
+    }
+    ASSERT_FALSE(gate.at_rest());
+    gate.trip(gate_fault::stopped);
+    const std::int64_t begin = now;
+    while (!gate.at_rest()) static_cast<void>(gate.pass(now += period, {}, want({1e9, 0, 0})));
+    ASSERT_LE(now - begin, stated);
+    ASSERT_GE(now - begin, stated - 2 * period) << "stated far too long";
+  }
+  gate_limits stuck = plain();
+  stuck.force_slew_n_per_s = 0.0;
+  EXPECT_EQ(time_to_zero_ns(stuck, ms), std::numeric_limits<std::int64_t>::max());
+  EXPECT_EQ(time_to_zero_ns(gate_limits{}, ms), ms);
+}
+
+TEST(output_gate, every_cause_has_its_own_words) {
+  for (int a = 0; a < gate_fault_count; ++a) {
+    EXPECT_STRNE(to_string(static_cast<gate_fault>(a)), "unknown fault");
+    for (int b = 0; b < a; ++b)
+      EXPECT_STRNE(to_string(static_cast<gate_fault>(a)), to_string(static_cast<gate_fault>(b)));
+  }
+}
+
 }  // namespace

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 
 #include <asperity/hal/simulated/simulated_device.hpp>
@@ -189,6 +191,117 @@ TEST(simulated_device, leaves_its_bus_and_comes_back_unarmed) {
   ASSERT_TRUE(d.clear_fault());
   ASSERT_TRUE(d.open());
   EXPECT_EQ(d.state(), device_state::ready);
+}
+
+TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
+  simulated_config config;
+  config.actuator = {.peak_force_n = 3.0, .force_slew_n_per_s = 1000.0};
+  simulated_device dev = armed(config);
+  vec3 before{0.0};
+  for (std::int64_t t = 0; t < 20'000'000; t += 50'000) {  // every step of the plant
+    device_sample in;
+    ASSERT_EQ(dev.read(t, in), status::ok);
+    ASSERT_EQ(dev.write(t, push({6, 8, 0}, t + 20 * ms)), status::ok);
+    EXPECT_LE(glm::length(dev.put_out().force - before), 0.05 + 1e-12);
+    before = dev.put_out().force;
+  }
+  EXPECT_NEAR(before.x, 1.8, 1e-9);
+  EXPECT_NEAR(before.y, 2.4, 1e-9);
+}
+
+TEST(simulated_device, motors_warm_up_derate_and_end_in_a_fault) {
+  simulated_config config;
+  config.actuator = {.peak_force_n = 10.0, .continuous_force_n = 4.0, .thermal_time_s = 0.5};
+  simulated_device dev = armed(config);
+  double at_first = 0.0, least = 10.0;
+  device_sample in;
+  std::int64_t t = 0;
+  for (; t < 5'000'000'000 && dev.read(t, in) == status::ok; t += 1'000'000) {
+    static_cast<void>(dev.write(t, push({10, 0, 0}, t + 20 * ms)));
+    if (t == 10'000'000) at_first = dev.put_out().force.x;
+    if (t > 10'000'000) least = std::min(least, dev.put_out().force.x);
+  }
+  // Never hot enough to burn while it derates: it settles where the force it still has keeps it warm.
+  EXPECT_NEAR(at_first, 10.0, 1e-9);
+  EXPECT_LT(least, 6.0);
+  EXPECT_GT(dev.actuator().warmth(), 1.0);
+  EXPECT_LT(dev.actuator().warmth(), 2.0);
+  EXPECT_EQ(dev.state(), device_state::active);
+
+  config.actuator.derate_from = 1.99;  // a device without foresight
+  simulated_device careless = armed(config);
+  for (t = 0; t < 5'000'000'000 && careless.read(t, in) == status::ok; t += 1'000'000) {
+    static_cast<void>(careless.write(t, push({10, 0, 0}, t + 20 * ms)));
+  }
+  EXPECT_LT(careless.actuator().warmth(), 2.1);
+}
+
+TEST(simulated_device, loses_measurements_and_says_how_many) {
+  simulated_config config;
+  config.measurement.loss = 0.25;
+  simulated_device dev = armed(config);
+  std::uint64_t news = 0, last = 0, gaps = 0;
+  device_sample in;
+  for (std::int64_t t = 0; t < 4000; ++t) {
+    ASSERT_EQ(dev.read(t * 1'000'000, in), status::ok);
+    if (in.sequence == last) continue;
+    gaps += in.sequence - last - 1;
+    last = in.sequence;
+    ++news;
+  }
+  EXPECT_EQ(gaps, in.lost);
+  EXPECT_NEAR(static_cast<double>(in.lost), 1000.0, 100.0);
+  EXPECT_NEAR(static_cast<double>(news), 3000.0, 100.0);
+}
+
+TEST(simulated_device, one_axis_sticks_and_the_others_go_on) {
+  simulated_config config;
+  config.motion = {.kind = motion_kind::scrub, .depth_m = 0.05, .approach_s = 0.05, .amplitude_m = 0.02};
+  config.faults = {{device_fault::stuck_encoder, 500'000'000, 800'000'000}};
+  simulated_device dev = armed(config);
+  device_sample in, at_begin;
+  double x_range = 0.0;
+  for (std::int64_t t = 0; t < 1000; ++t) {
+    ASSERT_EQ(dev.read(t * 1'000'000, in), status::ok);
+    if (t == 499) at_begin = in;
+    if (t < 500 || t >= 800) continue;
+    EXPECT_EQ(in.T_dh.position.x, at_begin.T_dh.position.x);
+    x_range = std::max(x_range, std::fabs(dev.true_T_dh().position.x - at_begin.T_dh.position.x));
+  }
+  EXPECT_GT(x_range, 1e-3);
+  EXPECT_NE(in.T_dh.position.x, at_begin.T_dh.position.x);
+}
+
+TEST(simulated_device, answers_slowly) {
+  simulated_config config;
+  config.faults = {{device_fault::slow_reply, 100'000'000, 200'000'000}};
+  simulated_device dev = armed(config);
+  std::uint64_t last = 0;
+  int news = 0;
+  for (std::int64_t t = 0; t < 200; ++t) {
+    device_sample in;
+    ASSERT_EQ(dev.read(t * 1'000'000, in), status::ok);
+    if (t >= 100 && in.sequence != last) ++news;
+    last = in.sequence;
+  }
+  EXPECT_EQ(news, 12);  // at 107 ms and every 8 ms from there
+}
+
+TEST(simulated_device, returns_under_another_path_and_unarmed) {
+  simulated_config config;
+  config.faults = {{device_fault::depart, 5'000'000, 6'000'000}};
+  simulated_device dev(config);
+  ASSERT_TRUE(dev.open());
+  EXPECT_EQ(dev.path(), "simulated:0");
+  device_sample in;
+  EXPECT_EQ(dev.read(5'000'000, in), status::not_ready);
+  EXPECT_EQ(dev.state(), device_state::absent);
+  dev.plug_in();
+  EXPECT_EQ(dev.path(), "simulated:1");
+  EXPECT_EQ(dev.state(), device_state::present);
+  EXPECT_FALSE(dev.arm());
+  ASSERT_TRUE(dev.open());
+  EXPECT_EQ(dev.state(), device_state::ready);
 }
 
 }  // namespace

@@ -13,101 +13,11 @@
 #include <vector>
 
 #include "asperity/hal/device.hpp"
+#include "asperity/hal/simulated/actuator.hpp"
 #include "asperity/hal/simulated/motion_script.hpp"
+#include "asperity/hal/simulated/simulated_config.hpp"
 
 namespace asperity {
-
-/// What can go wrong with a simulated device.
-enum class device_fault : std::uint8_t {
-  nan_pose,       ///< a coordinate is NaN
-  infinite_pose,  ///< a coordinate is infinite
-  bad_rotation,   ///< the quaternion has length 2
-  stale,          ///< the last measurement is repeated: an encoder or a link that stands still
-  drop,           ///< read() has no answer
-  jump,           ///< the position is half a metre off
-  refuse_write,   ///< write() fails
-  depart,         ///< the device leaves its bus, and stays away after until_ns as well
-};
-
-/// One fault and when.
-struct scripted_fault {
-  device_fault kind = device_fault::drop;
-  std::int64_t from_ns = 0;
-  std::int64_t until_ns = 0;  ///< not included
-};
-
-/// The hand as a spring and damper to where it wants to be, and a tremor.
-struct hand_config {
-  double stiffness_n_per_m = 300.0;
-  double damping_n_s_per_m = 4.0;
-  double stiffness_n_m_per_rad = 2.0;
-  double damping_n_m_s_per_rad = 0.02;
-  double tremor_m = 2e-5;  ///< amplitude of each of three seeded waves between 8 and 12 Hz, along each axis
-};
-
-/// A relaxed grip, two fingers and a thumb: gives way, damps little.
-/// Measured hands differ by more than a factor of two at the same grip. These presets are the two ends of the range in
-/// which measured fingers and wrists lie, not a model of anybody.
-[[nodiscard]] inline hand_config soft_hand() noexcept {
-  return {.stiffness_n_per_m = 150.0,
-          .damping_n_s_per_m = 2.0,
-          .stiffness_n_m_per_rad = 0.6,
-          .damping_n_m_s_per_rad = 0.006,
-          .tremor_m = 2e-5};
-}
-
-/// A firm grip with a stiff wrist; see soft_hand(). Tremor grows with grip force.
-[[nodiscard]] inline hand_config firm_hand() noexcept {
-  return {.stiffness_n_per_m = 1200.0,
-          .damping_n_s_per_m = 10.0,
-          .stiffness_n_m_per_rad = 5.0,
-          .damping_n_m_s_per_rad = 0.05,
-          .tremor_m = 5e-5};
-}
-
-/// A light arm with six free axes, gravity balanced.
-struct plant_config {
-  double mass_kg = 0.15;
-  double damping_n_s_per_m = 1.0;
-  double inertia_kg_m2 = 2e-4;
-  double damping_n_m_s_per_rad = 2e-3;
-};
-
-/// How the measurement reaches the host.
-struct measurement_config {
-  double position_resolution_m = 1e-6;    ///< 0 for none
-  double rotation_resolution_rad = 1e-5;  ///< of each component of the rotation vector; 0 for none
-  std::int64_t delay_ns = 0;              ///< age of a measurement when the host receives it; at most 20 ms with jitter
-  std::int64_t jitter_ns = 0;             ///< added to the delay, seeded, uniform
-};
-
-/// Properties of the simulated device in the words of a data sheet.
-[[nodiscard]] inline device_capabilities simulated_capabilities() noexcept {
-  return {.name = "simulated",
-          .maturity = driver_maturity::simulated,
-          .sensed = all_axes,
-          .actuated = all_axes,
-          .continuous_force_n = 8.0,
-          .peak_force_n = 20.0,
-          .continuous_torque_n_m = 0.5,
-          .peak_torque_n_m = 1.0,
-          .force_slew_n_per_s = 5000.0,
-          .torque_slew_n_m_per_s = 250.0,
-          .max_stiffness_n_per_m = 3000.0,
-          .max_stiffness_n_m_per_rad = 10.0,
-          .max_stiffness_rate_hz = 1000.0,
-          .workspace_low_d = {-0.2, -0.2, -0.2},
-          .workspace_high_d = {0.2, 0.2, 0.2},
-          .position_resolution_m = 1e-6,
-          .rotation_resolution_rad = 1e-5,
-          .nominal_rate_hz = 1000.0,
-          .minimum_rate_hz = 100.0,
-          .worst_latency_ns = 20'000'000,
-          .moving_mass_kg = 0.15,
-          .moving_inertia_kg_m2 = 2e-4,
-          .needs_homing = false,
-          .device_side_watchdog = true};
-}
 
 /// Where the energy of the plant went since the first read(), J. Works are of the wrench at the end of a plant step, as
 /// the step uses it, so that by_device_j + by_hand_j - damped_j - numerical_j is the kinetic energy gained, to
@@ -117,16 +27,6 @@ struct plant_energy {
   double by_hand_j = 0.0;    ///< work of the hand's spring and damper
   double damped_j = 0.0;     ///< lost in the plant's own dampers
   double numerical_j = 0.0;  ///< taken out by the implicit step
-};
-
-struct simulated_config {
-  std::uint64_t seed = 1;
-  motion_config motion{};
-  hand_config hand{};
-  plant_config plant{};
-  measurement_config measurement{};
-  device_capabilities capabilities = simulated_capabilities();
-  std::vector<scripted_fault> faults{};
 };
 
 /// Driver of a device that does not exist, under the contract of a real one.
@@ -139,7 +39,11 @@ class simulated_device {
   using policy_tag = device_tag;
 
   explicit simulated_device(simulated_config config = {})
-      : config_(std::move(config)), motion_(config_.motion, config_.seed), bits_(config_.seed ^ 0x9e3779b97f4a7c15ULL) {
+      : config_(std::move(config)),
+        motion_(config_.motion, config_.seed),
+        bits_(config_.seed ^ 0x9e3779b97f4a7c15ULL),
+        luck_(config_.seed ^ 0x6c6f7373ULL),
+        actuator_(config_.actuator) {
     for (tremor_wave& w : tremor_) {
       w.rate_rad_per_s = 2.0 * 3.141592653589793 * (8.0 + 4.0 * unit());
       w.phase_rad = 2.0 * 3.141592653589793 * unit();
@@ -184,23 +88,23 @@ class simulated_device {
     machine_.apply(device_event::closed);
   }
 
-  /// @return ok | backend_failed (a scripted drop) | not_ready (not open, or departed)
+  /// @return ok | backend_failed (a scripted drop, or in a fault) | not_ready (not open, or departed)
   [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
     advance(now_ns);
     if (fault_at(device_fault::depart, now_ns)) depart();
-    if (!measures()) return status::not_ready;
+    if (fault_at(device_fault::overheat, now_ns) || actuator_.burnt()) overheat();
+    if (!measures()) return unanswered();
     if (fault_at(device_fault::drop, now_ns)) return status::backend_failed;
-    const bool asked_again = sequence_ != 0 && newest_.host_time_ns == now_ns;
-    if (sequence_ == 0 || !(asked_again || fault_at(device_fault::stale, now_ns))) measure(now_ns);
+    if (has_news(now_ns)) measure(now_ns);
     in = newest_;
     spoil(now_ns, in);
     return status::ok;
   }
 
-  /// @return ok | backend_failed (a scripted refusal) | not_ready (not open, or departed)
+  /// @return ok | backend_failed (a scripted refusal, or in a fault) | not_ready (not open, or departed)
   [[nodiscard]] status write(std::int64_t now_ns, const device_command& out) noexcept {
     advance(now_ns);
-    if (!measures()) return status::not_ready;
+    if (!measures()) return unanswered();
     if (fault_at(device_fault::refuse_write, now_ns)) return status::backend_failed;
     if (!may_put_out(machine_.state())) {
       command_ = {};
@@ -219,7 +123,7 @@ class simulated_device {
     return status::ok;
   }
 
-  /// What the motors put out at now_ns. @rt safe
+  /// What the motors are told to put out at now_ns. @rt safe
   [[nodiscard]] status applied(std::int64_t now_ns, wrench& out) const noexcept {
     out = now_ns <= command_.valid_until_ns ? command_.on_hand : wrench{};
     return status::ok;
@@ -228,11 +132,19 @@ class simulated_device {
   /// Takes the device off its bus, as device_fault::depart does.
   void unplug() noexcept { depart(); }
 
-  /// Puts a departed device back on its bus: present, or still in its fault until clear_fault().
+  /// Puts a departed device back on its bus: present, or still in its fault until clear_fault(). Every return is under
+  /// another path.
   void plug_in() noexcept {
+    returns_ += departed_ ? 1U : 0U;
     departed_ = false;
     machine_.apply(device_event::arrived);
   }
+  /// Where the device is plugged in: "simulated:0", after its first return "simulated:1". Not in a tick.
+  [[nodiscard]] std::string path() const { return "simulated:" + std::to_string(returns_); }
+  /// What the motors put out in the last step of the plant.
+  [[nodiscard]] const wrench& put_out() const noexcept { return put_out_; }
+  /// The device's own motors, as hot and as limited as they are.
+  [[nodiscard]] const simulated_actuator& actuator() const noexcept { return actuator_; }
 
   /// What the hand feels and does now, for tests and recordings: the truth behind the measurements.
   [[nodiscard]] const pose& true_T_dh() const noexcept { return plant_.T_dh; }
@@ -251,6 +163,7 @@ class simulated_device {
 
  private:
   static constexpr std::int64_t plant_step_ns = 50'000;
+  static constexpr std::int64_t slow_reply_ns = 8'000'000;
   static constexpr std::size_t past_size = 512;  // 25.6 ms of plant states for the delay
 
   struct plant_state {
@@ -279,10 +192,33 @@ class simulated_device {
     return false;
   }
 
+  // A device that is there and in a fault says so; one that is not there says nothing.
+  [[nodiscard]] status unanswered() const noexcept {
+    return machine_.state() == device_state::fault && !departed_ ? status::backend_failed : status::not_ready;
+  }
+
   void depart() noexcept {
     departed_ = true;
     command_ = {};
     machine_.apply(device_event::departed);
+  }
+
+  void overheat() noexcept {
+    command_ = {};
+    machine_.apply(device_event::failed);
+  }
+
+  // Whether a measurement reaches the host now. The first one always does.
+  [[nodiscard]] bool has_news(std::int64_t now_ns) noexcept {
+    if (sequence_ == 0) return true;
+    if (newest_.host_time_ns == now_ns) return false;  // asked again: one instant has one measurement
+    if (fault_at(device_fault::stale, now_ns)) return false;
+    if (fault_at(device_fault::slow_reply, now_ns) && now_ns < newest_.host_time_ns + slow_reply_ns) return false;
+    const double loss = fault_at(device_fault::loss, now_ns) ? 0.9 : config_.measurement.loss;
+    if (!(loss > 0.0) || static_cast<double>(luck_() >> 11) * 0x1.0p-53 >= loss) return true;
+    ++sequence_;
+    ++lost_;
+    return false;
   }
 
   [[nodiscard]] error refused(const char* what) const {
@@ -316,7 +252,8 @@ class simulated_device {
     const hand_target hand = motion_.at(t);
     const hand_config& g = config_.hand;
     const plant_config& p = config_.plant;
-    const wrench put_out = plant_ns_ <= command_.valid_until_ns ? command_.on_hand : wrench{};
+    const wrench put_out = put_out_ =
+        actuator_.follow(plant_ns_ <= command_.valid_until_ns ? command_.on_hand : wrench{}, h);
 
     const vec3 pull = g.stiffness_n_per_m * (hand.T_dh.position + tremor(t) - plant_.T_dh.position) +
                       g.damping_n_s_per_m * hand.velocity_d.linear + put_out.force;
@@ -371,6 +308,7 @@ class simulated_device {
     newest_.host_time_ns = now_ns;
     newest_.device_time_ns = then.time_ns;
     newest_.sequence = ++sequence_;
+    newest_.lost = lost_;
     newest_.T_dh = quantised(then.plant.T_dh);
     newest_.velocity_d = then.plant.velocity_d;
     newest_.valid = sample_field::position | sample_field::rotation | sample_field::linear_velocity |
@@ -389,7 +327,9 @@ class simulated_device {
     return out;
   }
 
-  void spoil(std::int64_t now_ns, device_sample& s) const noexcept {
+  void spoil(std::int64_t now_ns, device_sample& s) noexcept {
+    if (!fault_at(device_fault::stuck_encoder, now_ns)) stuck_x_m_ = s.T_dh.position.x;
+    s.T_dh.position.x = stuck_x_m_;
     if (fault_at(device_fault::nan_pose, now_ns)) s.T_dh.position.x = std::numeric_limits<double>::quiet_NaN();
     if (fault_at(device_fault::infinite_pose, now_ns)) s.T_dh.position.y = std::numeric_limits<double>::infinity();
     if (fault_at(device_fault::bad_rotation, now_ns)) s.T_dh.rotation = 2.0 * s.T_dh.rotation;
@@ -399,9 +339,12 @@ class simulated_device {
   simulated_config config_;
   motion_script motion_;
   std::mt19937_64 bits_;
+  std::mt19937_64 luck_;  // of its own, so that a loss leaves delays and tremor as they are
+  simulated_actuator actuator_;
   std::array<tremor_wave, 9> tremor_{};
   device_state_machine machine_{};
   bool departed_ = false;
+  unsigned returns_ = 0;
 
   bool started_ = false;
   std::int64_t origin_ns_ = 0;
@@ -410,8 +353,11 @@ class simulated_device {
   std::array<past_state, past_size> past_{};
   std::size_t past_next_ = 0;
   device_command command_{};
+  wrench put_out_{};
   device_sample newest_{};
   std::uint64_t sequence_ = 0;
+  std::uint64_t lost_ = 0;
+  double stuck_x_m_ = 0.0;
   plant_energy energy_{};
 };
 

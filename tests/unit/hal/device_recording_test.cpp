@@ -1,0 +1,168 @@
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <asperity/control/virtual_session.hpp>
+#include <asperity/hal/device_recording.hpp>
+#include <asperity/hal/simulated/simulated_device.hpp>
+
+#include "unit/control/analytic_wall.hpp"
+
+namespace {
+
+using namespace asperity;
+using test_support::analytic_wall;
+
+constexpr std::int64_t ms = 1'000'000;
+
+struct keep_all {
+  std::vector<wrench>* to;
+  void operator()(const session_record& r) noexcept { to->push_back(r.on_hand_d); }
+};
+
+simulated_config hand_with_faults() {
+  simulated_config c;
+  c.motion = {.T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .depth_m = 0.015, .approach_s = 0.2};
+  c.measurement = {.delay_ns = 2 * ms, .jitter_ns = 1 * ms, .loss = 0.2};
+  c.faults = {{device_fault::nan_pose, 400 * ms, 403 * ms}, {device_fault::refuse_write, 600 * ms, 610 * ms}};
+  return c;
+}
+
+// A whole session through the loop: opened, armed, 700 ticks, a NaN, a refused write, closed.
+template <class Device>
+std::vector<wrench> play(Device& dev, double stiffness_n_per_m = 2000.0) {
+  std::vector<wrench> sent;
+  EXPECT_TRUE(dev.open() && dev.arm());
+  {
+    analytic_wall wall;
+    wall.stiffness_n_per_m = stiffness_n_per_m;
+    virtual_session<analytic_wall, Device, keep_all> session(wall, {{pose{}}, vec3(0.0)}, dev, {}, {}, keep_all{&sent});
+    static_cast<void>(session.run_until(700 * ms));
+    EXPECT_EQ(session.device().gate().fault(), gate_fault::device_failed);
+  }
+  dev.close();
+  return sent;
+}
+
+device_recording record(std::vector<wrench>* sent = nullptr) {
+  simulated_device dev(hand_with_faults());
+  call_ring ring(4096);
+  recorded_device recorded(dev, ring);
+  device_recording out{std::string(dev.capabilities().name), dev.capabilities(), dev.state(), {}};
+  std::vector<wrench> told = play(recorded);
+  if (sent != nullptr) *sent = std::move(told);
+  for (call_record c; ring.pop(c);) out.calls.push_back(c);
+  EXPECT_EQ(ring.lost(), 0U);
+  return out;
+}
+
+bool same_bits(const std::vector<wrench>& a, const std::vector<wrench>& b) {
+  if (a.size() != b.size()) return false;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!asperity::same_bits({.on_hand = a[i]}, {.on_hand = b[i]})) return false;
+  }
+  return true;
+}
+
+TEST(device_recording, replays_a_session_to_the_bit) {
+  std::vector<wrench> then;
+  const device_recording recording = record(&then);
+  const std::string bytes = encode(recording);
+  const result<device_recording> read = decode(bytes);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(encode(*read), bytes);  // NaN poses included
+
+  replay_device again(*read);
+  EXPECT_EQ(again.capabilities().name, "simulated");
+  EXPECT_EQ(again.capabilities().peak_force_n, simulated_capabilities().peak_force_n);
+  EXPECT_TRUE(same_bits(play(again), then));
+  EXPECT_EQ(again.differences(), 0U);
+  EXPECT_TRUE(again.finished());
+  EXPECT_EQ(again.state(), device_state::closed);
+  ASSERT_GT(then.size(), 600U);
+  EXPECT_GT(glm::length(then[350].force), 0.5);
+}
+
+TEST(device_recording, notices_another_session) {
+  replay_device other(record());
+  static_cast<void>(play(other, 2001.0));  // a slightly harder wall
+  EXPECT_GT(other.differences(), 0U);
+  EXPECT_GT(other.first_difference(), 100U);  // not before the wall is touched
+
+  replay_device wrong_turn(record());
+  EXPECT_FALSE(wrong_turn.arm());
+  device_sample in;
+  EXPECT_EQ(wrong_turn.read(0, in), status::backend_failed);
+  EXPECT_EQ(wrong_turn.state(), device_state::absent);
+}
+
+TEST(device_recording, a_full_ring_counts_what_it_loses_and_keeps_the_order) {
+  call_ring ring(8);
+  for (int i = 0; i < 20; ++i) ring.push({.call = device_call::read, .now_ns = i});
+  EXPECT_EQ(ring.lost(), 12U);
+  call_record c;
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_TRUE(ring.pop(c));
+    EXPECT_EQ(c.now_ns, i);
+  }
+  EXPECT_FALSE(ring.pop(c));
+}
+
+TEST(device_recording, refuses_every_cut_and_every_flipped_byte) {
+  device_recording shorter = record();
+  shorter.calls.resize(40);
+  const std::string bytes = encode(shorter);
+  ASSERT_TRUE(decode(bytes));
+  for (std::size_t n = 0; n < bytes.size(); ++n) ASSERT_FALSE(decode(bytes.substr(0, n))) << n;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string wrong = bytes;
+    wrong[i] = static_cast<char>(wrong[i] ^ 0x10);
+    ASSERT_FALSE(decode(wrong)) << i;
+  }
+  EXPECT_FALSE(decode(bytes + '\0'));
+}
+
+// With the check sum mended, so that what is behind it is reached.
+TEST(device_recording, hostile_bytes_end_in_an_error_or_in_a_recording) {
+  device_recording shorter = record();
+  shorter.calls.resize(40);
+  const std::string bytes = encode(shorter);
+  std::mt19937_64 bits(3);
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string wrong = bytes.substr(0, bytes.size() - 8);
+    for (std::uint64_t n = 1 + bits() % 3; n > 0; --n) wrong[bits() % wrong.size()] = static_cast<char>(bits());
+    std::uint64_t sum = recording_detail::first_sum;
+    for (const char b : wrong) sum = recording_detail::add_to_sum(sum, b);
+    recording_detail::byte_writer w;
+    w.number(sum);
+    const result<device_recording> read = decode(wrong + w.take());
+    if (!read) {
+      ++refused;
+      continue;
+    }
+    EXPECT_LE(read->calls.size(), bytes.size());
+    EXPECT_LE(encode(*read).size(), bytes.size() + 200);
+    for (const call_record& c : read->calls) EXPECT_STRNE(to_string(c.after), "unknown state");
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST(device_recording, reads_files_and_says_what_is_wrong_with_them) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir());
+  EXPECT_FALSE(load_device_recording(folder / "there_is_no_such_recording"));
+  EXPECT_FALSE(load_device_recording(folder));
+  const std::filesystem::path file = folder / "asperity_device_recording_test";
+  const std::string bytes = encode(record());
+  std::ofstream(file, std::ios::binary) << bytes;
+  const result<device_recording> read = load_device_recording(file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(encode(*read), bytes);
+  std::filesystem::remove(file);
+}
+
+}  // namespace
