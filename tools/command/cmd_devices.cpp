@@ -1,6 +1,7 @@
 // asperity devices: what a session can be felt with.
 #include <array>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "asperity/hal/simulated/simulated_device.hpp"
@@ -9,6 +10,7 @@
 #endif
 #include "cli.hpp"
 #include "gpu_devices.hpp"
+#include "known_devices.hpp"
 #include "model_report.hpp"
 #include "text.hpp"
 
@@ -41,17 +43,54 @@ json to_json(const device_capabilities& c) {
           {"device_side_watchdog", c.device_side_watchdog}};
 }
 
+std::string what_it_does(const device_capabilities& c) {
+  if (c.actuated == no_axes) return "measures, puts out nothing";
+  return brief(c.peak_force_n) + " N and " + brief(c.peak_torque_n_m) + " N m at most, " + brief(c.nominal_rate_hz) +
+         " Hz";
+}
+
+void add(const device_listing& d, answer& out) {
+  json entry = to_json(d.capabilities);
+  entry["name"] = d.name;
+  entry["driver"] = d.driver;
+  entry["identity"] = d.identity;
+  entry["path"] = d.path;
+  entry["maturity"] = to_string(d.maturity);
+  entry["problem"] = d.not_openable ? json(*d.not_openable) : json();
+  out.document["devices"].push_back(std::move(entry));
+  const std::string where = d.name == d.identity ? d.path : d.name + " at " + d.path + ", driver " + d.driver;
+  out.text += row(d.identity, where + ", " + to_string(d.maturity) + ": " +
+                                  (d.not_openable ? *d.not_openable : what_it_does(d.capabilities)));
+}
+
 result<answer> list_devices() {
   const device_capabilities c = simulated_capabilities();
   answer out;
-  out.document = {{"devices", json::array({to_json(c)})}, {"units", "SI"}};
-  out.text =
-      row("simulated", "no hardware: a handle, a hand and their dynamics in software; " + brief(c.peak_force_n) +
-                           " N and " + brief(c.peak_torque_n_m) + " N m at most, " + brief(c.nominal_rate_hz) + " Hz");
-  out.text += "  This build has no driver for hardware.\n";
+  out.document = {{"devices", json::array()}, {"drivers", json::array({"simulated"})}, {"problems", json::array()}};
+  out.document["units"] = "SI";
+  add({.driver = "simulated",
+       .identity = "simulated",
+       .path = "a handle, a hand and their dynamics in software",
+       .name = "simulated",
+       .maturity = c.maturity,
+       .capabilities = c},
+      out);
+
+  const known_devices known;
+  for (const device_listing& d : known.directory().devices()) add(d, out);
+  for (const std::string& driver : known.drivers()) out.document["drivers"].push_back(driver);
+  const auto problem = [&out](const std::string& where, const std::string& why) {
+    out.document["problems"].push_back({{"where", where}, {"problem", why}});
+    out.text += row(where, why);
+  };
+  for (const driver_problem& p : known.directory().problems()) problem("driver " + p.driver, p.why.message);
+  for (const refused_module& r : known.refused()) problem(r.file, r.why);
 #ifdef ASPERITY_HAS_CAN
   add_can_interfaces(out);
 #endif
+  std::string names = "simulated";
+  for (const std::string& driver : known.drivers()) names += ", " + driver;
+  out.text += "  Drivers that looked: " + names + ".\n";
   return out;
 }
 

@@ -1,14 +1,18 @@
 // asperity run: a session of the two-rate loop with a device.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "approach.hpp"
+#include "asperity/hal/simulated/simulated_device.hpp"
 #include "cli.hpp"
 #include "gpu_report.hpp"
+#include "known_devices.hpp"
 #include "model_report.hpp"
 #include "options.hpp"
 #include "poses.hpp"
@@ -34,11 +38,19 @@ struct run_command {
   std::uint64_t seed = 1;
   double press_m = 0.012;
   double contact_rate_hz = 1000.0;
-  std::string clock = "virtual";
+  std::string clock;  // empty: what fits the device
+  std::string firmware;
   std::string record;
   std::string plot;
   render_options render;
 };
+
+bool is_simulated(const run_command& options) { return options.device == "simulated"; }
+
+std::string clock_of(const run_command& options) {
+  if (!options.clock.empty()) return options.clock;
+  return is_simulated(options) ? "virtual" : "real";
+}
 
 constexpr double clearance_m = 0.003;  // the hand starts this far above the touch
 
@@ -87,6 +99,35 @@ workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a) {
           .T_ha = {r, -(r * centre_of_mass_a)}};
 }
 
+std::int64_t steady_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+// The axes of a device of one's own are the world's; the probe is taken up in the pose in which the hand holds the
+// handle.
+workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, const pose& T_dh_start) {
+  const vec3 grip_w = T_wa_start * centre_of_mass_a;
+  const pose T_wh_start{T_dh_start.rotation, grip_w};
+  return {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), grip_w - T_dh_start.position},
+          .scale = 1.0,
+          .T_ha = inverse(T_wh_start) * T_wa_start};
+}
+
+// Where the handle is: a device needs a moment for its first measurement.
+result<pose> first_pose(any_device& device) {
+  device_sample sample;
+  for (int ms = 0; ms < 1000; ++ms) {
+    const std::int64_t now_ns = steady_ns();
+    if (device.read(now_ns, sample) == status::ok && has_all(sample.valid, sample_field::position)) return sample.T_dh;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return error{error_code::io_failed,
+               std::string(device.capabilities().name) +
+                   " is open and measured nothing for a second: unplug it, plug it in again, and "
+                   "see `asperity devices`"};
+}
+
 motion_config motion_of(const run_command& options, const scene& bodies) {
   const double size = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
   motion_config motion;
@@ -116,10 +157,11 @@ std::string plot_title(const run_command& options, const session_summary& summar
 }
 
 std::string plot_caption(const run_command& options) {
-  return "Simulated device at 1 kHz, contact loop at " + brief(options.contact_rate_hz) + " Hz, " + options.clock +
-         " clock, " +
+  return (is_simulated(options) ? "Simulated device" : options.device) + " at 1 kHz, contact loop at " +
+         brief(options.contact_rate_hz) + " Hz, " + clock_of(options) + " clock, " +
          (formulation_name(options.render) == "shared" ? "contacts as one potential" : "contacts as in the paper") +
-         ", seed " + std::to_string(options.seed) + "; world axes, torque about the probe's centre of mass.";
+         (is_simulated(options) ? ", seed " + std::to_string(options.seed) : "") +
+         "; world axes, torque about the probe's centre of mass.";
 }
 
 /// The files that a session leaves. Both are opened before it begins.
@@ -208,7 +250,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
                   {"fixed", options.fixed},
                   {"start", {{"probe_pose", to_json(*poses.T_wa)}, {"fixed_poses", T_wb}}},
                   {"device", options.device},
-                  {"clock", options.clock},
+                  {"clock", clock_of(options)},
                   {"motion", options.motion},
                   {"seed", options.seed},
                   {"seconds", ended.ended_at_s},
@@ -220,7 +262,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
   out.document.update(summary.to_json());
   out.document["contact_loop"] = loop_json(ended.contact, contact);
   out.document["device_loop"] = loop_json(ended.device, device);
-  out.document["tick_time_is"] = options.clock == "virtual" ? "cpu" : "wall";
+  out.document["tick_time_is"] = clock_of(options) == "virtual" ? "cpu" : "wall";
   out.document["memory"] = {{"models", memory.models}, {"renderer", memory.renderer}};
   if (memory.gpu) out.document["gpu"] = command::to_json(*memory.gpu);
   out.document["rejected_samples"] = ended.rejected_samples;
@@ -233,7 +275,7 @@ answer report(const run_command& options, const given_poses& poses, const sessio
   out.document["units"] = "SI";
 
   out.text = stem(options.probe) + " felt on " + stem(options.fixed.front()) + ", " + brief(ended.ended_at_s) + " s, " +
-             options.motion + ", " + options.clock + " clock\n" + summary.to_text();
+             (is_simulated(options) ? options.motion + ", " : "") + clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("contact loop", loop_text(ended.contact, contact));
   out.text += row("device loop", loop_text(ended.device, device));
   out.text += row("memory", memory_text(memory.models) + " models, " + memory_text(memory.renderer) + " renderer");
@@ -276,7 +318,13 @@ error gpu_lost(const session_record& tick) {
 
 result<answer> run_session(const run_command& options, const common_options& common) {
   if (const result<void> ok = check(options.render); !ok) return ok.error();
-  if (options.render.backend == "exact" && options.clock == "real") {
+  const bool simulated = is_simulated(options);
+  const bool real_time = clock_of(options) == "real";
+  if (!simulated && !real_time) {
+    return error{error_code::invalid_argument,
+                 "--clock virtual is for the simulated device: a hand at '" + options.device + "' lives in real time"};
+  }
+  if (options.render.backend == "exact" && real_time) {
     return error{error_code::invalid_argument,
                  "--backend exact takes as long as its search does, no contact would be in time: use --clock virtual"};
   }
@@ -289,7 +337,17 @@ result<answer> run_session(const run_command& options, const common_options& com
   result<scene> bodies = load_scene(options.probe, options.fixed, options.render.allow_scale_mismatch);
   if (!bodies) return bodies.error();
   const mass_properties shape = bodies->probe->mass;
-  simulated_config device{.seed = options.seed, .motion = motion_of(options, *bodies)};
+  std::optional<known_devices> known;  // outlives the device
+  std::optional<any_device> device;
+  if (simulated) {
+    device.emplace(simulated_device({.seed = options.seed, .motion = motion_of(options, *bodies)}));
+    if (const result<void> opened = device->open(); !opened) return opened.error();
+  } else {
+    known.emplace(options.firmware);
+    result<any_device> opened = known->open(options.device);
+    if (!opened) return opened.error();
+    device.emplace(std::move(opened).value());
+  }
   result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!feel) return feel.error();
   const std::shared_ptr<gpu_use> gpu = feel->gpu();
@@ -308,13 +366,18 @@ result<answer> run_session(const run_command& options, const common_options& com
   session_summary summary;
   control_config control;
   control.map = map_of(*poses->T_wa, shape.centre_of_mass);
+  if (!simulated) {
+    const result<pose> T_dh = first_pose(*device);
+    if (!T_dh) return T_dh.error();
+    control.map = map_of(*poses->T_wa, shape.centre_of_mass, *T_dh);
+  }
   control.probe = solid_probe(shape);
   const result<session_outcome> ended =
       run_session({.feel = std::move(feel).value(),
                    .placement = {poses->T_wb, shape.centre_of_mass},
-                   .device = std::move(device),
+                   .device = std::move(*device),
                    .control = control,
-                   .clock = options.clock == "real" ? session_clock::real_time : session_clock::virtual_time,
+                   .clock = real_time ? session_clock::real_time : session_clock::virtual_time,
                    .seconds = options.seconds,
                    .contact_period_ns = std::llround(1e9 / options.contact_rate_hz),
                    .on_tick = [&](const session_record& tick) -> result<void> {
@@ -346,9 +409,10 @@ void add_run(command_line& line) {
       ->check(pose_form_error, "POSE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  sub.add_option("--device", o->device, "Device; see `asperity devices`")
-      ->check(CLI::IsMember({"simulated"}))
+  sub.add_option("--device", o->device,
+                 "Device: simulated, or the identity, path, driver or part of the name of one of `asperity devices`")
       ->capture_default_str();
+  sub.add_option("--firmware", o->firmware, "Your copy of the firmware of a Novint Falcon");
   sub.add_option("--seconds", o->seconds, "Length of the session")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1e-3, 86400.0))
@@ -366,9 +430,11 @@ void add_run(command_line& line) {
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1.0, 100000.0))
       ->capture_default_str();
-  sub.add_option("--clock", o->clock, "virtual: reproducible, as fast as it goes; real: two threads in real time")
-      ->check(CLI::IsMember({"virtual", "real"}))
-      ->capture_default_str();
+  sub.add_option(
+         "--clock", o->clock,
+         "virtual: reproducible, as fast as it goes, for the simulated device its default; real: two threads in "
+         "real time")
+      ->check(CLI::IsMember({"virtual", "real"}));
   sub.add_option("--record", o->record, "Recording to write, a CSV table with one row per device tick");
   sub.add_option("--plot", o->plot, "Picture to write: position, force and torque over time (.png, .svg)")
       ->check(

@@ -61,12 +61,7 @@ void keep_fault(const output_gate& gate, session_outcome& out) {
   for (std::size_t i = 0; i < gate.flight().size(); ++i) out.last_ticks.push_back(gate.flight()[i]);
 }
 
-result<void> open_and_arm(simulated_device& dev) {
-  if (result<void> opened = dev.open(); !opened) return opened;
-  return dev.arm();
-}
-
-result<session_outcome> run_virtual(session_setup setup, simulated_device& dev, progress_line& progress) {
+result<session_outcome> run_virtual(session_setup setup, any_device& dev, progress_line& progress) {
   session_outcome out;
   const auto device_ticks = static_cast<std::uint64_t>(std::llround(setup.seconds * 1e9 / device_period_ns));
   const double contact_ticks = setup.seconds * 1e9 / static_cast<double>(setup.contact_period_ns);
@@ -121,7 +116,7 @@ loop_times to_times(const tick_timing& t) {
   return out;
 }
 
-result<session_outcome> run_real(session_setup setup, simulated_device& dev, progress_line& progress) {
+result<session_outcome> run_real(session_setup setup, any_device& dev, progress_line& progress) {
   session_outcome out;
   // Times of an hour at 1 kHz; what comes later is counted, not timed.
   constexpr double most_timed = 3.6e6;
@@ -178,8 +173,8 @@ result<session_outcome> run_real(session_setup setup, simulated_device& dev, pro
 }  // namespace
 
 result<session_outcome> run_session(session_setup setup, progress_line& progress) {
-  simulated_device dev(setup.device);
-  if (const result<void> ready = open_and_arm(dev); !ready) return ready.error();
+  any_device dev = std::move(setup.device);
+  if (const result<void> armed = dev.arm(); !armed) return armed.error();
   return setup.clock == session_clock::virtual_time ? run_virtual(std::move(setup), dev, progress)
                                                     : run_real(std::move(setup), dev, progress);
 }

@@ -1,4 +1,4 @@
-// One session of the two-rate loop with the simulated device, on either clock.
+// One session of the two-rate loop with a device, on either clock.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include "asperity/control/contact_loop.hpp"
 #include "asperity/control/device_loop.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/hal/any_device.hpp"
 #include "chosen_renderer.hpp"
 #include "progress.hpp"
 
@@ -21,7 +21,7 @@ enum class session_clock : std::uint8_t {
 struct session_setup {
   chosen_renderer feel;
   scene_placement placement{};
-  simulated_config device{};
+  any_device device;  ///< open and not armed; a simulated one where the clock is virtual
   control_config control{};
   session_clock clock = session_clock::virtual_time;
   double seconds = 3.0;
@@ -51,7 +51,7 @@ struct session_outcome {
   bool interrupted = false;
 };
 
-/// Opens and arms the device, runs the session, takes the wrench to zero and disarms, whatever ended it.
+/// Arms the device, runs the session, takes the wrench to zero and disarms, whatever ended it.
 /// @return what happened, or the error of on_tick or of the device
 [[nodiscard]] result<session_outcome> run_session(session_setup setup, progress_line& progress);
 
