@@ -423,7 +423,7 @@ TEST_F(kernel_hid, moves_a_probe_against_a_wall) {
   p.unplug();
   static_cast<void>(session.step());
   EXPECT_EQ(device->shown().force.z, 0.0);
-  EXPECT_EQ(session.device().gate().fault(), gate_fault::device_failed);
+  EXPECT_EQ(session.device().gate().fault(), gate_fault::device_departed);
   EXPECT_EQ(device->fault(), spacemouse_fault::unplugged);
 }
 
