@@ -12,7 +12,7 @@ namespace asperity::io {
 namespace {
 
 constexpr std::size_t stl_header_bytes = 84;  // 80 of any content, then the number of triangles
-constexpr std::size_t facet_bytes = 50;   // normal, three corners, two spare bytes
+constexpr std::size_t facet_bytes = 50;       // normal, three corners, two spare bytes
 
 /// Case-insensitive: some exporters write FACET. `keyword` is in lower case.
 bool is_keyword(std::string_view word, std::string_view keyword) {
