@@ -54,12 +54,9 @@ struct control_config {
 /// - A probe step that fails (a contact that is not finite): the wanted wrench is zero in this tick.
 /// - Energy past the guard's cut-off shuts the gate (energy).
 /// - An application that has not beaten exchange::application for longer than watchdog_ns shuts the gate (watchdog).
-/// The
-///   loop itself never beats.
-/// - A device that is gone shuts the gate (device_departed), one that refuses a command too (device_failed). A shut
-/// gate
-///   disarms the device once the wrench is
-///   zero. Nothing here ever arms.
+///   The loop itself never beats.
+/// - A device that is gone shuts the gate (device_departed), and so does one that refuses a command (device_failed).
+///   A shut gate disarms the device once the wrench is zero. Nothing here ever arms.
 /// @tparam Device see haptic_device; not owned, outlives the loop
 template <haptic_device Device, session_observer Observer = no_observer>
 class device_loop {

@@ -13,8 +13,7 @@
 //   is put out. The device applies zero after valid_until_ns by itself where it can.
 // - disarm() and close() put out zero, in every state, also when they fail. disarm() may be called in a tick.
 // - read() and write() of a device that is gone, or not open, answer not_ready; where it is there and in a fault, or
-// could
-//   not answer, backend_failed.
+//   could not answer, backend_failed.
 // - Times are the session's clock, given by the caller, never decreasing. A device never reads a clock in read() or
 // write().
 // - read, write and disarm do not allocate, lock, throw or print. They may enter the kernel where the transport needs
