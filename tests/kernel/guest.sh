@@ -16,7 +16,7 @@ shift
 # devices that the test program itself is.
 modules=${ASPERITY_GUEST_MODULES:-virtio_pci vcan can-raw kvaser_pci slcan uhid hid-generic vhci-hcd}
 memory_mb=${ASPERITY_GUEST_MEMORY_MB:-768}
-seconds=${ASPERITY_GUEST_SECONDS:-240}
+seconds=${ASPERITY_GUEST_SECONDS:-400}
 
 skip() {
   echo "SKIPPED: $*"
