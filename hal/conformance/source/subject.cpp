@@ -39,7 +39,12 @@ bool all_finite(const double (&x)[N]) noexcept {
   return std::all_of(x, x + N, [](double v) { return std::isfinite(v); });
 }
 
-bool same(const asperity_sample& a, const asperity_sample& b) noexcept { return std::memcmp(&a, &b, sizeof a) == 0; }
+// Bytes and not values: a NaN that stands still is the same, and -0 is not 0. Nothing between the members is left
+// unset.
+template <class T>
+bool same_bytes(const T& a, const T& b) noexcept {
+  return std::memcmp(&a, &b, sizeof a) == 0;  // NOLINT(bugprone-suspicious-memory-comparison)
+}
 
 std::string newton(double v, const char* unit) { return std::to_string(v) + " " + unit; }
 
@@ -302,7 +307,7 @@ void subject::look_at_capabilities() {
   auto c = abi::blank<asperity_capabilities>();
   const std::int32_t code =
       set_up_call("capabilities", [&](char*, std::uint32_t) { return t_.capabilities(handle_, &c); });
-  found_.look("capabilities.constant", code == ASPERITY_OK && std::memcmp(&c, &capabilities_, sizeof c) == 0, [&] {
+  found_.look("capabilities.constant", code == ASPERITY_OK && same_bytes(c, capabilities_), [&] {
     return code != ASPERITY_OK
                ? std::string("capabilities() fails after open()")
                : "they differ from what was said after open(), in the state " + std::string(to_string(state_));
@@ -354,7 +359,7 @@ void subject::look_at_sample(std::int64_t now_ns, const asperity_sample& s) {
     found_.look("samples.sequence", s.sequence >= newest_.sequence,
                 [] { return "the sequence number of a sample is below that of the one before"; });
     if (s.sequence == newest_.sequence) {
-      found_.look("samples.same_sequence_same_sample", same(s, newest_),
+      found_.look("samples.same_sequence_same_sample", same_bytes(s, newest_),
                   [&] { return "sequence number " + std::to_string(s.sequence) + " came with two samples"; });
     } else if (s.device_time_ns != 0) {
       found_.look("samples.new_is_new", s.device_time_ns > newest_.device_time_ns, [&] {

@@ -72,7 +72,7 @@ std::shared_ptr<const driver_module> driver_module::load(const std::filesystem::
   const std::filesystem::path absolute = std::filesystem::absolute(file, ignored);
   handle library(::dlopen(absolute.c_str(), RTLD_NOW | RTLD_LOCAL), ::dlclose);
   if (library == nullptr) {
-    library.release();
+    static_cast<void>(library.release());
     failure = {table_fault::not_loadable,
                {error_code::io_failed, file.string() + ": cannot be loaded: " + linker_says()}};
     return nullptr;

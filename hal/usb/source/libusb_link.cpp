@@ -43,8 +43,9 @@ libusb_link::~libusb_link() {
   libusb_release_interface(device_.get(), interface_);  // gives it back to the kernel's driver
   if (any_flying(in_) || any_flying(out_)) {
     // The kernel may still write into these buffers. Memory that is lost is better than memory that changes by itself.
-    static_cast<void>(new std::vector<slot>(std::move(in_)));
-    static_cast<void>(new std::vector<slot>(std::move(out_)));
+    // Without memory to put it aside, the process ends here, as a destructor has no other way to say so.
+    static_cast<void>(new std::vector<slot>(std::move(in_)));   // NOLINT(bugprone-unhandled-exception-at-new)
+    static_cast<void>(new std::vector<slot>(std::move(out_)));  // NOLINT(bugprone-unhandled-exception-at-new)
     static_cast<void>(device_.release());
     static_cast<void>(session_.release());
     return;
@@ -152,8 +153,8 @@ bool libusb_link::any_flying(std::span<const slot> slots) const noexcept {
 }
 
 void libusb_link::wait_while_flying(std::span<const slot> slots, int most_ms) noexcept {
-  constexpr int step_ms = 10;
-  for (int waited_ms = 0; waited_ms < most_ms && any_flying(slots); waited_ms += step_ms) {
+  constexpr long step_ms = 10;
+  for (long waited_ms = 0; waited_ms < most_ms && any_flying(slots); waited_ms += step_ms) {
     timeval step{0, step_ms * 1000};
     static_cast<void>(libusb_handle_events_timeout_completed(session_.get(), &step, nullptr));
   }
