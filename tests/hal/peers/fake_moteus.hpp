@@ -106,7 +106,7 @@ class fake_moteus {
   void write(std::uint32_t at, const std::uint8_t* b, unsigned how, bool& commanded) {
     const double v = number(b, how, at);
     if (at == 0) {
-      wanted_mode_ = v >= 0.0 && v <= 255.0 ? static_cast<int>(v) : 0;
+      wanted_mode_ = v >= 0.0 && v <= 255.0 ? static_cast<int>(v) : -1;  // -1: no mode there is
       commanded = true;
       position_ = 0.0;
       torque_ = 0.0;
