@@ -69,24 +69,33 @@ all_core_headers() {
     sed 's/.*/#include "&"/'
 }
 
-# The core and the devices without optimisation. The other rooms run without NDEBUG in the sanitizers' build.
-check_gcc_debug() {
-  local tests=(unit_core unit_model collision_test unit_cells unit_depth unit_force unit_render control_test hal_test contract_depth
-    simulation_test unit_joint_drives unit_arm hal_falcon hal_can hal_hid_test hal_directory plugin_test)
-  say "left out: tests of other rooms (the sanitizers' build runs them, without NDEBUG too)"
-  configure debug
-  build debug bin/asperity simulation_digest "${tests[@]}"
-  test_preset debug gcc-debug -R "^($(IFS='|' && echo "${tests[*]}"))$"
+# The core and the devices: what another compiler, or a build without optimisation, could find something in.
+core_tests=(unit_core unit_model collision_test unit_cells unit_depth unit_force unit_render control_test hal_test
+  contract_depth simulation_test unit_joint_drives unit_arm hal_falcon hal_can hal_hid_test hal_directory plugin_test)
+
+# build_and_test PRESET STEP TARGET...: these targets and the core's tests, or with ASPERITY_WHOLE_MATRIX=1 everything
+# but long tests and those of an installation.
+build_and_test() {
+  local preset=$1 name=$2
+  shift 2
+  configure "$preset"
+  if [[ -n ${ASPERITY_WHOLE_MATRIX:-} ]]; then
+    left_out long "they take minutes, and ./dev test has run them"
+    left_out install "./dev test has run them"
+    build "$preset"
+    test_preset "$preset" "$name" -LE 'long|install'
+  else
+    say "left out: tests of other rooms than the core and the devices (ASPERITY_WHOLE_MATRIX=1 ./dev check runs them)"
+    build "$preset" "$@" "${core_tests[@]}"
+    test_preset "$preset" "$name" -R "^($(IFS='|' && echo "${core_tests[*]}"))$"
+  fi
 }
+
+check_gcc_debug() { build_and_test debug gcc-debug bin/asperity simulation_digest; }
 
 check_header_sets() { cmake --build build/debug --target all_verify_interface_header_sets; }
 
-check_clang_release() {
-  left_out long "they take minutes, and ./dev test has run them with GCC"
-  left_out install "a consumer's compiler is his own"
-  configure_and_build clang
-  test_preset clang clang-release -LE 'long|install'
-}
+check_clang_release() { build_and_test clang clang-release bin/asperity bin/asperity-conformance simulation_digest; }
 
 # What reads bytes from outside, keeps memory of its own or talks to somebody else's, and the core's units. With
 # ASPERITY_WHOLE_MATRIX=1 every test that is not long: a quarter of an hour more.
