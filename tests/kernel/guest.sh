@@ -25,29 +25,29 @@ skip() {
 
 # Debian's kernel and its modules, unpacked and not installed; all of it or nothing is in the cache.
 fetch_kernel() {
-  [[ -e $cache/ready ]] && return 0
+  [[ -e $cache/complete ]] && return 0
   local new=$cache.new.$$ package version start size
   rm -rf "$new"
-  mkdir -p "$new/root"
+  mkdir -p "$new/tree"
   package=$(apt-cache depends linux-image-amd64 2> /dev/null | awk '/Depends: linux-image-[0-9]/ { print $2; exit }')
   [[ -n $package ]] || { rm -rf "$new" && skip "apt knows no linux-image-amd64 to take a kernel from; run apt-get update"; }
   (cd "$new" && apt-get -qq download "$package") > "$new/log" 2>&1 ||
     { tail -n 1 "$new/log" && rm -rf "$new" && skip "apt-get could not download $package: is there a network?"; }
-  dpkg --fsys-tarfile "$new"/linux-image-*.deb | tar x -C "$new/root" --wildcards './boot/vmlinuz-*' \
+  dpkg --fsys-tarfile "$new"/linux-image-*.deb | tar x -C "$new/tree" --wildcards './boot/vmlinuz-*' \
     './lib/modules/*/modules.*' './lib/modules/*/kernel/'{drivers/{net/can,net/mii.ko,hid,usb,virtio,input},net/can,lib}'*'
-  version=$(ls "$new/root/lib/modules")
-  depmod -b "$new/root" "$version" 2> /dev/null
+  version=$(ls "$new/tree/lib/modules")
+  depmod -b "$new/tree" "$version" 2> /dev/null
 
   # The emulator starts an unpacked kernel three seconds sooner than one that unpacks itself. Where it lies in the image:
   # the x86 boot protocol, fields setup_sects, payload_offset and payload_length.
-  local image=("$new"/root/boot/vmlinuz-*)
+  local image=("$new"/tree/boot/vmlinuz-*)
   start=$(((1 + $(od -An -tu1 -j $((0x1f1)) -N1 "${image[0]}")) * 512 + $(od -An -tu4 -j $((0x248)) -N4 "${image[0]}")))
   size=$(od -An -tu4 -j $((0x24c)) -N4 "${image[0]}")
   tail -c "+$((start + 1))" "${image[0]}" | head -c "$size" | xz -dc --single-stream > "$new/vmlinux" 2> /dev/null || true
   [[ $(head -c 4 "$new/vmlinux" | tail -c 3) == ELF ]] || { rm -rf "$new" && skip "$package is not compressed by xz"; }
-  rm -rf "$new"/*.deb "$new/root/boot" "$new/log"
+  rm -rf "$new"/*.deb "$new/tree/boot" "$new/log"
   echo "$version" > "$new/version"
-  touch "$new/ready"
+  touch "$new/complete"
   rm -rf "$cache"
   mv "$new" "$cache"
 }
@@ -66,14 +66,14 @@ put_program() {
 # The guest's whole root: busybox, udevd (libusb sees arrivals through it), the modules in loading order, the programs.
 make_root() {
   local module file program
-  mkdir -p "$root"/{bin,dev,proc,sys,tmp,run,etc,root,modules}
+  mkdir -p "$root"/{bin,dev,proc,sys,tmp,run,etc,modules}
   cp "$(command -v busybox)" "$root/bin/"
   put_program "$(command -v udevadm)"
   mkdir -p "$root/lib/systemd"
   ln -sf "$(command -v udevadm)" "$root/lib/systemd/systemd-udevd"
   for file in /lib/*-linux-gnu/libgcc_s.so.1; do put "$file"; done  # opened by pthread_cancel, not linked
   for module in $modules; do
-    modprobe -d "$cache/root" -S "$(cat "$cache/version")" --show-depends "$module" | awk '$1 == "insmod" { print $2 }'
+    modprobe -d "$cache/tree" -S "$(cat "$cache/version")" --show-depends "$module" | awk '$1 == "insmod" { print $2 }'
   done | awk '!seen[$0]++' > "$work/modules"
   while read -r file; do
     cp "$file" "$root/modules/"
@@ -82,7 +82,7 @@ make_root() {
   for program in "$@"; do put_program "$(realpath -s "$program")"; done
   {
     echo '#!/bin/busybox sh'
-    echo '/bin/busybox --install -s /bin; export PATH=/bin HOME=/root GTEST_COLOR=no'
+    echo '/bin/busybox --install -s /bin; export PATH=/bin HOME=/ GTEST_COLOR=no'
     echo 'mount -t proc proc /proc; mount -t sysfs sys /sys; mount -t devtmpfs dev /dev; mount -t tmpfs run /run'
     echo 'mkdir -p /dev/pts /dev/shm; mount -t devpts pts /dev/pts; mount -t tmpfs shm /dev/shm'
     echo 'exec < /dev/null > /dev/ttyS0 2>&1; stty -F /dev/ttyS0 raw -echo; stty -F /dev/ttyS2 raw -echo'
