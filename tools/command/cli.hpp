@@ -64,6 +64,7 @@ void add_query(command_line& line);
 void add_run(command_line& line);
 void add_models(command_line& line);
 void add_devices(command_line& line);
+void add_experiment(command_line& line);
 void add_bench(command_line& line);
 
 }  // namespace asperity::command

@@ -12,5 +12,6 @@ int main(int argc, char** argv) {
   asperity::command::add_models(line);
   asperity::command::add_devices(line);
   asperity::command::add_bench(line);
+  asperity::command::add_experiment(line);
   return line.run(argc, argv);
 }

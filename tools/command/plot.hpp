@@ -1,6 +1,7 @@
-// Stacked line plots over a common axis, as PNG or SVG.
+// Stacked plots, over a common axis or one of their own, as PNG or SVG.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,14 +10,27 @@
 
 namespace asperity::command {
 
+enum class plot_style : std::uint8_t {
+  line,
+  dashed,
+  points,  ///< a dot at each value, without a line
+  marked,  ///< a line with a dot at each value
+};
+
 struct plot_line {
   std::string label;
-  std::vector<double> y;  ///< one value per entry of plot_page::x; a NaN leaves a gap
+  std::vector<double> y;       ///< one value per entry of x; a NaN leaves a gap
+  std::vector<double> x = {};  ///< its own; empty: the panel's
+  plot_style style = plot_style::line;
 };
 
 struct plot_panel {
   std::string y_label;  ///< quantity and unit
   std::vector<plot_line> lines;
+  std::string x_label = {};    ///< not empty: the panel has an axis of its own, over its own x
+  std::vector<double> x = {};  ///< ascending; empty: the page's
+  bool log_x = false;          ///< of an axis of its own, whose values are all above zero
+  bool log_y = false;          ///< values that are not above zero leave gaps
 };
 
 struct plot_page {

@@ -69,10 +69,9 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   out.contact.seconds.reserve(static_cast<std::size_t>(std::ceil(contact_ticks)) + 1);
 
   session_record last;
-  // As on a real machine, a contact is used when its computation is over and not when it begins.
   const virtual_schedule schedule{.device_period_ns = device_period_ns,
                                   .contact_period_ns = setup.contact_period_ns,
-                                  .contact_one_period_late = true};
+                                  .contact_one_period_late = setup.contact_one_period_late};
   virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
                           setup.control, schedule, keep_last{&last});
   std::optional<error> failed;

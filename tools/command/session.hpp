@@ -26,6 +26,8 @@ struct session_setup {
   session_clock clock = session_clock::virtual_time;
   double seconds = 3.0;
   std::int64_t contact_period_ns = 1'000'000;
+  /// On the virtual clock: a contact is used when its computation is over and not when it begins, as on a real machine.
+  bool contact_one_period_late = true;
   /// Told of every device tick, outside it and in order. An error ends the session.
   std::function<result<void>(const session_record&)> on_tick;
 };

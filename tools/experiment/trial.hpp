@@ -1,0 +1,38 @@
+// One session of the whole pipeline, with a scripted hand, on the virtual clock.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "asperity/control/device_loop.hpp"
+#include "asperity/control/session_record.hpp"
+#include "scripted_hand.hpp"
+#include "session.hpp"
+
+namespace asperity::experiment {
+
+/// What is done in a session. The device's base frame is the world's, and the handle sits at the probe's centre of mass
+/// with the world's axes at the start: a wish's pose is where the hand wants the probe's centre of mass, its rotation
+/// how far it has turned the probe from the start.
+struct trial {
+  pose T_wa_start{};
+  std::vector<pose> T_wb;
+  std::function<hand_wish(double t_s)> script;
+  hand_grip grip{};
+  double seconds = 1.0;
+  std::int64_t contact_period_ns = 1'000'000;
+  bool contact_one_period_late = true;  ///< as on a real machine, where a contact takes its time to compute
+  control_config control{};             ///< its map is set by the trial
+};
+
+/// Every device tick, and what the loops took.
+struct trial_log {
+  std::vector<session_record> ticks;
+  command::session_outcome ended;
+};
+
+/// @return the session's error, or that the output gate shut and why: in an experiment it never should
+[[nodiscard]] result<trial_log> run_trial(command::chosen_renderer feel, trial wanted);
+
+}  // namespace asperity::experiment

@@ -1,0 +1,76 @@
+// What every experiment is given: baked models, renderers of every kind, and somebody to tell how far it is.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "asperity/bake/bake.hpp"
+#include "asperity/core/status.hpp"
+#include "asperity/model/scene.hpp"
+#include "benchmark_models.hpp"
+#include "render_choice.hpp"
+
+namespace asperity::experiment {
+
+/// One kind of renderer that an experiment is run with.
+struct variant {
+  std::string name;  ///< for statements and files: lower case, digits and underscores
+  std::string says;  ///< for legends
+  command::render_options options;
+  bool may_be_missing = false;  ///< of a backend on a GPU: this machine or this build may have none
+};
+
+struct workbench_settings {
+  std::filesystem::path models;  ///< folder of baked models; what is missing there is baked and kept
+  bool brief = false;            ///< a share of each experiment, for tests: fewer variants, shorter motions
+  bool gpu = true;               ///< backends on a GPU too, where there is one
+  /// Makes every renderer; by default the one that the options of the variant ask for. A test that breaks the code on
+  /// purpose gives its own.
+  std::function<result<command::chosen_renderer>(scene, const variant&)> make_renderer;
+  std::function<void(std::string_view what, double done)> progress;  ///< told of every stage and its share, 0 to 1
+  std::function<bool()> cancelled;                                   ///< asked between trials
+};
+
+/// Bakes on demand and keeps what it baked. Not for two threads.
+class workbench {
+ public:
+  explicit workbench(workbench_settings settings);
+
+  /// One of the paper's models, baked with the paper's coarse triangle count.
+  /// @return what bake() or the file says | cancelled
+  [[nodiscard]] result<model_ptr> benchmark(models::benchmark which);
+  /// A model of an experiment's own. `name` tells it from every other one, its numbers included: a file of that name is
+  /// taken as it is.
+  [[nodiscard]] result<model_ptr> baked(const std::string& name, const std::function<triangle_mesh()>& full,
+                                        bake::bake_options options);
+
+  /// The renderer of a variant. @return what its maker says
+  [[nodiscard]] result<command::chosen_renderer> make_renderer(scene bodies, const variant& kind) const;
+
+  /// The renderers that an experiment on forces is run with: contacts as one potential, the paper's with either
+  /// gradient and, where the run is not brief, those on a GPU. One that may be missing and cannot be made is left out
+  /// of the findings with a note.
+  [[nodiscard]] const std::vector<variant>& variants() const noexcept { return variants_; }
+  [[nodiscard]] bool brief() const noexcept { return settings_.brief; }
+  void progress(std::string_view what, double done) const;
+  /// cancelled where somebody wants the experiments to end, else nothing
+  [[nodiscard]] result<void> go_on() const;
+
+ private:
+  workbench_settings settings_;
+  std::vector<variant> variants_;
+  std::map<std::string, model_ptr, std::less<>> kept_;
+};
+
+/// The paper's contacts on the CPU with the soft maximum: for experiments that need one kind only and its contacts.
+[[nodiscard]] variant paper_soft();
+/// The paper's own scheme: central differences.
+[[nodiscard]] variant paper_central();
+/// Contacts as one potential, the library's default.
+[[nodiscard]] variant shared_contacts();
+
+}  // namespace asperity::experiment
