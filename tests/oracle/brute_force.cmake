@@ -3,7 +3,7 @@ asperity_optimise(oracle_originals)
 asperity_add_test(oracle_brute_force_self SOURCES brute_force_self_test.cpp LIBS oracle_originals)
 
 if(TARGET asperity_command)
-  asperity_add_test(oracle_brute_force_models
+  asperity_add_test(oracle_brute_force_models WARM
     SOURCES brute_force_models_test.cpp texel_holes_models_test.cpp APART undersampling_models_test.cpp
     LIBS oracle_originals asperity::io)
   target_compile_definitions(oracle_brute_force_models PRIVATE ASPERITY_TEST_MODELS_DIR="${ASPERITY_TEST_MODELS_DIR}")
