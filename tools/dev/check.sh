@@ -69,36 +69,45 @@ all_core_headers() {
     sed 's/.*/#include "&"/'
 }
 
-# The core and the devices: what another compiler, or a build without optimisation, could find something in.
+# The core and the devices: what another compiler could find something in.
 core_tests=(unit_core unit_model collision_test unit_cells unit_depth unit_force unit_render control_test hal_test
   contract_depth simulation_test unit_joint_drives unit_arm hal_falcon hal_can hal_hid_test hal_directory plugin_test)
 
-# build_and_test PRESET STEP TARGET...: these targets and the core's tests, or with ASPERITY_WHOLE_MATRIX=1 everything
-# but long tests and those of an installation.
-build_and_test() {
-  local preset=$1 name=$2
-  shift 2
-  configure "$preset"
+# whole_matrix PRESET STEP: every test but the long ones and those of an installation, with ASPERITY_WHOLE_MATRIX=1.
+whole_matrix() {
+  left_out long "they take minutes, and ./dev test has run them"
+  left_out install "./dev test has run them"
+  build "$1"
+  test_preset "$1" "$2" -LE 'long|install'
+}
+
+# GCC without optimisation compiles what the header sets and the comparison of bits need. Tests of a Debug build are run
+# with the sanitizers, below.
+check_gcc_debug() {
+  configure debug
   if [[ -n ${ASPERITY_WHOLE_MATRIX:-} ]]; then
-    left_out long "they take minutes, and ./dev test has run them"
-    left_out install "./dev test has run them"
-    build "$preset"
-    test_preset "$preset" "$name" -LE 'long|install'
+    whole_matrix debug gcc-debug
   else
-    say "left out: tests of other rooms than the core and the devices (ASPERITY_WHOLE_MATRIX=1 ./dev check runs them)"
-    build "$preset" "$@" "${core_tests[@]}"
-    test_preset "$preset" "$name" -R "^($(IFS='|' && echo "${core_tests[*]}"))$"
+    say "left out: tests, which asan-ubsan runs in a Debug build (ASPERITY_WHOLE_MATRIX=1 ./dev check runs them here too)"
+    build debug bin/asperity simulation_digest
   fi
 }
 
-check_gcc_debug() { build_and_test debug gcc-debug bin/asperity simulation_digest; }
-
 check_header_sets() { cmake --build build/debug --target all_verify_interface_header_sets; }
 
-check_clang_release() { build_and_test clang clang-release bin/asperity bin/asperity-conformance simulation_digest; }
+check_clang_release() {
+  configure clang
+  if [[ -n ${ASPERITY_WHOLE_MATRIX:-} ]]; then
+    whole_matrix clang clang-release
+  else
+    say "left out: tests of other rooms than the core and the devices (ASPERITY_WHOLE_MATRIX=1 ./dev check runs them)"
+    build clang bin/asperity bin/asperity-conformance simulation_digest "${core_tests[@]}"
+    test_preset clang clang-release -R "^($(IFS='|' && echo "${core_tests[*]}"))$"
+  fi
+}
 
-# What reads bytes from outside, keeps memory of its own or talks to somebody else's, and the core's units. With
-# ASPERITY_WHOLE_MATRIX=1 every test that is not long: a quarter of an hour more.
+# A Debug build, assertions and all. What reads bytes from outside, keeps memory of its own or talks to somebody else's,
+# and the core's units. With ASPERITY_WHOLE_MATRIX=1 every test that is not long: a quarter of an hour more.
 check_asan_ubsan() {
   local tests=(unit_core unit_core_triple_buffer unit_model unit_io collision_test unit_depth unit_force control_test
     real_session_test hal_test simulation_test contract_depth hostile_fuzz hostile_bakes unit_gl gl_compute_depth
