@@ -51,7 +51,7 @@ TEST_F(kernel_usb, a_falcon_from_power_on_to_an_unplugged_cable_and_back) {
   falcon_config config;
   config.firmware_path = image.path();
   config.silent_after_ns = 5'000 * ms;
-  config.wake_ns = 300 * ms;
+  config.wake_ns = 2'000 * ms;
   config.settle_reports = 10;
   config.busy_limit = 5'000;
   usb::system_finder finder;
