@@ -6,6 +6,8 @@
 #include <cstring>
 #include <malloc.h>
 
+#include "support/sanitizers.hpp"
+
 namespace asperity::hostile {
 
 /// Peak of the resident memory since begin(), beyond what was there then. Linux; blocks of 64 KiB and more come from
@@ -32,13 +34,7 @@ class peak_memory {
   [[nodiscard]] bool works() const { return works_ && !sanitized; }
 
  private:
-#if defined(__SANITIZE_ADDRESS__)
-  static constexpr bool sanitized = true;
-#elif defined(__has_feature)
-  static constexpr bool sanitized = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
-#else
-  static constexpr bool sanitized = false;
-#endif
+  static constexpr bool sanitized = ASPERITY_ADDRESS_SANITIZER || ASPERITY_THREAD_SANITIZER;
 
   static std::size_t status_bytes(const char* key) {
     unsigned long kb = 0;

@@ -5,16 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "support/sanitizers.hpp"
+
 namespace asperity::hostile {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr bool sanitized = true;
-#elif defined(__has_feature)
-constexpr bool sanitized = __has_feature(address_sanitizer);
-#else
-constexpr bool sanitized = false;
-#endif
 
 void limit(__rlimit_resource what, rlim_t most) {
   const rlimit both{most, most};
@@ -25,7 +19,7 @@ void limit(__rlimit_resource what, rlim_t most) {
   ::dup2(out, STDOUT_FILENO);
   limit(RLIMIT_CPU, limits.cpu_s);
   limit(RLIMIT_CORE, 0);
-  if (limits.address_space_bytes != 0 && !sanitized) limit(RLIMIT_AS, limits.address_space_bytes);
+  if (limits.address_space_bytes != 0 && !ASPERITY_ADDRESS_SANITIZER) limit(RLIMIT_AS, limits.address_space_bytes);
   ::alarm(limits.wall_s);  // lives on in the probe; it ends what waits without using the processor
   ::execl(ASPERITY_LOAD_PROBE, ASPERITY_LOAD_PROBE, how, file, static_cast<char*>(nullptr));
   ::_exit(126);

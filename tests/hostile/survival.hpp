@@ -10,14 +10,13 @@
 #include "asperity/model/map_image.hpp"
 #include "asperity/model/textured_model.hpp"
 #include "asperity/model/triangle_mesh.hpp"
+#include "support/sanitizers.hpp"
 
 namespace asperity::hostile {
 
 /// One in so many of the usual runs, where the build is slow.
-#if defined(__SANITIZE_ADDRESS__) || !defined(NDEBUG)
+#if ASPERITY_ADDRESS_SANITIZER || !defined(NDEBUG)
 inline constexpr std::size_t share = 8;
-#elif defined(__has_feature)
-inline constexpr std::size_t share = __has_feature(address_sanitizer) ? 8 : 1;
 #else
 inline constexpr std::size_t share = 1;
 #endif

@@ -1,153 +1,25 @@
-// asperity::usb and the Falcon's driver over a real kernel's USB. Needs the module vhci-hcd and root; skips without.
+// asperity::usb over a real kernel's USB. Needs the module vhci-hcd and root; skips without.
 #include "asperity/usb/usb.hpp"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
-#include <deque>
-#include <fstream>
-#include <functional>
-#include <gtest/gtest.h>
+#include <memory>
 #include <string>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
-#include "asperity/hal/falcon/falcon_driver.hpp"
-#include "asperity/hal/transport/real_clock.hpp"
-#include "hal/peers/fake_falcon.hpp"
-#include "hal/usb/falcon_rig.hpp"
-#include "kernel/usbip_device.hpp"
+#include "kernel/echo_function.hpp"
+#include "kernel/usb_fixture.hpp"
 
 namespace {
 
 using namespace asperity;
 using namespace asperity::test_support;
-
-constexpr std::int64_t ms = 1'000'000;
-
-// Gives back what it is given; stores what a vendor's request writes.
-class echo_function final : public usb_function {
- public:
-  io_status control(const usb_setup& setup, std::span<std::uint8_t> data, std::size_t& done) override {
-    if (setup.request_type == 0x40 && setup.request == 1) {
-      stored.assign(data.begin(), data.end());
-      last = setup;
-      return io_status::ok;
-    }
-    if (setup.request_type != 0xc0 || setup.request != 2) return io_status::refused;
-    done = std::min(stored.size(), data.size());
-    std::copy_n(stored.begin(), done, data.begin());
-    return io_status::ok;
-  }
-  bool take(std::span<const std::uint8_t> bytes) override {
-    if (deaf) return false;
-    taken.assign(bytes.begin(), bytes.end());
-    waiting.push_back(taken);
-    return true;
-  }
-  answer give(std::span<std::uint8_t> room, std::size_t& size) override {
-    if (stalled) return answer::stall;
-    if (broken > 0) {
-      --broken;
-      return answer::broken;
-    }
-    if (waiting.empty()) return answer::nothing;
-    size = std::min(room.size(), waiting.front().size());
-    std::copy_n(waiting.front().begin(), size, room.begin());
-    waiting.pop_front();
-    return answer::data;
-  }
-  void halt_cleared() override { stalled = false; }
-
-  std::vector<std::uint8_t> stored{};
-  usb_setup last{};
-  std::deque<std::vector<std::uint8_t>> waiting{};
-  std::vector<std::uint8_t> taken{};  // last
-  bool deaf = false;
-  bool stalled = false;
-  int broken = 0;
-};
-
-// The fake Falcon at the kernel's end of the cable, with the FTDI chip's packet in every millisecond.
-class falcon_function final : public usb_function {
- public:
-  explicit falcon_function(fake_falcon_config config) : peer(std::move(config)) {}
-  io_status control(const usb_setup& setup, std::span<std::uint8_t> data, std::size_t& done) override {
-    return peer.control(setup, data, done);
-  }
-  bool take(std::span<const std::uint8_t> bytes) override {
-    peer.receive(bytes);
-    return true;
-  }
-  answer give(std::span<std::uint8_t> room, std::size_t& size) override {
-    if (!peer.has_payload() && !status_due_) return answer::nothing;
-    status_due_ = false;
-    size = peer.transmit(room);
-    return answer::data;
-  }
-  void tick() override { status_due_ = true; }
-
-  fake_falcon peer;
-
- private:
-  bool status_due_ = false;
-};
-
-bool eventually(const std::function<bool()>& so) {
-  const auto due = std::chrono::steady_clock::now() + std::chrono::seconds(10);
-  while (!so()) {
-    if (std::chrono::steady_clock::now() > due) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
-}
-
-class kernel_usb : public testing::Test {
- protected:
-  void SetUp() override {
-    const std::string missing = usbip_device::missing();
-    if (!missing.empty()) GTEST_SKIP() << missing;
-  }
-
-  // Plugs in and waits until it is listed.
-  static usb_listing plugged(usbip_device& device, int port, const usb_identity& id = {}) {
-    const std::string problem = device.plug_in(port);
-    EXPECT_EQ(problem, "");
-    usb_listing found;
-    EXPECT_TRUE(eventually([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));  // each look costs
-      const auto all = usb::list_usb(id.vendor, id.product);
-      if (!all || all->empty() || (*all)[0].serial != id.serial) return false;
-      found = (*all)[0];
-      return true;
-    }));
-    return found;
-  }
-
-  static std::unique_ptr<usb_link> opened(const usb_listing& l, const usb_pipes& pipes = {}) {
-    auto link = usb::open_usb(l, pipes);
-    EXPECT_TRUE(link) << (link ? "" : link.error().message);
-    return link ? std::move(*link) : nullptr;
-  }
-
-  // The next answer that is not `nothing`.
-  io_status next(usb_link& link, std::vector<std::uint8_t>& bytes, std::size_t room = 64) {
-    io_status s = io_status::nothing;
-    eventually([&] {
-      bytes.assign(room, 0);
-      usb_packet p;
-      s = link.read(clock.now_ns(), bytes, p);
-      if (s == io_status::ok) bytes.resize(p.size);
-      return s != io_status::nothing;
-    });
-    return s;
-  }
-
-  real_clock clock{};
-};
 
 std::vector<std::uint8_t> pattern(std::size_t size, std::size_t seed) {
   std::vector<std::uint8_t> out(size);
@@ -441,74 +313,6 @@ TEST_F(kernel_usb_link, without_permission_the_reason_has_the_line_for_udev) {
   ASSERT_EQ(::waitpid(child, &state, 0), child);
   EXPECT_TRUE(WIFEXITED(state));
   EXPECT_EQ(WEXITSTATUS(state), 0);
-}
-
-TEST_F(kernel_usb, a_falcon_from_power_on_to_an_unplugged_cable_and_back) {
-  const fake_image image(200);
-  falcon_function falcon({.image = image.bytes(), .split = true});
-  const usb_identity id{
-      .vendor = falcon_vendor, .product = falcon_product, .maker = "Novint", .name = "Falcon", .serial = "F7"};
-  usbip_device cable(falcon, id);
-  plugged(cable, 0, id);
-
-  // An emulated machine may stand still for a while; what a standstill does is tested on a clock that is a number.
-  falcon_config config;
-  config.firmware_path = image.path();
-  config.silent_after_ns = 5'000 * ms;
-  config.wake_ns = 300 * ms;
-  config.settle_reports = 10;
-  config.busy_limit = 5'000;
-  usb::system_finder finder;
-  falcon_driver driver(finder, clock, config);
-  const auto listed = driver.list();
-  ASSERT_TRUE(listed);
-  ASSERT_EQ(listed->size(), 1U);
-  EXPECT_EQ((*listed)[0].name, "Novint Falcon");
-  EXPECT_EQ((*listed)[0].identity, "usb:0403:cb48:F7");
-  auto device = driver.make((*listed)[0]);
-  ASSERT_TRUE(device);
-  const auto opened = device->open();
-  ASSERT_TRUE(opened) << opened.error().message;
-  cable.with_lock([&] { EXPECT_TRUE(falcon.peer.running()); });
-  ASSERT_TRUE(device->arm());
-
-  const vec3 push{0.5, -0.5, 1.5};
-  device_sample seen;
-  const auto tick = [&] {
-    const std::int64_t now_ns = clock.now_ns();
-    const status got = device->read(now_ns, seen);
-    const status put = device->write(
-        now_ns,
-        {.on_hand = {push, vec3(0.0)}, .frame = wrench_frame::device_base, .valid_until_ns = now_ns + 5'000 * ms});
-    clock.wait_until_ns(now_ns + ms);
-    return got != status::ok ? got : put;
-  };
-  for (int i = 0; i < 200; ++i) ASSERT_EQ(tick(), status::ok) << i;
-  EXPECT_EQ(device->state(), device_state::active);
-  EXPECT_GT(seen.sequence, 30U);
-  EXPECT_EQ(seen.lost, 0U);
-  EXPECT_LT(glm::length(seen.T_dh.position - vec3(0.0, 0.0, 0.11)), 1e-4);
-  cable.with_lock([&] { EXPECT_LT(glm::length(falcon.peer.force_d() - push), 0.02); });
-
-  cable.unplug();
-  EXPECT_TRUE(eventually([&] { return tick() != status::ok; }));
-  EXPECT_EQ(device->state(), device_state::fault);
-  EXPECT_NE(device->open().error().message.find("it was unplugged"), std::string::npos);
-  falcon.peer.power_on();
-  plugged(cable, 2, id);
-  EXPECT_EQ(tick(), status::not_ready);
-  ASSERT_TRUE(device->clear_fault());
-  const auto again = device->open();
-  ASSERT_TRUE(again) << again.error().message;
-  EXPECT_EQ(device->state(), device_state::ready);
-  for (int i = 0; i < 30; ++i) ASSERT_EQ(tick(), status::ok);
-  cable.with_lock([&] { EXPECT_TRUE(falcon.peer.at_rest()); });
-
-  ASSERT_TRUE(device->arm());
-  for (int i = 0; i < 20; ++i) ASSERT_EQ(tick(), status::ok);
-  cable.with_lock([&] { EXPECT_FALSE(falcon.peer.at_rest()); });
-  device->close();
-  cable.with_lock([&] { EXPECT_TRUE(falcon.peer.at_rest()); });
 }
 
 }  // namespace

@@ -2,14 +2,9 @@
 
 #include <sys/resource.h>
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-#define ASPERITY_SANITIZED
-#endif
-#endif
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define ASPERITY_SANITIZED
-#endif
+#include "support/sanitizers.hpp"
+
+#define ASPERITY_SANITIZED (ASPERITY_ADDRESS_SANITIZER || ASPERITY_THREAD_SANITIZER)
 
 namespace asperity::test_support {
 
@@ -21,12 +16,12 @@ std::uint64_t tick_trap::thread_page_faults() noexcept {
 
 }  // namespace asperity::test_support
 
-#if defined(ASPERITY_SANITIZED) || !defined(__GLIBC__)
+#if ASPERITY_SANITIZED || !defined(__GLIBC__)
 
 namespace asperity::test_support {
 
 std::string tick_trap::missing() {
-#if defined(ASPERITY_SANITIZED)
+#if ASPERITY_SANITIZED
   return "the sanitizer of this build stands at the same symbols as the tick trap; builds without one run it";
 #else
   return "the tick trap knows the symbols of glibc only";

@@ -11,13 +11,7 @@
 #include <utility>
 #include <vector>
 
-#if defined(__SANITIZE_ADDRESS__)
-#define ASPERITY_OTHER_HEAP 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define ASPERITY_OTHER_HEAP 1
-#endif
-#endif
+#include "support/sanitizers.hpp"
 
 namespace {
 
@@ -94,9 +88,7 @@ struct hoarding_device : simulated_device {
 };
 
 TEST(soak, finds_blocks_that_are_not_given_back) {
-#ifdef ASPERITY_OTHER_HEAP
-  GTEST_SKIP() << "the sanitizer's heap does not count for mallinfo2";
-#endif
+  if (ASPERITY_ADDRESS_SANITIZER) GTEST_SKIP() << "the sanitizer's heap does not count for mallinfo2";
   hoarding_device dev(soak::tapping_hand());
   EXPECT_TRUE(names(soaked(dev, 10 * second), "heap grew"));
 }

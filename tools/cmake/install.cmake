@@ -13,7 +13,6 @@ install(EXPORT asperity-core NAMESPACE asperity:: FILE asperity-core.cmake DESTI
 
 foreach(_component ${ASPERITY_COMPONENTS})
   if(TARGET asperity_${_component})
-    set_target_properties(asperity_${_component} PROPERTIES EXPORT_NAME ${_component})
     install(TARGETS asperity_${_component} EXPORT asperity-${_component}
             ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
             LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}

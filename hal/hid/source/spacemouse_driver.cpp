@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "asperity/hal/hid/descriptor_parser.hpp"
 #include "asperity/hal/spacemouse/products.hpp"
 
 namespace asperity::hid {

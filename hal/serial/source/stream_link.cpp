@@ -49,7 +49,7 @@ io_status stream_link::read(std::int64_t /*now_ns*/, std::span<std::uint8_t> byt
   if (bytes.empty()) return io_status::nothing;
   const std::int64_t answer = calls_.read(fd_, bytes.data(), bytes.size());
   if (answer < 0) return failed_with(answer, io_status::nothing);
-  if (answer == 0) {  // a line that is merely silent says EAGAIN: see VMIN in open_serial.cpp
+  if (answer == 0) {  // a line that is merely silent says EAGAIN: see VMIN in terminal_settings.cpp
     gone_ = true;
     return io_status::gone;
   }

@@ -56,7 +56,7 @@ struct pointee_of_result<result<std::unique_ptr<D>>> {
 
 /// A driver that can be exported: a description, what is plugged in, and a device that models haptic_device.
 ///
-/// Two members of the device are optional, and asked for by the conformance kit:
+/// Three members of the device are optional; the conformance kit asks for them:
 ///   status applied(std::int64_t now_ns, wrench& out) const noexcept   what it puts out, after its own limits; @rt safe
 ///   std::string fault_text() const                                    why it is in its fault
 ///   bool provoke(provocation what)                                    false where it cannot

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <asperity/hal/hid/descriptor_parser.hpp>
 #include <asperity/hal/spacemouse/products.hpp>
 #include <asperity/hal/spacemouse/protocol.hpp>
 

@@ -5,18 +5,10 @@
 #include <thread>
 
 #include "asperity/core/triple_buffer.hpp"
+#include "support/sanitizers.hpp"
 #include "unit/core/hand_over_variants.hpp"
 
-#if defined(__has_feature)
-#if __has_feature(thread_sanitizer)
-#define ASPERITY_THREAD_SANITIZER
-#endif
-#endif
-#if defined(__SANITIZE_THREAD__)
-#define ASPERITY_THREAD_SANITIZER
-#endif
-
-#if defined(ASPERITY_THREAD_SANITIZER)
+#if ASPERITY_THREAD_SANITIZER
 
 int main() {
   using namespace asperity::test_support;

@@ -34,14 +34,6 @@ struct arm_joint {
   double reflected_inertia_kg_m2 = 0.0;  ///< of the rotor, seen from the joint
 };
 
-/// A stop made of torque, before the mechanical one.
-struct soft_stop {
-  double zone_rad = 0.05;               ///< begins that much before the chain's limit
-  double stiffness_n_m_per_rad = 20.0;  ///< pushes back from there on; never pulls
-  double damping_n_m_s_per_rad = 0.2;   ///< while the joint goes on outwards
-  double overrun_rad = 0.1;             ///< so far beyond the limit no joint can be: a fault
-};
-
 struct articulated_config {
   std::string_view name = "articulated device";  ///< outlives the device
   driver_maturity maturity = driver_maturity::protocol_tested;

@@ -10,6 +10,26 @@
 
 namespace asperity {
 
+/// A stop made of torque, before the mechanical one.
+struct soft_stop {
+  double zone_rad = 0.05;               ///< begins that much before the chain's limit
+  double stiffness_n_m_per_rad = 20.0;  ///< pushes back from there on; never pulls
+  double damping_n_m_s_per_rad = 0.2;   ///< while the joint goes on outwards
+  double overrun_rad = 0.1;             ///< so far beyond the limit no joint can be: a fault
+};
+
+/// A joint's own torque with what its stop pushes, N m.
+/// @rt safe
+[[nodiscard]] inline double with_stop(double own_n_m, const soft_stop& stop, const chain_joint& joint, double angle_rad,
+                                      double rate_rad_per_s) noexcept {
+  const double over = angle_rad - (joint.upper_rad - stop.zone_rad);
+  const double under = (joint.lower_rad + stop.zone_rad) - angle_rad;
+  const double outwards = stop.damping_n_m_s_per_rad;
+  if (over > 0.0) own_n_m -= stop.stiffness_n_m_per_rad * over + outwards * std::max(0.0, rate_rad_per_s);
+  if (under > 0.0) own_n_m += stop.stiffness_n_m_per_rad * under + outwards * std::max(0.0, -rate_rad_per_s);
+  return own_n_m;
+}
+
 /// What the joints are told.
 struct shared_torques {
   joint_vector torque_n_m{};

@@ -4,30 +4,29 @@
 #include <cmath>
 #include <cstdint>
 
-#include "asperity/hal/canopen/cia402_setup.hpp"
+#include "asperity/hal/canopen/setup_dialogue.hpp"
 #include "asperity/hal/joint/joint_drive.hpp"
 
 namespace asperity {
 
 /// Leads one drive through boot-up, configuration, NMT start and the power states, and supervises it:
 ///
-///     reset communication -> boot-up -> pre-operational -> objects (cia402_setup.hpp) -> NMT start
+///     reset communication -> boot-up -> pre-operational -> objects (setup_dialogue.hpp) -> NMT start
 ///       -> [fault reset] -> ready to switch on = idle -> switched on -> operation enabled = enabled
 ///
 /// - The bus needs a canopen_master as well, which sends SYNC after every drive's step(): without it no drive answers.
 /// - start() and clear_fault() reset a fault that the drive holds, once, by a rising edge. Nothing else does.
-/// - In session these are faults: a heartbeat or process data that stop, an emergency message, a boot-up message, an
-/// NMT
-///   state or power state that nobody asked for, another mode than torque, a frame that the bus does not take. In
-///   fault, torque 0 and "disable voltage" (or quick stop, see the configuration) go out in every period; a drive that
-///   is not operational and so would not hear them is reset.
+/// - In session these are faults: a heartbeat or process data that stop, an emergency or boot-up message, a state of
+///   NMT or power that nobody asked for, another mode than torque, a frame that the bus does not take. In fault,
+///   torque 0 and "disable voltage" (or quick stop, see the configuration) go out in every period; a drive that is not
+///   operational and so would not hear them is reset.
 /// @source CiA 301; CiA 402-2 through descriptions of drives that implement it
 /// @rt safe after construction
 class cia402_drive final : public joint_drive {
  public:
   explicit cia402_drive(const cia402_config& config)
       : config_(config),
-        setup_(canopen::setup_of(config)),
+        setup_(config),
         limit_permille_(canopen::torque_limit_permille(config)),
         rad_per_count_((config.reversed ? -1.0 : 1.0) * 6.283185307179586 /
                        (config.counts_per_turn * config.gear_ratio)) {
@@ -46,9 +45,7 @@ class cia402_drive final : public joint_drive {
   [[nodiscard]] drive_fault fault() const noexcept override { return fault_; }
   [[nodiscard]] const joint_reading& reading() const noexcept override { return reading_; }
   /// The object that was being read or written when the configuration stopped.
-  [[nodiscard]] canopen::object_address object() const noexcept {
-    return next_step_ < setup_.size() ? setup_[next_step_].at : canopen::object_address{};
-  }
+  [[nodiscard]] canopen::object_address object() const noexcept { return setup_.object(); }
   /// What the drive last said of its power section.
   [[nodiscard]] canopen::power_state power() const noexcept { return canopen::decode_status(status_.status_word); }
 
@@ -112,14 +109,9 @@ class cia402_drive final : public joint_drive {
     busy_in_a_row_ = resets_sent_ = 0;
     last_emergency_ = 0;
     reset_step_ = 0;
-    restart_configuration();
+    setup_.restart();
     enter(phase::boot, now_ns, config_.boot_limit_ns);
     repeat_ns_ = now_ns;
-  }
-  void restart_configuration() noexcept {
-    next_step_ = 0;
-    tries_ = 0;
-    asked_ = told_pre_operational_ = false;
   }
   void enter(phase p, std::int64_t now_ns, std::int64_t limit_ns) noexcept {
     phase_ = p;
@@ -145,7 +137,7 @@ class cia402_drive final : public joint_drive {
   [[nodiscard]] bool send(std::int64_t now_ns, can_bus& bus, const can_frame& frame, io_status& answer) noexcept;
 
   cia402_config config_;
-  canopen::setup_steps setup_;
+  canopen::setup_dialogue setup_;
   std::int16_t limit_permille_;
   double rad_per_count_;
   drive_facts facts_{};
@@ -156,11 +148,6 @@ class cia402_drive final : public joint_drive {
   std::int64_t due_ns_ = 0;     // end of the present phase
   std::int64_t repeat_ns_ = 0;  // when the present request is sent, or sent again
   double torque_n_m_ = 0.0;
-
-  std::size_t next_step_ = 0;  // of setup_
-  int tries_ = 0;
-  bool asked_ = false;
-  bool told_pre_operational_ = false;
 
   bool operational_ = false;
   bool was_started_ = false;  // so that the drive listens to process data
@@ -222,7 +209,7 @@ inline void cia402_drive::take_heartbeat(std::int64_t now_ns, canopen::nmt_state
   heartbeat_ns_ = now_ns;
   if (state == canopen::nmt_state::boot_up) {
     if (phase_ == phase::boot || phase_ == phase::configure) {  // a repeated reset may be answered twice
-      restart_configuration();
+      setup_.restart();
       phase_ = phase::configure;
       repeat_ns_ = now_ns;
     } else if (phase_ != phase::off) {
@@ -258,35 +245,9 @@ inline void cia402_drive::take_motion(const can_frame& frame, const canopen::mot
 }
 
 inline void cia402_drive::take_answer(std::int64_t now_ns, const canopen::sdo_response& answer) noexcept {
-  using kind = canopen::sdo_response::kind;
-  if (phase_ != phase::configure || !asked_ || next_step_ >= setup_.size()) return;
-  const canopen::setup_step& s = setup_[next_step_];
-  if (answer.at != s.at) return;  // late, of a request that was repeated
-  using enum canopen::setup_step::kind;
-  if (answer.what == kind::aborted) {
-    const bool missing = answer.value == canopen::abort_code::no_object || answer.value == canopen::abort_code::no_sub;
-    if (s.what != write_if_there || !missing) {
-      return fail("the drive refused an object of its configuration (SDO abort)", answer.value);
-    }
-  } else if (s.what == write || s.what == write_if_there) {
-    if (answer.what != kind::written) return;
-  } else {
-    if (answer.what != kind::value) return;
-    if (s.what == expect && answer.value != s.value) {
-      return fail("the drive did not keep a value of its configuration (index of the object)", s.at.index);
-    }
-    if (s.what == torque_modes && (answer.value & canopen::torque_mode_supported) == 0) {
-      return fail("the drive has no cyclic synchronous torque mode (object 6502)", answer.value);
-    }
-    const double asked_m_n_m = config_.rated_torque_n_m * 1000.0;
-    if (s.what == rated_torque && !(std::fabs(answer.value - asked_m_n_m) <= 1.0 + 1e-3 * asked_m_n_m)) {
-      return fail("the drive's rated torque (object 6076, mN m) is not the configured one", answer.value);
-    }
-  }
-  ++next_step_;
-  tries_ = 0;
-  asked_ = false;
-  if (next_step_ == setup_.size()) {
+  if (phase_ != phase::configure) return;
+  if (const auto wrong = setup_.take(answer)) return fail(wrong->what, wrong->code);
+  if (setup_.done()) {
     enter(phase::start_node, now_ns, config_.state_limit_ns);
     repeat_ns_ = now_ns;
   }
@@ -429,26 +390,11 @@ inline bool cia402_drive::send(std::int64_t now_ns, can_bus& bus, const can_fram
 
 inline io_status cia402_drive::send_configuration(std::int64_t now_ns, can_bus& bus) noexcept {
   io_status answer = io_status::ok;
-  if (!told_pre_operational_) {  // a drive that starts by itself takes no mapping before
-    told_pre_operational_ =
-        send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::pre_operational, config_.node), answer);
-    repeat_ns_ = now_ns;
-    return answer;
-  }
-  if (asked_ && now_ns < repeat_ns_) return answer;
-  if (tries_ >= config_.answer_tries) {
-    fail("the drive does not answer a request (index of the object)", object().index);
-    return answer;
-  }
-  using enum canopen::setup_step::kind;
-  const canopen::setup_step& s = setup_[next_step_];
-  const can_frame request = s.what == write || s.what == write_if_there
-                                ? canopen::encode_download_request(config_.node, s.at, s.value, s.size)
-                                : canopen::encode_upload_request(config_.node, s.at);
-  if (send(now_ns, bus, request, answer)) {
-    asked_ = true;
-    ++tries_;
-    repeat_ns_ = now_ns + config_.answer_limit_ns;
+  if (!setup_.is_due(now_ns)) return answer;
+  if (const auto wrong = setup_.unanswered()) {
+    fail(wrong->what, wrong->code);
+  } else if (send(now_ns, bus, setup_.frame(), answer)) {
+    setup_.was_sent(now_ns);
   }
   return answer;
 }

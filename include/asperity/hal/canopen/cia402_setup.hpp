@@ -13,15 +13,14 @@ namespace asperity {
 
 /// One drive and the motor, gear and encoder behind it. What stands here without a default has to be known.
 struct cia402_config {
-  std::uint8_t node = 1;         ///< 1 to 127
-  std::uint8_t host_node = 127;  ///< the number under which our own heartbeat is sent; no drive has it
-  double rated_torque_n_m =
-      0.0;                       ///< of the motor: object 6076. The drive is asked, and a drive that differs is refused
-  double peak_torque_n_m = 0.0;  ///< at the joint; saturates what is sent, and goes into the drive as object 6072
-  double counts_per_turn = 0.0;  ///< of the motor: unit of objects 6064 and 606C
-  double gear_ratio = 1.0;       ///< turns of the motor for one turn of the joint
-  bool reversed = false;         ///< the joint turns against the motor
-  double zero_offset_rad = 0.0;  ///< angle of the joint where the drive counts 0
+  std::uint8_t node = 1;          ///< 1 to 127
+  std::uint8_t host_node = 127;   ///< the number under which our own heartbeat is sent; no drive has it
+  double rated_torque_n_m = 0.0;  ///< of the motor: object 6076; a drive that says another is refused
+  double peak_torque_n_m = 0.0;   ///< at the joint; saturates what is sent, and goes into the drive as object 6072
+  double counts_per_turn = 0.0;   ///< of the motor: unit of objects 6064 and 606C
+  double gear_ratio = 1.0;        ///< turns of the motor for one turn of the joint
+  bool reversed = false;          ///< the joint turns against the motor
+  double zero_offset_rad = 0.0;   ///< angle of the joint where the drive counts 0
 
   std::uint16_t host_silence_ms = 20;           ///< object 1016: the drive faults when the host is silent for longer
   std::uint16_t drive_heartbeat_ms = 10;        ///< object 1017

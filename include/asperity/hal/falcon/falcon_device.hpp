@@ -1,94 +1,18 @@
 // The Novint Falcon as a haptic device: three axes of force, a position, four buttons.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
-#include <span>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "asperity/hal/device.hpp"
-#include "asperity/hal/falcon/falcon_firmware.hpp"
+#include "asperity/hal/falcon/falcon_bring_up.hpp"
 #include "asperity/hal/falcon/falcon_torque.hpp"
 #include "asperity/hal/falcon/falcon_wire.hpp"
 #include "asperity/hal/transport/io_clock.hpp"
 #include "asperity/hal/transport/usb_finder.hpp"
 
 namespace asperity {
-
-inline constexpr std::uint16_t falcon_vendor = 0x0403;
-inline constexpr std::uint16_t falcon_product = 0xcb48;
-
-/// What is known of a Falcon. Its maker published no data sheet of the motors, and the factor from counts to newtons is
-/// a guess (falcon_counts_per_n_m): all forces here are nominal, assumed and not measured. There is no torque: what a
-/// command asks of it is dropped.
-[[nodiscard]] inline device_capabilities falcon_capabilities() noexcept {
-  return {.name = "novint falcon",
-          .maturity = driver_maturity::protocol_tested,
-          .sensed = translation_axes,
-          .actuated = translation_axes,
-          .continuous_force_n = 2.0,
-          .peak_force_n = 4.0,
-          .force_slew_n_per_s = 1000.0,
-          .max_stiffness_n_per_m = 1000.0,
-          .max_stiffness_rate_hz = 1000.0,
-          .workspace_low_d = {-0.035, -0.035, 0.085},
-          .workspace_high_d = {0.035, 0.035, 0.155},
-          .position_resolution_m = 1e-4,
-          .nominal_rate_hz = 1000.0,
-          .minimum_rate_hz = 500.0,
-          .worst_latency_ns = 3'000'000,
-          .needs_homing = true,
-          .device_side_watchdog = false};
-}
-
-/// Why a Falcon stopped.
-enum class falcon_fault : std::uint8_t {
-  none,
-  unplugged,
-  link_failed,     ///< a transfer failed or was cut short
-  link_full,       ///< the device takes nothing any more
-  silent,          ///< frames go out and no report comes back
-  not_believable,  ///< reports whose encoders cannot be true
-  homing_lost,     ///< a leg forgot its index mark, as after a loss of power
-  bad_command,     ///< the wrench was not finite or in a wrong frame
-};
-
-[[nodiscard]] constexpr const char* to_string(falcon_fault f) noexcept {
-  switch (f) {
-    case falcon_fault::none:
-      return "none";
-    case falcon_fault::unplugged:
-      return "it was unplugged";
-    case falcon_fault::link_failed:
-      return "a USB transfer failed";
-    case falcon_fault::link_full:
-      return "it takes no more commands";
-    case falcon_fault::silent:
-      return "it does not answer any more";
-    case falcon_fault::not_believable:
-      return "its encoders report what cannot be true";
-    case falcon_fault::homing_lost:
-      return "a leg lost its index mark";
-    case falcon_fault::bad_command:
-      return "the commanded wrench was not finite or in a wrong frame";
-  }
-  return "unknown fault";
-}
-
-struct falcon_config {
-  std::string firmware_path{};                      ///< the user's copy of the image; needed after each power-on
-  std::int16_t limit_counts = falcon_counts_limit;  ///< of each motor; a lower one is obeyed, a higher one is not
-  int firmware_attempts = 3;
-  std::int64_t wake_ns = 300'000'000;               ///< for the firmware's first report
-  std::int64_t homing_timeout_ns = 60'000'000'000;  ///< for a person to push the grip in and pull it out
-  std::int64_t silent_after_ns = 20'000'000;        ///< without a report: a fault
-  int busy_limit = 3;       ///< commands in a row that the link did not take before it is a fault
-  int doubt_limit = 5;      ///< reports in a row that are not believed before it is a fault
-  int settle_reports = 20;  ///< that have to be believed in a row before it is ready
-};
 
 /// One Falcon. open() wakes it: loads the firmware where it does not answer, then waits with red light until a person
 /// has pushed the grip in and pulled it out. Blue: measures; green: may put out a force.
@@ -131,11 +55,14 @@ class falcon_device {
     command_ = {};
     busy_ = 0;
     wrote_ = false;
-    result<void> ready = prepare();
+    falcon_bring_up bring_up(wire_, *clock_, config_, which_.path);
+    result<void> ready = bring_up.run();
     if (!ready) {
       close();
       return ready;
     }
+    last_now_ns_ = bring_up.last_frame_ns();
+    measure();
     machine_.apply(device_event::prepared);
     return {};
   }
@@ -217,8 +144,6 @@ class falcon_device {
     return {.interface = 0, .in = 0x81, .out = 0x02, .transfer_bytes = 512, .in_transfers = 8, .out_transfers = 4};
   }
 
-  // --- opening ---
-
   // Where the device is now: at its path, or under its serial number somewhere else.
   [[nodiscard]] result<usb_listing> find() {
     const auto found = finder_->list(falcon_vendor, falcon_product);
@@ -229,103 +154,8 @@ class falcon_device {
     for (const usb_listing& l : *found) {
       if (!which_.serial.empty() && l.serial == which_.serial) return l;
     }
-    return error{error_code::io_failed, "the Falcon that was at " + which_.path +
-                                            " is not plugged in; connect it and open "
-                                            "it again"};
-  }
-
-  [[nodiscard]] error lost(const std::string& step, io_status s) const {
-    return {error_code::io_failed, "the Falcon at " + which_.path + " failed while " + step + ": " + to_string(s)};
-  }
-
-  // One frame out and what has come in, then a millisecond.
-  [[nodiscard]] io_status exchange(falcon_light light, bool home) noexcept {
-    const std::int64_t now_ns = clock_->now_ns();
-    last_now_ns_ = now_ns;
-    io_status s = wire_.send(now_ns, {.motor_counts = {}, .light = light, .home = home});
-    if (s != io_status::ok && s != io_status::busy) return s;
-    clock_->wait_until_ns(now_ns + tick_ns);
-    return wire_.receive(clock_->now_ns());
-  }
-
-  [[nodiscard]] result<void> prepare() {
-    result<bool> answers = is_awake();
-    if (!answers) return answers.error();
-    if (!*answers) {
-      const result<void> awake = wake();
-      if (!awake) return awake;
-    }
-    const result<void> homed = home();
-    if (!homed) return homed;
-    return settle();
-  }
-
-  // Whether the firmware runs: it answers frames.
-  [[nodiscard]] result<bool> is_awake() {
-    io_status s = apply_ftdi(*wire_.link(), falcon_normal_settings, falcon_control_timeout_ns);
-    if (s != io_status::ok) return lost("setting its line up", s);
-    const std::uint64_t before = wire_.reports();
-    const std::int64_t due_ns = clock_->now_ns() + config_.wake_ns;
-    while (wire_.reports() == before && clock_->now_ns() < due_ns) {
-      s = exchange(falcon_light::red, false);
-      if (s != io_status::ok) return lost("waiting for its first report", s);
-    }
-    return wire_.reports() != before;
-  }
-
-  // Loads the image until the firmware answers. Published experience: it does not always do so the first time.
-  [[nodiscard]] result<void> wake() {
-    if (config_.firmware_path.empty()) {
-      return error{error_code::invalid_argument,
-                   "the Falcon at " + which_.path +
-                       " has no firmware yet and no image was given: name your copy of Novint's image as its firmware "
-                       "path; asperity ships none, because its licence is Novint's own and noncommercial"};
-    }
-    const auto image = read_falcon_image(config_.firmware_path);
-    if (!image) return image.error();
-    result<void> loaded;
-    for (int i = 0; i < config_.firmware_attempts; ++i) {
-      loaded = load_falcon_firmware(*wire_.link(), *clock_, *image);
-      if (!loaded) continue;
-      const result<bool> answers = is_awake();
-      if (!answers) return answers.error();
-      if (*answers) return {};
-    }
-    if (!loaded) return loaded;
-    return error{error_code::io_failed, "the Falcon at " + which_.path + " took the firmware image '" +
-                                            config_.firmware_path + "' and does not answer; is it the right image?"};
-  }
-
-  [[nodiscard]] result<void> home() {
-    const std::int64_t due_ns = clock_->now_ns() + config_.homing_timeout_ns;
-    while (wire_.homed() != falcon_all_homed) {
-      if (clock_->now_ns() >= due_ns) {
-        return error{error_code::io_failed,
-                     "the Falcon at " + which_.path +
-                         " was not homed in time: while its light is red, push the grip all the way "
-                         "in and pull it out again"};
-      }
-      const io_status s = exchange(falcon_light::red, true);
-      if (s != io_status::ok) return lost("homing", s);
-    }
-    return {};
-  }
-
-  [[nodiscard]] result<void> settle() {
-    wire_.demand_homing(true);
-    wire_.forget_encoders();
-    const std::uint64_t enough = wire_.positions() + static_cast<std::uint64_t>(std::max(config_.settle_reports, 1));
-    const std::int64_t due_ns = clock_->now_ns() + config_.wake_ns;
-    while (wire_.positions() < enough) {
-      if (clock_->now_ns() >= due_ns) {
-        return error{error_code::io_failed,
-                     "the Falcon at " + which_.path + " reports no position that can be believed; home it again"};
-      }
-      const io_status s = exchange(falcon_light::blue, false);
-      if (s != io_status::ok) return lost("taking its first positions", s);
-    }
-    measure();
-    return {};
+    return error{error_code::io_failed,
+                 "the Falcon that was at " + which_.path + " is not plugged in; connect it and open it again"};
   }
 
   [[nodiscard]] error refused(const char* what) const {
@@ -345,8 +175,6 @@ class falcon_device {
       if (zeros > 0) clock_->wait_until_ns(now_ns + tick_ns);
     }
   }
-
-  // --- the tick ---
 
   [[nodiscard]] bool measures() const noexcept {
     return machine_.state() == device_state::ready || may_put_out(machine_.state());

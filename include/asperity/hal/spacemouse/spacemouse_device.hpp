@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "asperity/hal/device.hpp"
+#include "asperity/hal/hid/descriptor_parser.hpp"
 #include "asperity/hal/spacemouse/motion.hpp"
 #include "asperity/hal/spacemouse/protocol.hpp"
 #include "asperity/hal/transport/hid_link.hpp"
@@ -75,8 +76,7 @@ struct spacemouse_counts {
 ///   Limits are zero, so the output gate lets none through, unless spacemouse_config says what may be shown.
 /// - `lost` counts axis reports that could not be used, and on classic devices one for every report 1 that follows on a
 ///   report 1 (or 2 on 2), for they take turns.
-/// - Unplugged while ready: absent, and open() looks for it again, wherever it is by then. Unplugged while armed:
-/// fault.
+/// - Unplugged while ready: absent, and open() looks for it again, wherever it is by then. While armed: a fault.
 /// @rt read, write and disarm are as safe as the link
 class spacemouse_device {
  public:

@@ -90,13 +90,7 @@ class virtual_usb {
   }
 
   /// Pulls the cable: every open link answers `gone` for ever.
-  void unplug() noexcept {
-    shared_->plugged = false;
-    ++shared_->times_unplugged;
-    shared_->to_device.clear();
-    shared_->to_host.clear();
-    shared_->open = false;
-  }
+  void unplug() noexcept { shared_->unplug(); }
   void plug_in() noexcept { shared_->plugged = true; }
   [[nodiscard]] bool plugged() const noexcept { return shared_->plugged; }
   /// Whether a host has it open.
@@ -117,6 +111,12 @@ class virtual_usb {
   struct shared {
     shared(link_script script, std::size_t out_transfers)
         : player(std::move(script)), most_out(std::max<std::size_t>(out_transfers, 1)) {}
+    void unplug() noexcept {
+      plugged = open = false;
+      ++times_unplugged;
+      to_device.clear();
+      to_host.clear();
+    }
     link_player player;
     std::size_t most_out;
     virtual_usb_queue to_device{64};
@@ -213,11 +213,7 @@ class virtual_usb {
     [[nodiscard]] bool is_gone(link_direction way, std::int64_t now_ns, std::uint64_t call) noexcept {
       if (unplugged_ != both_->times_unplugged) return true;
       if (find(link_fault::unplug, way, now_ns, call) == nullptr) return false;
-      both_->plugged = false;
-      both_->open = false;
-      ++both_->times_unplugged;
-      both_->to_device.clear();
-      both_->to_host.clear();
+      both_->unplug();
       return true;
     }
     void spoil(virtual_usb_queue::entry& e, link_direction way, std::int64_t now_ns, std::uint64_t call) noexcept {
