@@ -60,10 +60,10 @@ inline constexpr std::uint32_t plate_gutter = 2;
 
 /// The one contact that covers both bodies whole.
 [[nodiscard]] inline contact_set whole_contact(const scene& s, const contact_window& w) {
-  contact_set out({.contacts = 4, .triangles = 1U << 16});
+  const auto a = all_triangles(*s.probe), b = all_triangles(*s.fixed[0]);
+  contact_set out({.contacts = 4, .triangles = a.size() + b.size()});
   contact c;
   c.window = w;
-  const auto a = all_triangles(*s.probe), b = all_triangles(*s.fixed[0]);
   static_cast<void>(out.add(c, a, b));
   return out;
 }
