@@ -165,6 +165,33 @@ TEST_F(SharedRendererMemory, CountsSharedCellsOnce) {
   EXPECT_EQ(feel_->memory_bytes() - one.value().memory_bytes(), more_bodies);
 }
 
+TEST_F(SharedRendererMemory, RenderersOfTheSameBodiesCanShareTheirCells) {
+  const scene bodies{model_, {other_}};
+  auto cut = make_cell_scene(bodies, settings_.cells);
+  ASSERT_TRUE(cut);
+  const auto shared = std::make_shared<const cell_scene>(std::move(cut).value());
+  renderer_settings stiffer = settings_;
+  stiffer.shared.stiffness_n_per_m *= 2.0;
+  auto one = make_renderer(bodies, shared, settings_), two = make_renderer(bodies, shared, stiffer);
+  auto own = make_renderer(bodies, settings_);
+  ASSERT_TRUE(one && two && own);
+  EXPECT_EQ(&one.value().depth().bodies(), shared.get());
+  EXPECT_EQ(&two.value().depth().bodies(), shared.get());
+  const std::vector<pose> T_wb(1);
+  const scene_pose pressed{{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0295}}, T_wb};
+  tick by_one, by_two, by_own;
+  ASSERT_EQ(one.value().step(pressed, by_one), status::ok);
+  ASSERT_EQ(two.value().step(pressed, by_two), status::ok);
+  ASSERT_EQ(own.value().step(pressed, by_own), status::ok);
+  EXPECT_GT(by_one.force.on_probe_w.force.z, 0.0);
+  EXPECT_EQ(by_one.force.on_probe_w.force, by_own.force.on_probe_w.force);
+  EXPECT_GT(by_two.force.on_probe_w.force.z, by_one.force.on_probe_w.force.z);
+
+  EXPECT_FALSE(make_renderer({model_, {other_, other_}}, shared, settings_));
+  EXPECT_FALSE(make_renderer(bodies, std::make_shared<const cell_scene>(), settings_));
+  EXPECT_FALSE(make_renderer(bodies, nullptr, settings_));
+}
+
 TEST_F(SharedRendererMemory, StaysTheSameInTicks) {
   const std::size_t before = feel_->memory_bytes();
   const std::vector<pose> T_wb{

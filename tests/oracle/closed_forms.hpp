@@ -2,21 +2,24 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "asperity/depth/cpu_depth.hpp"
+#include "support/built_depth.hpp"
 #include "support/height_models.hpp"
 
 namespace asperity::oracle {
 
 using json = nlohmann::json;
+using test_support::built_depth;
 
 /// The data are in millimetres; the library is not.
 inline constexpr double mm = 1e-3;
@@ -91,6 +94,21 @@ class error_table {
   s.height = in_metres(std::move(heights_mm));
   return s;
 }
+
+/// Makes a scene once and keeps it: cases come in groups with the same bodies.
+class kept_scenes {
+ public:
+  /// @param numbers  what the bodies are made from   @param make  make(): the bodies
+  template <class Make>
+  [[nodiscard]] const scene& of(const std::array<double, 3>& numbers, Make make) {
+    const auto [at, is_new] = made_.try_emplace(numbers);
+    if (is_new) at->second = make();
+    return at->second;
+  }
+
+ private:
+  std::map<std::array<double, 3>, scene> made_;
+};
 
 [[nodiscard]] inline depth_settings settings_for(gradient_scheme scheme, std::uint32_t grid, double tau_mm,
                                                  double step_mm) {

@@ -1,5 +1,6 @@
 // Work over a closed loop in six degrees of freedom: a force that comes from a potential does none.
 // Every check has its negative control: the same loop with a known mistake must fail by a wide margin.
+#include <array>
 #include <functional>
 #include <numbers>
 
@@ -13,12 +14,18 @@ constexpr double pi = std::numbers::pi;
 
 /// Sum of plane waves with fixed directions and phases: rough, smooth at the scale of a texel. Millimetres.
 height_function rough(double amplitude, double phase) {
+  struct wave {
+    double height, K, along_x, along_y, phase;
+  };
+  std::array<wave, 12> waves;
+  for (int i = 0; i < 12; ++i) {
+    const double lambda = 1.2 + 0.35 * i, angle = 2.4 * i + phase;
+    waves[static_cast<std::size_t>(i)] = {lambda / 5.0, 2.0 * pi / lambda, std::cos(angle), std::sin(angle),
+                                          1.7 * i * phase};
+  }
   return [=](double x, double y) {
     double z = 0.0;
-    for (int i = 0; i < 12; ++i) {
-      const double lambda = 1.2 + 0.35 * i, angle = 2.4 * i + phase, K = 2.0 * pi / lambda;
-      z += lambda / 5.0 * std::cos(K * (std::cos(angle) * x + std::sin(angle) * y) + 1.7 * i * phase);
-    }
+    for (const wave& w : waves) z += w.height * std::cos(w.K * (w.along_x * x + w.along_y * y) + w.phase);
     return amplitude * z / std::sqrt(12.0);
   };
 }
@@ -69,7 +76,7 @@ struct energy_scene {
 
   [[nodiscard]] vec3 centre_b() const { return bodies.probe->mass.centre_of_mass; }
   [[nodiscard]] double work(const depth_settings& settings, int steps, bool without_transport = false) const {
-    cpu_depth backend(bodies, settings);
+    built_depth backend(bodies, settings);
     loop fine = path;
     fine.steps = steps;
     return relative_work(fine, base, centre_b(), [&](const pose& T_wa, const vec3& centre) {
@@ -108,7 +115,7 @@ energy_scene silhouette_in_window(height_function a, height_function b) {
 
 /// Presses the probe in until the loop's shallowest pose is `margin_mm` deep.
 void press(energy_scene& s, double margin_mm) {
-  cpu_depth probe(s.bodies, settings_for(gradient_scheme::soft_max, 64, 0.02, 0.0));
+  built_depth probe(s.bodies, settings_for(gradient_scheme::soft_max, 64, 0.02, 0.0));
   double shallowest = 1e9;
   loop coarse = s.path;
   coarse.steps = 40;

@@ -100,14 +100,18 @@ class prove_gate : public testing::Test {
     std::filesystem::remove_all(folder_, ignored);
   }
 
-  // Compiles, translates, asks. The report says what was decided and how long it took.
-  verdict decide(const std::vector<change>& changes, bool cut, const std::string& assumed,
-                 const std::string& violation) {
+  bool compile(const std::vector<change>& changes) {
     std::filesystem::create_directories(folder_);
     result<compiled_gate> compiled = compile_gate(*clang_, folder_, changes);
     EXPECT_TRUE(compiled) << compiled.error().message;
-    if (!compiled) return {};
-    gate_ = *compiled;
+    if (compiled) gate_ = *compiled;
+    return compiled.has_value();
+  }
+
+  // Compiles, translates, asks. The report says what was decided and how long it took.
+  verdict decide(const std::vector<change>& changes, bool cut, const std::string& assumed,
+                 const std::string& violation) {
+    if (!compile(changes)) return {};
     const result<translation> t = to_smt(gate_.ir, inputs, outputs, cut);
     EXPECT_TRUE(t) << t.error().message;
     if (!t) return {};
@@ -193,8 +197,7 @@ TEST_F(prove_gate, says_truly_whether_the_wanted_vector_is_finite) {
 // A function that always answers zero has all of the above. What is within every limit leaves as it came.
 TEST_F(prove_gate, lets_through_what_is_within_the_limits) {
   NEEDS_TOOLS();
-  const verdict v = decide({}, true, assume_limit(), not_finite);
-  ASSERT_EQ(v.said, answer::proved);
+  ASSERT_TRUE(compile({}));
   const std::array<double, 9> in{1.0, -2.0, 0.5, 0.0, 0.0, 0.0, 10.0, 10.0, 5.0};
   std::map<std::string, std::string> named{{"allowed", "1"}};
   for (std::size_t i = 0; i < in.size(); ++i) named[inputs[i]] = hex(in[i]);

@@ -15,8 +15,8 @@ namespace {
 using test_support::build_renderer;
 using test_support::built_renderer;
 using test_support::make_flat_box;
+using test_support::make_plate;
 using test_support::make_textured_box;
-using test_support::plate_builder;
 using test_support::ridges;
 
 struct textured_bodies {
@@ -34,7 +34,7 @@ model_ptr plate(const test_support::height_function& height) {
   spec.half_y = 0.03;
   spec.texels = 128;
   spec.height = height;
-  return plate_builder(spec).build();
+  return make_plate(spec);
 }
 
 const std::array<textured_bodies, textured_scene_count>& all_bodies() {

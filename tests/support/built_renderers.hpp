@@ -41,7 +41,7 @@ class built_renderer : public built<default_formulation> {
 
 using built_paper_renderer = built<papers_formulation>;
 
-/// make_renderer() and make_paper_renderer().
+/// make_renderer() and make_paper_renderer(). The cells of the last few scenes are kept for those who feel them again.
 [[nodiscard]] result<built_renderer> build_renderer(scene bodies, const renderer_settings& settings = {});
 [[nodiscard]] result<built_paper_renderer> build_paper_renderer(scene bodies, const paper_settings& settings = {});
 

@@ -20,7 +20,15 @@ namespace asperity::detail {
 class clearance_field {
  public:
   clearance_field(const cell_grid& grid, const cell_outline& outline, const cell_settings& settings)
-      : grid_(grid), outline_(outline), settings_(settings), label_(grid.size(), label::apron_end) {}
+      : grid_(grid),
+        outline_(outline),
+        settings_(settings),
+        label_(grid.size(), label::apron_end),
+        to_convex_(grid.size()) {
+    for (const outline_segment& e : outline.rim) {
+      if (e.kind == edge_kind::convex) convex_.push_back({e, glm::length(e.b - e.a)});
+    }
+  }
 
   /// @param own     nodes under the region's own triangles
   /// @param shown   nodes under any triangle of the outline
@@ -47,16 +55,22 @@ class clearance_field {
     apron_end,    ///< where the surface goes on but another cell has it
   };
 
+  struct convex_segment {
+    outline_segment segment;
+    double length;
+  };
   struct nearest {
     double convex, concave, smooth;
   };
   [[nodiscard]] nearest nearest_rim(const vec2& p) const noexcept {
-    nearest out{1e9, 1e9, 1e9};
+    nearest squared{1e18, 1e18, 1e18};
     for (const outline_segment& e : outline_.rim) {
-      double& d = e.kind == edge_kind::convex ? out.convex : e.kind == edge_kind::concave ? out.concave : out.smooth;
-      d = std::min(d, e.distance(p));
+      double& d = e.kind == edge_kind::convex    ? squared.convex
+                  : e.kind == edge_kind::concave ? squared.concave
+                                                 : squared.smooth;
+      d = std::min(d, e.distance_squared(p));
     }
-    return out;
+    return {std::sqrt(squared.convex), std::sqrt(squared.concave), std::sqrt(squared.smooth)};
   }
 
   void label_nodes(const std::vector<char>& own, const std::vector<char>& shown) {
@@ -70,6 +84,7 @@ class clearance_field {
         const double slack = 0.05 * grid_.cell->pitch_m;  // a tie at a vertex goes to the edge that can be felt
         if (d.convex <= std::min(d.concave, d.smooth) + slack) {
           label_[i] = label::beyond_edge;
+          to_convex_[i] = d.convex;
         } else if (d.concave <= d.smooth + slack && near) {
           label_[i] = label::inside;  // inside the neighbouring wall, where the feet of deep samples lie
         }
@@ -78,13 +93,11 @@ class clearance_field {
   }
 
   [[nodiscard]] double clearance(std::size_t i, double to_apron_end, double cap) const noexcept {
-    const vec2 p = grid_.position(i);
-    if (label_[i] == label::beyond_edge) return -std::min(cap, nearest_rim(p).convex);
+    if (label_[i] == label::beyond_edge) return -std::min(cap, to_convex_[i]);
     if (label_[i] == label::apron_end || to_apron_end <= 0.0) return std::min(to_apron_end, 0.0);
+    const vec2 p = grid_.position(i);
     double sum = 0.0;
-    for (const outline_segment& e : outline_.rim) {
-      if (e.kind == edge_kind::convex) sum += e.inverse_distance_4(p);
-    }
+    for (const convex_segment& e : convex_) sum += e.segment.inverse_distance_4(p, e.length);
     if (to_apron_end < cap) {
       const double a2 = to_apron_end * to_apron_end;
       sum += 1.0 / (a2 * a2);
@@ -96,6 +109,8 @@ class clearance_field {
   const cell_outline& outline_;
   const cell_settings& settings_;
   std::vector<label> label_;
+  std::vector<convex_segment> convex_;
+  std::vector<double> to_convex_;  ///< of nodes beyond an edge: distance to the nearest convex one, m
 };
 
 }  // namespace asperity::detail

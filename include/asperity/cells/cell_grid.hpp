@@ -59,28 +59,25 @@ struct cell_grid {
   void limit_slope(std::vector<float>& f, double slope, float sign) const {
     const auto straight = static_cast<float>(slope * cell->pitch_m);
     const float diagonal = straight * 1.41421356F;
-    const auto nx = static_cast<std::int64_t>(cell->columns), ny = static_cast<std::int64_t>(cell->rows);
-    const auto pull = [&](std::int64_t i, std::int64_t j, std::int64_t di, std::int64_t dj, float step) {
-      const std::int64_t a = i + di, b = j + dj;
-      if (a < 0 || b < 0 || a >= nx || b >= ny) return;
-      float& own = f[static_cast<std::size_t>(j * nx + i)];
-      own = sign * std::min(sign * own, sign * f[static_cast<std::size_t>(b * nx + a)] + step);
+    const std::size_t nx = cell->columns, ny = cell->rows;
+    const auto pulled = [sign](float own, float other, float step) {
+      return sign * std::min(sign * own, sign * other + step);
     };
-    for (std::int64_t j = 0; j < ny; ++j) {
-      for (std::int64_t i = 0; i < nx; ++i) {
-        pull(i, j, -1, 0, straight);
-        pull(i, j, 0, -1, straight);
-        pull(i, j, -1, -1, diagonal);
-        pull(i, j, 1, -1, diagonal);
-      }
+    // From the row before, all nodes of a row alike; along a row each node waits for the one before it.
+    const auto from_row = [&](float* row, const float* before) {
+      for (std::size_t i = 0; i < nx; ++i) row[i] = pulled(row[i], before[i], straight);
+      for (std::size_t i = 1; i < nx; ++i) row[i] = pulled(row[i], before[i - 1], diagonal);
+      for (std::size_t i = 0; i + 1 < nx; ++i) row[i] = pulled(row[i], before[i + 1], diagonal);
+    };
+    for (std::size_t j = 0; j < ny; ++j) {
+      float* const row = f.data() + j * nx;
+      if (j > 0) from_row(row, row - nx);
+      for (std::size_t i = 1; i < nx; ++i) row[i] = pulled(row[i], row[i - 1], straight);
     }
-    for (std::int64_t j = ny; j-- > 0;) {
-      for (std::int64_t i = nx; i-- > 0;) {
-        pull(i, j, 1, 0, straight);
-        pull(i, j, 0, 1, straight);
-        pull(i, j, 1, 1, diagonal);
-        pull(i, j, -1, 1, diagonal);
-      }
+    for (std::size_t j = ny; j-- > 0;) {
+      float* const row = f.data() + j * nx;
+      if (j + 1 < ny) from_row(row, row + nx);
+      for (std::size_t i = nx - 1; i-- > 0;) row[i] = pulled(row[i], row[i + 1], straight);
     }
   }
 

@@ -16,19 +16,24 @@ struct outline_segment {
   vec2 a{0.0}, b{0.0};
   edge_kind kind = edge_kind::smooth;
 
-  [[nodiscard]] double distance(const vec2& p) const noexcept {
+  [[nodiscard]] double distance(const vec2& p) const noexcept { return std::sqrt(distance_squared(p)); }
+  [[nodiscard]] double distance_squared(const vec2& p) const noexcept {
     const vec2 d = b - a;
     const double l2 = glm::dot(d, d);
     const double t = l2 > 0.0 ? std::clamp(glm::dot(p - a, d) / l2, 0.0, 1.0) : 0.0;
-    return glm::length(p - a - t * d);
+    const vec2 off = p - a - t * d;
+    return glm::dot(off, off);
   }
 
   /// 3/4 of the integral of |p - s|^-5 over the segment. Summed over the outline of a half plane it is the distance to
   /// the power -4; of any outline, a distance without the kinks that "the nearest edge" has.
   [[nodiscard]] double inverse_distance_4(const vec2& p) const noexcept {
-    const vec2 d = b - a;
-    const double length = glm::length(d);
+    return inverse_distance_4(p, glm::length(b - a));
+  }
+  /// @param length  of the segment
+  [[nodiscard]] double inverse_distance_4(const vec2& p, double length) const noexcept {
     if (!(length > 0.0)) return 0.0;
+    const vec2 d = b - a;
     const vec2 from = a - p;
     const double t0 = glm::dot(from, d) / length, t1 = t0 + length;
     const double l = (d.x * from.y - d.y * from.x) / length, l2 = std::max(1e-16, l * l);

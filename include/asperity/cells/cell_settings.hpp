@@ -26,6 +26,8 @@ struct cell_settings {
   double feature_pitch_m = 0.0;         ///< distance between samples along a sharp edge
   double steepest = 3.0;  ///< slope that the relief of a map is limited to: a surface seen from one direction has
                           ///< walls, and a wall has no gradient
+
+  friend bool operator==(const cell_settings&, const cell_settings&) = default;
 };
 
 /// The same with the automatic lengths filled in.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -29,6 +30,13 @@ namespace detail {
   return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
 }
 
+[[nodiscard]] inline result<void> has_cells(const scene& bodies, const cell_scene* cells) {
+  bool all = cells != nullptr && bodies.probe && cells->probe && cells->fixed.size() == bodies.fixed.size();
+  for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && cells->fixed[b];
+  if (all) return {};
+  return error{error_code::invalid_argument, "the cells are not those of the scene's bodies: cut these bodies"};
+}
+
 /// Softness of the shared maximum for a scene, the automatic one filled in. One for all bodies, whatever the pose.
 [[nodiscard]] inline double shared_tau_m(const shared_settings& s, const scene& bodies,
                                          const cell_scene& cells) noexcept {
@@ -43,6 +51,23 @@ namespace detail {
 
 }  // namespace detail
 
+/// The default renderer for a scene whose models were cut before, by make_cell_scene(); its ticks' memory is taken
+/// here. Cutting takes about a second per model: several renderers of the same bodies can share the cells, and their
+/// memory.
+/// @param cells  of these bodies, in their order
+/// @return invalid_argument (no probe, no fixed body, cells of other bodies, a setting out of range)
+[[nodiscard]] inline result<renderer> make_renderer(scene bodies, std::shared_ptr<const cell_scene> cells,
+                                                    const renderer_settings& settings) {
+  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
+  if (const result<void> ok = check(settings.shared); !ok) return ok.error();
+  if (const result<void> ok = detail::has_cells(bodies, cells.get()); !ok) return ok.error();
+  shared_settings shared = settings.shared;
+  shared.tau_m = detail::shared_tau_m(shared, bodies, *cells);
+  cell_depth depth(cells, bodies, shared);
+  return renderer(std::move(bodies), cell_finder(std::move(cells), cell_depth::reach_m(shared), shared.facing_none),
+                  std::move(depth), shared_potential(shared, settings.limits.readings()), settings.limits);
+}
+
 /// The default renderer for a scene. Cuts its models in cells, about a second each; all memory that its ticks need is
 /// taken here.
 /// @return invalid_argument (no probe, no fixed body, a setting out of range) | bad_mesh | bad_texture
@@ -51,12 +76,8 @@ namespace detail {
   if (const result<void> ok = check(settings.shared); !ok) return ok.error();
   result<cell_scene> cut = make_cell_scene(bodies, settings.cells);  // refuses a missing model too
   if (!cut) return cut.error();
-  const auto cells = std::make_shared<const cell_scene>(std::move(cut).value());
-  shared_settings shared = settings.shared;
-  shared.tau_m = detail::shared_tau_m(shared, bodies, *cells);
-  cell_depth depth(cells, bodies, shared);
-  return renderer(std::move(bodies), cell_finder(cells, cell_depth::reach_m(shared), shared.facing_none),
-                  std::move(depth), shared_potential(shared, settings.limits.readings()), settings.limits);
+  auto cells = std::make_shared<const cell_scene>(std::move(cut).value());
+  return make_renderer(std::move(bodies), std::move(cells), settings);
 }
 
 /// The paper's renderer for a scene; all memory that its ticks need is taken here.

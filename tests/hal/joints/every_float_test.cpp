@@ -1,14 +1,17 @@
 // Every encoder of a torque, over the bit patterns of a float: never over the limit, never of the wrong sign, not more
 // than was asked for and, within the limit, less than one step short of it.
+#include "support/every_float.hpp"
+
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <gtest/gtest.h>
-#include <thread>
-#include <vector>
 
+#include "asperity/hal/canopen/cia402.hpp"
+#include "asperity/hal/falcon/falcon_frame.hpp"
 #include "asperity/hal/joint/wire_number.hpp"
 #include "asperity/hal/mit/mit_codec.hpp"
 #include "asperity/hal/moteus/moteus_codec.hpp"
@@ -16,61 +19,16 @@
 namespace asperity {
 namespace {
 
-constexpr std::uint64_t all_floats = std::uint64_t{1} << 32U;
-constexpr std::uint64_t sign_bit = std::uint64_t{1} << 31U;
-
-double as_double(std::uint64_t bits) {
-  return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
-}
-
-// Hands out the patterns in [from, to) in blocks, on all cores. count(begin, end) says how many were refused. No block
-// has both signs, or numbers and NaN.
-template <class Count>
-std::uint64_t in_blocks(std::uint64_t from, std::uint64_t to, const Count& count) {
-  constexpr std::uint64_t block = std::uint64_t{1} << 22U;
-  std::atomic<std::uint64_t> next{from / block};
-  std::atomic<std::uint64_t> bad{0};
-  std::vector<std::thread> workers;
-  for (unsigned t = 0; t < std::max(1U, std::thread::hardware_concurrency()); ++t) {
-    workers.emplace_back([&] {
-      for (std::uint64_t at = next++ * block; at < to; at = next++ * block) {
-        bad += count(std::max(at, from), std::min(at + block, to));
-      }
-    });
-  }
-  for (std::thread& w : workers) w.join();
-  return bad;
-}
-
-// Encodes every pattern. Within a run of patterns with the same result the size of what was asked for only grows, so
-// `fair` is asked about the first and the last of each run, and with them about all.
-template <class Encode, class Fair>
-std::uint64_t refused(std::uint64_t from, std::uint64_t to, const Encode& encode, const Fair& fair) {
-  return in_blocks(from, to, [&](std::uint64_t begin, std::uint64_t end) {
-    std::uint64_t bad = 0;
-    const auto look = [&](std::uint64_t bits, auto wire) { bad += fair(as_double(bits), wire) ? 0U : 1U; };
-    auto wire = encode(as_double(begin));
-    look(begin, wire);
-    for (std::uint64_t bits = begin + 1; bits < end; ++bits) {
-      const auto now = encode(as_double(bits));
-      if (now == wire) continue;
-      look(bits - 1, wire);
-      look(bits, now);
-      wire = now;
-    }
-    look(end - 1, wire);
-    return bad;
-  });
-}
+using namespace test_support;
 
 // Both signs of the sizes in which the result changes, from `least` to `most`, and every 997th of all other patterns.
 template <class Encode, class Fair>
 std::uint64_t refused_around(double least, double most, const Encode& encode, const Fair& fair) {
   const std::uint64_t from = std::bit_cast<std::uint32_t>(static_cast<float>(least));
   const std::uint64_t to = std::bit_cast<std::uint32_t>(static_cast<float>(most));
-  std::uint64_t bad = refused(from, to, encode, fair) + refused(sign_bit + from, sign_bit + to, encode, fair);
+  std::uint64_t bad = refused(from, to, encode, fair) + refused(float_sign + from, float_sign + to, encode, fair);
   for (std::uint64_t bits = 0; bits < all_floats; bits += 997) {
-    bad += fair(as_double(bits), encode(as_double(bits))) ? 0U : 1U;
+    bad += fair(float_of(bits), encode(float_of(bits))) ? 0U : 1U;
   }
   return bad;
 }
@@ -104,7 +62,7 @@ bool is_fair_to_mit(double asked, std::uint16_t wire, const mit::ranges& r, doub
 TEST(EveryFloat, mit_torque) {
   const mit::symmetric_field field(mit::ak80_9.torque_n_m, 12, 18.0);
   EXPECT_EQ(refused(
-                0, all_floats, [&](double t) { return field.encode(t); },
+                0, all_floats, [field](double t) { return field.encode(t); },
                 [](double asked, std::uint16_t wire) { return is_fair_to_mit(asked, wire, mit::ak80_9, 18.0); }),
             0U);
 }
@@ -114,7 +72,7 @@ TEST(EveryFloat, mit_torque_of_the_other_tables) {
   const auto bad = [](const mit::ranges& r, double limit) {
     const mit::symmetric_field field(r.torque_n_m, 12, limit);
     return refused_around(
-        r.torque_n_m / 8192.0, r.torque_n_m * 1.01, [&](double t) { return field.encode(t); },
+        r.torque_n_m / 8192.0, r.torque_n_m * 1.01, [field](double t) { return field.encode(t); },
         [&](double asked, std::uint16_t wire) { return is_fair_to_mit(asked, wire, r, limit); });
   };
   EXPECT_EQ(bad(mit::ak10_9, 65.0), 0U);
@@ -129,18 +87,24 @@ TEST(EveryFloat, mit_torque_of_the_other_tables) {
 TEST(EveryFloat, float_torque) {
   constexpr float limit = 3.3333333F;
   constexpr auto limit_bits = std::bit_cast<std::uint32_t>(limit);
+  const auto encode = [](double t) { return std::bit_cast<std::uint32_t>(wire_float(t, limit)); };
   EXPECT_EQ(in_blocks(0, all_floats,
-                      [](std::uint64_t begin, std::uint64_t end) {
+                      [&](std::uint64_t begin, std::uint64_t end) {
                         std::uint64_t bad = 0;
-                        const auto sign = static_cast<std::uint32_t>(begin & sign_bit);
-                        for (std::uint64_t b = begin; b < end; ++b) {
-                          const auto bits = static_cast<std::uint32_t>(b);
-                          const std::uint32_t size = bits & 0x7fffffffU;
-                          const std::uint32_t wanted = size <= limit_bits   ? bits
-                                                       : size < 0x7f800000U ? sign | limit_bits
-                                                                            : 0U;
-                          const float sent = wire_float(as_double(bits), limit);
-                          bad += std::bit_cast<std::uint32_t>(sent) == wanted ? 0U : 1U;
+                        encoded_floats<decltype(encode)> sent;
+                        for (std::uint64_t at = begin; at < end; at += floats_at_once) {
+                          const auto first = static_cast<std::uint32_t>(at);
+                          encode_floats(encode, first, sent);
+                          std::uint32_t wrong = 0;
+                          for (std::uint32_t i = 0; i < floats_at_once; ++i) {
+                            const std::uint32_t bits = first + i;
+                            const std::uint32_t size = bits & 0x7fffffffU;
+                            const std::uint32_t wanted = size <= limit_bits   ? bits
+                                                         : size < 0x7f800000U ? (bits & 0x80000000U) | limit_bits
+                                                                              : 0U;
+                            wrong += sent[i] == wanted ? 0U : 1U;
+                          }
+                          bad += wrong;
                         }
                         return bad;
                       }),
@@ -154,12 +118,45 @@ TEST(EveryFloat, integer_torque) {
     const double unit = moteus::unit_of(moteus::quantity::torque_n_m, r);
     EXPECT_EQ(refused_around(
                   unit / 4.0, limit * 1.01,
-                  [&](double t) { return moteus::encode_int(t, moteus::quantity::torque_n_m, r, limit); },
+                  [r](double t) { return moteus::encode_int(t, moteus::quantity::torque_n_m, r, limit); },
                   [&](double asked, std::int32_t wire) {
                     return is_fair(asked, wire * unit, limit, unit * (1.0 + 1e-9), 0.0);
                   }),
               0U);
   }
+}
+
+// Object 6071 of a CiA 402 drive, in thousandths of the rated torque.
+TEST(EveryFloat, cia402_torque) {
+  constexpr double rated_n_m = 0.37;
+  constexpr std::int16_t limit = 2900;
+  constexpr double most_n_m = rated_n_m * limit / 1000.0;
+  EXPECT_EQ(refused(
+                0, all_floats, [](double t) { return canopen::encode_torque(t, rated_n_m, limit); },
+                [](double asked, std::int16_t n) {
+                  if (asked != asked) return n == 0;
+                  const double back =
+                      std::abs(n) == limit ? std::copysign(most_n_m, n) : canopen::decode_torque(n, rated_n_m);
+                  const double wanted = std::fabs(asked) > most_n_m ? std::copysign(most_n_m, asked) : asked;
+                  return std::abs(n) <= limit && (asked > 0.0 ? n >= 0 : n <= 0) &&
+                         std::fabs(back) <= std::fabs(wanted) &&
+                         std::fabs(wanted - back) <= 1.0001 * rated_n_m / 1000.0;
+                }),
+            0U);
+}
+
+// Counts of a Falcon's motor. Counts are to the nearest, so that they are in order, and the same both ways.
+// What becomes of them on the wire: falcon_frame.every_number_saturates_on_every_motor_and_comes_back.
+TEST(EveryFloat, falcon_counts) {
+  EXPECT_EQ(refused(
+                0, all_floats, [](double counts) { return falcon_motor_counts(counts); },
+                [](double asked, std::int16_t n) {
+                  if (asked != asked) return n == 0;
+                  const bool near = std::fabs(asked) > 4096.0 ? std::abs(n) == 4096 : std::fabs(n - asked) <= 0.5;
+                  return std::abs(n) <= 4096 && (asked > 0.0 ? n >= 0 : n <= 0) && near &&
+                         falcon_motor_counts(-asked) == -n;
+                }),
+            0U);
 }
 
 }  // namespace

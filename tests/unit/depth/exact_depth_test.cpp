@@ -26,8 +26,8 @@ TEST(ExactDepth, IsTheLargestNodeOfTheMergedGridOfAlignedTextures) {
     const auto texel = [](const model_ptr& m, const plate_spec& p, double x, double y) {
       const double per_image_x = p.texels / (2.0 * p.half_x * m->texture.width);
       const double per_image_y = p.texels / (2.0 * p.half_y * m->texture.height);
-      return m->texture.sample({(plate_builder::gutter + 0.5 * p.texels) / m->texture.width + x * per_image_x,
-                                (plate_builder::gutter + 0.5 * p.texels) / m->texture.height + y * per_image_y});
+      return m->texture.sample({(plate_gutter + 0.5 * p.texels) / m->texture.width + x * per_image_x,
+                                (plate_gutter + 0.5 * p.texels) / m->texture.height + y * per_image_y});
     };
     const auto depth = [&](double x, double y) {  // world x, y; heights along -z
       const double h_a = texel(s.probe, a, x - shift.x, -(y - shift.y)).z;

@@ -209,7 +209,7 @@ TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
   EXPECT_NEAR(before.y, 2.4, 1e-9);
 }
 
-TEST(simulated_device, motors_warm_up_derate_and_end_in_a_fault) {
+TEST(simulated_device, motors_warm_up_and_derate) {
   simulated_config config;
   config.actuator = {.peak_force_n = 10.0, .continuous_force_n = 4.0, .thermal_time_s = 0.5};
   simulated_device dev = armed(config);
@@ -234,6 +234,30 @@ TEST(simulated_device, motors_warm_up_derate_and_end_in_a_fault) {
     static_cast<void>(careless.write(t, push({10, 0, 0}, t + 20 * ms)));
   }
   EXPECT_LT(careless.actuator().warmth(), 2.1);
+}
+
+TEST(simulated_device, motors_that_burn_end_in_a_fault) {
+  simulated_config config = still_hand();
+  config.actuator = {.continuous_force_n = 4.0, .thermal_time_s = 0.5};  // no peak of their own that could fall in time
+  simulated_device dev = armed(config);
+  device_sample in;
+  std::int64_t t = 0;
+  for (; t < 5'000 * ms && dev.read(t, in) == status::ok; t += ms) {
+    static_cast<void>(dev.write(t, push({10, 0, 0}, t + 20 * ms)));
+  }
+  // The warmth goes to (10 / 4)^2 = 6.25, and is 2 after 0.5 s ln(6.25 / 4.25).
+  EXPECT_NEAR(1e-9 * static_cast<double>(t), 0.5 * std::log(6.25 / 4.25), 2e-3);
+  EXPECT_GE(dev.actuator().warmth(), 2.0);
+  EXPECT_EQ(dev.state(), device_state::fault);
+  EXPECT_NE(dev.write(t, push({10, 0, 0}, t + 20 * ms)), status::ok);
+  EXPECT_NE(dev.read(t + ms, in), status::ok);
+  EXPECT_EQ(dev.put_out().force, vec3(0.0));
+
+  // It cools, and is still in its fault until a person clears it.
+  for (const std::int64_t end = t + 2'000 * ms; t < end; t += ms) static_cast<void>(dev.read(t, in));
+  EXPECT_LT(dev.actuator().warmth(), 1.0);
+  EXPECT_EQ(dev.state(), device_state::fault);
+  EXPECT_TRUE(dev.clear_fault());
 }
 
 TEST(simulated_device, loses_measurements_and_says_how_many) {
