@@ -1,8 +1,9 @@
 // Device sessions on record: the same bytes when they are felt again, and one clear sentence where they cannot be.
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include <asperity/hal/device_recording.hpp>
 
