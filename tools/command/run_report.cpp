@@ -10,7 +10,7 @@
 namespace asperity::command {
 namespace {
 
-json to_json(const pose& T) {
+json pose_json(const pose& T) {
   const auto q = to_xyzw(T.rotation);
   return {T.position.x, T.position.y, T.position.z, q[0], q[1], q[2], q[3]};
 }
@@ -31,7 +31,7 @@ json fault_json(const session_outcome& ended) {
   for (const flight_entry& e : ended.last_ticks) {
     ticks.push_back(
         {{"time", 1e-9 * static_cast<double>(e.time_ns)},
-         {"sample", {{"sequence", e.seen.sequence}, {"pose", to_json(e.seen.T_dh)}}},
+         {"sample", {{"sequence", e.seen.sequence}, {"pose", pose_json(e.seen.T_dh)}}},
          {"wanted", {{"force", command::to_json(e.wanted.force)}, {"torque", command::to_json(e.wanted.torque)}}},
          {"sent", {{"force", command::to_json(e.sent.force)}, {"torque", command::to_json(e.sent.torque)}}}});
   }
@@ -59,12 +59,12 @@ answer report(const run_command& options, const session_findings& found) {
   const time_summary contact = summarise(ended.contact.seconds);
   const time_summary device = summarise(ended.device.seconds);
   json T_wb = json::array();
-  for (const pose& T : poses.T_wb) T_wb.push_back(to_json(T));
+  for (const pose& T : poses.T_wb) T_wb.push_back(pose_json(T));
 
   answer out;
   out.document = {{"probe", options.probe},
                   {"fixed", options.fixed},
-                  {"start", {{"probe_pose", to_json(*poses.T_wa)}, {"fixed_poses", T_wb}}},
+                  {"start", {{"probe_pose", pose_json(*poses.T_wa)}, {"fixed_poses", T_wb}}},
                   {"device", options.device},
                   {"clock", clock_of(options)},
                   {"motion", options.motion},
