@@ -101,13 +101,16 @@ TEST_F(replay, takes_the_ticks_of_a_session_in_real_time) {
   options.environment = {{"ASPERITY_DRIVER_PATH", ASPERITY_SAMPLE_DRIVER_DIR}};
   device = "spring_handle";  // whose first pose takes up the probe
 #endif
-  const outcome o = run(felt_with(device, {"--clock", "real", "--seconds", "0.2", "--record", path("then.csv"),
-                                           "--record-device", path("then.dev"), "--json"}),
+  // Far from the other body: on a busy machine contacts would come too late, and the gate would rightly shut.
+  const std::string away = "0 0 0.5 0 0 0 1";
+  const outcome o = run(felt_with(device, {"--clock", "real", "--probe-pose", away, "--seconds", "0.2", "--record",
+                                           path("then.csv"), "--record-device", path("then.dev"), "--json"}),
                         options);
   ASSERT_EQ(o.exit_status, 0) << o.err;
   const std::uint64_t ticks = json::parse(o.out)["device_loop"]["ticks"];
-  const json d = expect_document(again(path("then.dev"), {"--record", path("once.csv")}), "asperity.run/1");
-  ASSERT_EQ(run(again(path("then.dev"), {"--record", path("twice.csv")})).exit_status, 0);
+  const json d =
+      expect_document(again(path("then.dev"), {"--probe-pose", away, "--record", path("once.csv")}), "asperity.run/1");
+  ASSERT_EQ(run(again(path("then.dev"), {"--probe-pose", away, "--record", path("twice.csv")})).exit_status, 0);
   EXPECT_TRUE(read("once.csv") == read("twice.csv"));
   EXPECT_EQ(d["replay"]["ticks"], ticks);
   EXPECT_EQ(d["device_loop"]["ticks"], ticks);
@@ -117,6 +120,15 @@ TEST_F(replay, takes_the_ticks_of_a_session_in_real_time) {
   ASSERT_GT(std::min(then.size(), now.size()), ticks);
   for (std::size_t i = 0; i <= ticks; ++i) ASSERT_EQ(first_columns(then[i], 8), first_columns(now[i], 8)) << i;
   EXPECT_EQ(first_columns(then[1], 15), first_columns(now[1], 15));  // the probe is taken up where it was
+}
+
+// A session whose gate shut disarmed its device. One that is felt otherwise ends there too, and finds nothing wrong.
+TEST_F(replay, ends_where_the_device_was_disarmed) {
+  device_recording other = short_session();
+  other.calls.insert(other.calls.begin() + 41, {.call = asperity::device_call::disarm});
+  const json d = expect_document(again(written(other)), "asperity.run/1");
+  EXPECT_EQ(d["device_loop"]["ticks"], 20);
+  EXPECT_EQ(d["fault"], "none");
 }
 
 TEST_F(replay, ends_as_an_interrupted_session_did) {

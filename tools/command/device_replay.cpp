@@ -78,11 +78,17 @@ error not_a_session(const std::string& what) {
 constexpr std::int64_t latest_ns = std::int64_t{1} << 62;  // room for what is added to a time
 constexpr std::int64_t longest_ns = 86'400'000'000'000;
 
-// Ticks from call `at` on: one read and one write at one time each. What ends them is another call than disarm.
-result<std::vector<std::int64_t>> tick_times_of(const std::vector<call_record>& calls, std::size_t at) {
-  std::vector<std::int64_t> times;
+// Ticks from call `at` on: one read and one write at one time each. What ends them is another call than disarm. The
+// first disarm() ends the session: its gate was shut, and no wrench came after it.
+result<given_ticks> ticks_of(const std::vector<call_record>& calls, std::size_t at) {
+  given_ticks out;
+  std::vector<std::int64_t>& times = out.times_ns;
+  std::optional<std::size_t> disarmed;
   for (; at < calls.size(); ++at) {
-    if (calls[at].call == device_call::disarm) continue;
+    if (calls[at].call == device_call::disarm) {
+      if (!disarmed) disarmed = times.size();
+      continue;
+    }
     if (calls[at].call != device_call::read && calls[at].call != device_call::write) break;
     const bool last = at + 1 == calls.size();
     if (calls[at].call == device_call::read && last) break;
@@ -99,7 +105,8 @@ result<std::vector<std::int64_t>> tick_times_of(const std::vector<call_record>& 
   }
   if (times.empty()) return not_a_session("there is no tick after its arm()");
   if (times.back() - times.front() > longest_ns) return not_a_session("it lasts longer than a day");
-  return times;
+  out.of_session = disarmed.value_or(times.size());
+  return out;
 }
 
 void make(replay_device& device, const call_record& c) {
@@ -157,20 +164,19 @@ result<device_replay> device_replay::open(const std::filesystem::path& file) {
   });
   if (armed == calls.end()) return in_file(not_a_session("its device was never armed"));
   const auto arm = static_cast<std::size_t>(armed - calls.begin());
-  result<std::vector<std::int64_t>> times = tick_times_of(calls, arm + 1);
-  if (!times) return in_file(times.error());
+  result<given_ticks> ticks = ticks_of(calls, arm + 1);
+  if (!ticks) return in_file(ticks.error());
 
   device_replay out;
   out.T_dh_start_ = start_of(*loaded, arm);
   const auto writes_before = static_cast<std::uint64_t>(
       std::count_if(calls.begin(), armed, [](const call_record& c) { return c.call == device_call::write; }));
-  out.ticks_.of_session = times->size();
+  out.ticks_ = std::move(ticks).value();
   if (loaded->end != recorded_end::not_told) {
     const std::uint64_t told = std::max(loaded->writes_before_end, writes_before) - writes_before;
-    out.ticks_.of_session = std::min(times->size(), static_cast<std::size_t>(told));
+    out.ticks_.of_session = std::min(out.ticks_.of_session, static_cast<std::size_t>(told));
   }
   out.ticks_.end = loaded->end == recorded_end::interrupted ? gate_fault::interrupted : gate_fault::stopped;
-  out.ticks_.times_ns = std::move(times).value();
 
   out.call_times_ns_.resize(calls.size());
   std::int64_t next_ns = out.ticks_.times_ns.back();
