@@ -132,19 +132,35 @@ TEST_F(replay, ends_where_the_device_was_disarmed) {
 }
 
 TEST_F(replay, ends_as_an_interrupted_session_did) {
+  const arguments away{"--probe-pose", "0 0 0.5 0 0 0 1"};
   process_options options;
-  options.interrupt_after_s = 0.2;
-  const outcome o = run(
-      felt_with("simulated", {"--seconds", "3000", "--record", path("then.csv"), "--record-device", path("then.dev")}),
-      options);
-  EXPECT_EQ(o.exit_status, 130);
+  options.interrupt_after_s = 0.4;
+  arguments first =
+      felt_with("simulated", {"--seconds", "3000", "--record", path("then.csv"), "--record-device", path("then.dev")});
+  first.insert(first.end(), away.begin(), away.end());
+  EXPECT_EQ(run(first, options).exit_status, 130);
   const auto recording = asperity::decode(read("then.dev"));
   ASSERT_TRUE(recording) << recording.error().message;
   EXPECT_EQ(recording->end, recorded_end::interrupted);
   if (recording->writes_before_end == 0) GTEST_SKIP() << "the signal came before the first tick";
-  const json d = expect_document(again(path("then.dev"), {"--record", path("now.csv")}), "asperity.run/1");
-  EXPECT_EQ(d["interrupted"], false);
+  arguments second = again(path("then.dev"), {"--record", path("now.csv")});
+  second.insert(second.end(), away.begin(), away.end());
+  EXPECT_EQ(expect_document(second, "asperity.run/1")["interrupted"], false);
   EXPECT_TRUE(read("then.csv") == read("now.csv"));
+}
+
+TEST_F(replay, tells_the_gate_what_it_was_told) {
+  for (const auto& [end, word] :
+       {std::pair{recorded_end::interrupted, ",interrupted"}, std::pair{recorded_end::stopped, ",stopped"}}) {
+    device_recording other = short_session();
+    other.end = end;
+    other.writes_before_end = 20;
+    ASSERT_EQ(run(again(written(other), {"--record", path("now.csv")})).exit_status, 0);
+    const auto now = rows("now.csv");
+    ASSERT_GT(now.size(), 21U);
+    EXPECT_TRUE(now[20].ends_with(",none")) << now[20];
+    EXPECT_TRUE(now[21].ends_with(word)) << now[21];
+  }
 }
 
 TEST_F(replay, lasts_no_longer_than_it_is_asked_to) {
