@@ -56,20 +56,53 @@ std::uint64_t count_above(const std::vector<double>& seconds, std::int64_t perio
 constexpr std::int64_t longest_silence_ns = 1'000'000'000;
 
 // What the gate saw last, where it shut by itself.
-void keep_fault(const output_gate& gate, session_outcome& out) {
+void keep_fault(const output_gate& gate, std::int64_t origin_ns, session_outcome& out) {
   if (out.fault == gate_fault::none) return;
   for (std::size_t i = 0; i < gate.flight().size(); ++i) out.last_ticks.push_back(gate.flight()[i]);
+  for (flight_entry& e : out.last_ticks) e.time_ns -= origin_ns;
 }
+
+// When the device ticks of a virtual session are, in its own time and on the clock.
+class tick_times {
+ public:
+  tick_times(const std::optional<given_ticks>& given, double seconds) : given_(given ? &*given : nullptr) {
+    if (given_ == nullptr) {
+      ticks_ = static_cast<std::uint64_t>(std::llround(seconds * 1e9 / device_period_ns));
+      return;
+    }
+    const auto until_ns = static_cast<double>(origin_ns()) + seconds * 1e9 - 0.5 * device_period_ns;
+    while (ticks_ < given_->of_session && static_cast<double>(given_->times_ns[ticks_]) < until_ns) ++ticks_;
+  }
+
+  /// Ticks before the session is told to end.
+  [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
+  [[nodiscard]] std::int64_t origin_ns() const noexcept {
+    return given_ == nullptr || given_->times_ns.empty() ? 0 : given_->times_ns.front();
+  }
+  /// Time of a tick, or nothing where it is one period after the last.
+  [[nodiscard]] std::optional<std::int64_t> at(std::uint64_t tick) const noexcept {
+    if (given_ == nullptr || tick >= given_->times_ns.size()) return std::nullopt;
+    return given_->times_ns[tick];
+  }
+  /// What the gate is told where all ticks were made.
+  [[nodiscard]] gate_fault end() const noexcept { return given_ == nullptr ? gate_fault::stopped : given_->end; }
+
+ private:
+  const given_ticks* given_;
+  std::uint64_t ticks_ = 0;
+};
 
 result<session_outcome> run_virtual(session_setup setup, any_device& dev, progress_line& progress) {
   session_outcome out;
-  const auto device_ticks = static_cast<std::uint64_t>(std::llround(setup.seconds * 1e9 / device_period_ns));
+  const tick_times times(setup.ticks, setup.seconds);
+  const std::uint64_t device_ticks = times.ticks();
   const double contact_ticks = setup.seconds * 1e9 / static_cast<double>(setup.contact_period_ns);
   out.device.seconds.reserve(device_ticks);
   out.contact.seconds.reserve(static_cast<std::size_t>(std::ceil(contact_ticks)) + 1);
 
   session_record last;
-  const virtual_schedule schedule{.device_period_ns = device_period_ns,
+  const virtual_schedule schedule{.start_ns = times.origin_ns(),
+                                  .device_period_ns = device_period_ns,
                                   .contact_period_ns = setup.contact_period_ns,
                                   .contact_one_period_late = setup.contact_one_period_late};
   virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
@@ -77,11 +110,13 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   std::optional<error> failed;
   const auto step = [&] {
     const double begin = cpu_seconds();
+    if (const std::optional<std::int64_t> at_ns = times.at(session.device_ticks())) session.next_device_at(*at_ns);
     session.beat();
     static_cast<void>(session.step());
     const double taken = cpu_seconds() - begin - session.contact().renderer().take_taken();
     if (out.device.seconds.size() < device_ticks) out.device.seconds.push_back(taken);
     if (failed) return;
+    last.time_ns -= times.origin_ns();
     if (const result<void> seen = setup.on_tick(last); !seen) failed = seen.error();
   };
 
@@ -93,11 +128,12 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   }
   out.fault = session.device().gate().fault();
   out.interrupted = interrupted();
-  out.ended_at_s = 1e-9 * static_cast<double>(session.now_ns());
+  out.ended_at_s = 1e-9 * static_cast<double>(session.now_ns() - times.origin_ns());
   out.device.ticks = session.device_ticks();
   out.contact.ticks = session.contact().computed();
-  keep_fault(session.device().gate(), out);
-  session.device().stop(out.interrupted ? gate_fault::interrupted : gate_fault::stopped);
+  keep_fault(session.device().gate(), times.origin_ns(), out);
+  const gate_fault end = session.device_ticks() == device_ticks ? times.end() : gate_fault::stopped;
+  session.device().stop(out.interrupted ? gate_fault::interrupted : end);
   constexpr int longest_wind_down = 200;
   for (int i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
   static_cast<void>(dev.disarm());
@@ -160,8 +196,7 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   // Stopping is how every session ends.
   const bool ended = fault == gate_fault::stopped || fault == gate_fault::interrupted;
   out.fault = ended ? gate_fault::none : fault;
-  keep_fault(session.device().gate(), out);
-  for (flight_entry& e : out.last_ticks) e.time_ns -= origin_ns.value_or(0);
+  keep_fault(session.device().gate(), origin_ns.value_or(0), out);
   out.contact = to_times(session.contact_timing());
   out.device = to_times(session.device_timing());
   out.rejected_samples = session.device().samples().rejected();

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "asperity/control/contact_loop.hpp"
@@ -18,16 +19,24 @@ enum class session_clock : std::uint8_t {
   real_time,     ///< two threads on the machine's clock
 };
 
+/// Device ticks whose times are on record.
+struct given_ticks {
+  std::vector<std::int64_t> times_ns;    ///< never decreasing; the session's first, then those in which it wound down
+  std::size_t of_session = 0;            ///< ticks until it was told to end
+  gate_fault end = gate_fault::stopped;  ///< what it was told
+};
+
 struct session_setup {
   chosen_renderer feel;
   scene_placement placement{};
-  any_device device;  ///< open and not armed; a simulated one where the clock is virtual
+  any_device device;  ///< open and not armed; a simulated or recorded one where the clock is virtual
   control_config control{};
   session_clock clock = session_clock::virtual_time;
   double seconds = 3.0;
   std::int64_t contact_period_ns = 1'000'000;
   /// On the virtual clock: a contact is used when its computation is over and not when it begins, as on a real machine.
   bool contact_one_period_late = true;
+  std::optional<given_ticks> ticks{};  ///< virtual clock only; without them one every device_period_ns
   /// Told of every device tick, outside it and in order. An error ends the session.
   std::function<result<void>(const session_record&)> on_tick;
 };

@@ -62,6 +62,10 @@ class virtual_session {
     return s;
   }
 
+  /// Puts the next device tick at another time than one period after the last, as for ticks that once came unevenly.
+  /// @pre not before the last one
+  void next_device_at(std::int64_t at_ns) noexcept { next_device_ns_ = at_ns; }
+
   /// A sign of life of the application. Only these feed control_config::watchdog_ns.
   void beat() noexcept { shared_.application.beat(); }
   /// Time of the next device tick.

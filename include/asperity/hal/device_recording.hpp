@@ -219,10 +219,13 @@ class recording_encoder {
     return counted(w.take());
   }
 
-  [[nodiscard]] std::string end() {
+  /// @param writes_before_end see device_recording
+  [[nodiscard]] std::string end(recorded_end why = recorded_end::not_told, std::uint64_t writes_before_end = 0) {
     recording_detail::byte_writer w;
     w.number(recording_detail::end_mark);
     w.number(calls_);
+    w.number(static_cast<std::uint8_t>(why));
+    w.number(writes_before_end);
     std::string tail = counted(w.take());
     recording_detail::byte_writer s;
     s.number(sum_);
@@ -247,7 +250,7 @@ class recording_encoder {
   c.name = recording.name;
   std::string out = e.begin(c, recording.before);
   for (const call_record& call : recording.calls) out += e.call(call);
-  return out + e.end();
+  return out + e.end(recording.end, recording.writes_before_end);
 }
 
 /// The recording in `bytes`, of at most 8,388,608 calls. Memory grows with the calls that are there, whatever their
@@ -259,7 +262,11 @@ class recording_encoder {
     return error{error_code::bad_format, "the device recording " + what + ": record the session again"};
   };
   byte_reader r(bytes);
-  if (r.text(sizeof magic) != std::string(magic, sizeof magic)) return bad("does not begin with ASPDEVR1");
+  if (r.text(sizeof magic) != std::string(magic, sizeof magic)) {
+    return error{error_code::bad_format,
+                 "it is no device recording, for it does not begin with ASPDEVR1: give a file of `asperity run "
+                 "--record-device`"};
+  }
   device_recording out;
   const std::size_t length = r.number<std::uint16_t>();
   if (length > longest_name) return bad("names a device of more than 256 bytes");
@@ -270,6 +277,7 @@ class recording_encoder {
 
   device_sample last;
   bool seen = false;
+  std::uint64_t writes = 0;
   while (true) {
     const std::size_t at = r.at();
     const auto first = r.number<std::uint8_t>();
@@ -295,11 +303,19 @@ class recording_encoder {
       c.sample = last;
       seen = true;
     }
-    if (c.call == device_call::write) c.command = read_command(r);
+    if (c.call == device_call::write) {
+      c.command = read_command(r);
+      ++writes;
+    }
     if (!r.ok()) return bad("is cut off, or wrong, in call " + std::to_string(out.calls.size()));
     out.calls.push_back(c);
   }
   if (r.number<std::uint64_t>() != out.calls.size()) return bad("holds another number of calls than it says");
+  out.end = r.choice<recorded_end>(recorded_end_count);
+  out.writes_before_end = r.number<std::uint64_t>();
+  if (!r.ok() || out.writes_before_end > (out.end == recorded_end::not_told ? 0 : writes)) {
+    return bad("is cut off, or wrong, where it tells its end");
+  }
   std::uint64_t sum = first_sum;
   for (std::size_t i = 0; i < r.at(); ++i) sum = add_to_sum(sum, bytes[i]);
   if (r.number<std::uint64_t>() != sum || !r.ok()) return bad("does not match its check sum");
@@ -311,6 +327,9 @@ class recording_encoder {
 /// @return io_failed | bad_format | limit_exceeded
 [[nodiscard]] inline result<device_recording> load_device_recording(const std::filesystem::path& file) {
   std::error_code failed;
+  if (!std::filesystem::exists(file, failed)) {
+    return error{error_code::io_failed, file.string() + ": cannot be found; check the path"};
+  }
   if (!std::filesystem::is_regular_file(file, failed)) {
     return error{error_code::io_failed, file.string() + " is not a file that can be read"};
   }

@@ -12,12 +12,23 @@
 
 namespace asperity {
 
+/// Why a session on record came to its end, as the program told that recorded it.
+enum class recorded_end : std::uint8_t {
+  not_told,
+  stopped,      ///< it had lasted long enough, or its gate had shut
+  interrupted,  ///< a signal asked for it
+};
+inline constexpr int recorded_end_count = 3;
+
 /// A device session on record.
 struct device_recording {
   std::string name;                            ///< of the device
   device_capabilities capabilities{};          ///< its name is that of `name`
   device_state before = device_state::absent;  ///< the first call
   std::vector<call_record> calls;
+  recorded_end end = recorded_end::not_told;
+  /// Writes until then; those after it take the wrench to zero. 0 where nobody told.
+  std::uint64_t writes_before_end = 0;
 };
 
 /// Whether two commands are the same to the bit.

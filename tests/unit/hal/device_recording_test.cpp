@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -124,6 +125,27 @@ TEST(device_recording, refuses_every_cut_and_every_flipped_byte) {
     ASSERT_FALSE(decode(wrong)) << i;
   }
   EXPECT_FALSE(decode(bytes + '\0'));
+}
+
+TEST(device_recording, tells_where_the_session_was_told_to_end) {
+  device_recording told = record();
+  told.calls.resize(40);
+  const auto writes = std::count_if(told.calls.begin(), told.calls.end(),
+                                    [](const call_record& c) { return c.call == device_call::write; });
+  told.end = recorded_end::interrupted;
+  told.writes_before_end = static_cast<std::uint64_t>(writes);
+  const result<device_recording> read = decode(encode(told));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->end, recorded_end::interrupted);
+  EXPECT_EQ(read->writes_before_end, told.writes_before_end);
+
+  ++told.writes_before_end;  // more than there are
+  EXPECT_FALSE(decode(encode(told)));
+  told.writes_before_end = 1;
+  told.end = recorded_end::not_told;  // and yet some
+  EXPECT_FALSE(decode(encode(told)));
+  told.end = static_cast<recorded_end>(recorded_end_count);
+  EXPECT_FALSE(decode(encode(told)));
 }
 
 // With the check sum mended, so that what is behind it is reached.

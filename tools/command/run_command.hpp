@@ -1,0 +1,57 @@
+// What `asperity run` was asked.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "render_options.hpp"
+
+namespace asperity::command {
+
+struct run_command {
+  std::string probe;
+  std::vector<std::string> fixed;
+  std::string probe_pose;
+  std::vector<std::string> fixed_poses;
+  std::string device = "simulated";
+  std::optional<double> seconds;  // a replay lasts as long as its recording
+  std::string motion = "scrub";
+  std::uint64_t seed = 1;
+  double press_m = 0.012;
+  double contact_rate_hz = 1000.0;
+  std::string clock;  // empty: what fits the device
+  std::string firmware;
+  std::string record;
+  std::string record_device;
+  std::string plot;
+  render_options render;
+};
+
+inline constexpr double usual_seconds = 3.0;
+inline constexpr std::string_view replay_prefix = "replay:";
+
+[[nodiscard]] inline bool is_simulated(const run_command& options) { return options.device == "simulated"; }
+[[nodiscard]] inline bool is_replay(const run_command& options) {
+  return std::string_view(options.device).starts_with(replay_prefix);
+}
+/// File of a replay. @pre is_replay()
+[[nodiscard]] inline std::string replayed_file(const run_command& options) {
+  return options.device.substr(replay_prefix.size());
+}
+
+/// `virtual` or `real`.
+[[nodiscard]] inline std::string clock_of(const run_command& options) {
+  if (!options.clock.empty()) return options.clock;
+  return is_simulated(options) || is_replay(options) ? "virtual" : "real";
+}
+
+/// The name of a file without folder and extension.
+[[nodiscard]] inline std::string file_stem(const std::string& file) {
+  return std::filesystem::path(file).stem().string();
+}
+
+}  // namespace asperity::command

@@ -1,0 +1,86 @@
+#include "run_files.hpp"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "options.hpp"
+#include "text.hpp"
+
+namespace asperity::command {
+namespace {
+
+std::string plot_title(const run_command& options, const session_summary& summary) {
+  const char* const does = options.motion == "press"   ? " presses on "
+                           : options.motion == "twist" ? " twists on "
+                           : options.motion == "free"  ? " wanders over "
+                                                       : " scrubs ";
+  const std::string who = file_stem(options.probe) + does + file_stem(options.fixed.front());
+  if (!summary.touched()) return who + " and never touches it.";
+  return who + ": up to " + brief(summary.largest_hand_force_n()) + " N and " +
+         brief(1e3 * summary.largest_hand_torque_n_m()) + " mN m on the hand, " + brief(summary.mean_contacts()) +
+         (summary.mean_contacts() == 1.0 ? " contact" : " contacts on average") + " while touching.";
+}
+
+std::string plot_caption(const run_command& options) {
+  return (is_simulated(options) ? "Simulated device"
+          : is_replay(options)  ? "Replay of " + std::filesystem::path(replayed_file(options)).filename().string()
+                                : options.device) +
+         " at 1 kHz, contact loop at " + brief(options.contact_rate_hz) + " Hz, " + clock_of(options) + " clock, " +
+         (formulation_name(options.render) == "shared" ? "contacts as one potential" : "contacts as in the paper") +
+         (is_simulated(options) ? ", seed " + std::to_string(options.seed) : "") +
+         "; world axes, torque about the probe's centre of mass.";
+}
+
+}  // namespace
+
+result<session_files> session_files::open(const run_command& options) {
+  session_files files;
+  if (!options.record.empty()) {
+    result<recording> opened = recording::create(options.record);
+    if (!opened) return opened.error();
+    files.record_.emplace(std::move(opened).value());
+  }
+  if (!options.record_device.empty()) {
+    result<std::unique_ptr<device_recorder>> opened = device_recorder::create(options.record_device);
+    if (!opened) return opened.error();
+    files.recorder_ = std::move(opened).value();
+  }
+  if (!options.plot.empty()) {
+    result<output_file> opened = output_file::create(options.plot);
+    if (!opened) return opened.error();
+    files.plot_.emplace(std::move(opened).value());
+    files.curves_.emplace(static_cast<std::size_t>(options.seconds.value_or(usual_seconds) * 1000.0));
+  }
+  return files;
+}
+
+result<void> session_files::add(const session_record& tick) {
+  if (curves_) curves_->add(tick);
+  if (recorder_) {
+    if (const result<void> written = recorder_->drain(); !written) return written;
+  }
+  return record_ ? record_->add(tick) : result<void>();
+}
+
+result<void> session_files::close(const run_command& options, const session_outcome& ended,
+                                  const session_summary& summary) {
+  if (plot_) {
+    const bool svg = extension_error(options.plot, {".svg"}).empty();
+    const plot_page page = curves_->page(plot_title(options, summary), plot_caption(options));
+    if (const result<void> drawn = draw(page, svg ? plot_format::svg : plot_format::png, *plot_); !drawn) return drawn;
+  }
+  if (recorder_) {
+    const recorded_end why = ended.interrupted ? recorded_end::interrupted : recorded_end::stopped;
+    if (const result<void> written = recorder_->finish(why, ended.device.ticks); !written) return written;
+  }
+  if (record_) {
+    if (const result<void> closed = record_->close(); !closed) return closed;
+  }
+  if (recorder_) {
+    if (const result<void> closed = recorder_->commit(); !closed) return closed;
+  }
+  return plot_ ? plot_->commit() : result<void>();
+}
+
+}  // namespace asperity::command

@@ -1,0 +1,124 @@
+#include "run_report.hpp"
+
+#include <string>
+
+#include "gpu_report.hpp"
+#include "model_report.hpp"
+#include "statistics.hpp"
+#include "text.hpp"
+
+namespace asperity::command {
+namespace {
+
+json pose_json(const pose& T) {
+  const auto q = to_xyzw(T.rotation);
+  return {T.position.x, T.position.y, T.position.z, q[0], q[1], q[2], q[3]};
+}
+
+json loop_json(const loop_times& times, const time_summary& measured) {
+  return {{"ticks", times.ticks}, {"late", times.late}, {"skipped", times.skipped}, {"tick_time", to_json(measured)}};
+}
+
+std::string loop_text(const loop_times& times, const time_summary& measured) {
+  return std::to_string(times.ticks) + " ticks, " + std::to_string(times.late) + " late, " +
+         std::to_string(times.skipped) + " skipped; " + to_text(measured);
+}
+
+// The flight recorder. What was not finite is null, as JSON has no word for it.
+json fault_json(const session_outcome& ended) {
+  if (ended.fault == gate_fault::none) return nullptr;
+  json ticks = json::array();
+  for (const flight_entry& e : ended.last_ticks) {
+    ticks.push_back(
+        {{"time", 1e-9 * static_cast<double>(e.time_ns)},
+         {"sample", {{"sequence", e.seen.sequence}, {"pose", pose_json(e.seen.T_dh)}}},
+         {"wanted", {{"force", command::to_json(e.wanted.force)}, {"torque", command::to_json(e.wanted.torque)}}},
+         {"sent", {{"force", command::to_json(e.sent.force)}, {"torque", command::to_json(e.sent.torque)}}}});
+  }
+  return {{"cause", to_string(ended.fault)}, {"time", ended.ended_at_s}, {"last_ticks", ticks}};
+}
+
+json replay_json(const std::optional<replay_outcome>& replay) {
+  if (!replay) return nullptr;
+  return {{"device", replay->device},
+          {"ticks", replay->ticks},
+          {"differences", replay->differences},
+          {"first_difference", replay->first_difference_s ? json(*replay->first_difference_s) : json()}};
+}
+
+std::string replay_text(const replay_outcome& replay) {
+  const std::string what = replay.device + ", " + std::to_string(replay.ticks) + " ticks on record; ";
+  if (!replay.first_difference_s) return what + "every call and every command as it was then";
+  return what + "from " + brief(*replay.first_difference_s) + " s on the commands are others than then";
+}
+
+}  // namespace
+
+answer report(const run_command& options, const session_findings& found) {
+  const auto& [poses, ended, summary, memory, replay] = found;
+  const time_summary contact = summarise(ended.contact.seconds);
+  const time_summary device = summarise(ended.device.seconds);
+  json T_wb = json::array();
+  for (const pose& T : poses.T_wb) T_wb.push_back(pose_json(T));
+
+  answer out;
+  out.document = {{"probe", options.probe},
+                  {"fixed", options.fixed},
+                  {"start", {{"probe_pose", pose_json(*poses.T_wa)}, {"fixed_poses", T_wb}}},
+                  {"device", options.device},
+                  {"clock", clock_of(options)},
+                  {"motion", options.motion},
+                  {"seed", options.seed},
+                  {"seconds", ended.ended_at_s},
+                  {"backend", options.render.backend},
+                  {"formulation", formulation_name(options.render)},
+                  {"gradient_scheme", gradient_name(options.render)},
+                  {"grid", grid_json(options.render)},
+                  {"lookup", lookup_json(options.render)}};
+  out.document.update(summary.to_json());
+  out.document["contact_loop"] = loop_json(ended.contact, contact);
+  out.document["device_loop"] = loop_json(ended.device, device);
+  out.document["tick_time_is"] = clock_of(options) == "virtual" ? "cpu" : "wall";
+  out.document["memory"] = {{"models", memory.models}, {"renderer", memory.renderer}};
+  if (memory.gpu) out.document["gpu"] = command::to_json(*memory.gpu);
+  out.document["rejected_samples"] = ended.rejected_samples;
+  out.document["lost_records"] = ended.lost_records;
+  out.document["fault"] = to_string(ended.fault);
+  out.document["fault_record"] = fault_json(ended);
+  out.document["interrupted"] = ended.interrupted;
+  out.document["recording"] = options.record.empty() ? json() : json(options.record);
+  out.document["device_recording"] = options.record_device.empty() ? json() : json(options.record_device);
+  out.document["replay"] = replay_json(replay);
+  out.document["plot"] = options.plot.empty() ? json() : json(options.plot);
+  out.document["units"] = "SI";
+
+  out.text = file_stem(options.probe) + " felt on " + file_stem(options.fixed.front()) + ", " +
+             brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
+             clock_of(options) + " clock\n" + summary.to_text();
+  out.text += row("contact loop", loop_text(ended.contact, contact));
+  out.text += row("device loop", loop_text(ended.device, device));
+  out.text += row("memory", memory_text(memory.models) + " models, " + memory_text(memory.renderer) + " renderer");
+  if (memory.gpu) out.text += to_text(*memory.gpu);
+  if (replay) out.text += row("replay", replay_text(*replay));
+  out.text += row("faults", to_string(ended.fault));
+  if (!options.record.empty()) out.text += row("recording", options.record);
+  if (!options.record_device.empty()) out.text += row("device recording", options.record_device);
+  if (!options.plot.empty()) out.text += row("plot", options.plot);
+  if (!summary.touched())
+    out.text += "  warning: the probe never touched anything: lower it with --press or --probe-pose\n";
+  if (ended.lost_records > 0) {
+    out.text += "  warning: " + std::to_string(ended.lost_records) + " ticks are missing from the recording\n";
+  }
+
+  if (ended.fault != gate_fault::none) {
+    out.exit_status = exit_failed;
+    out.complaint = "the output gate shut after " + brief(ended.ended_at_s) + " s (" + to_string(ended.fault) +
+                    "): the wrench is zero; see the last rows of the recording";
+  } else if (ended.interrupted) {
+    out.exit_status = exit_interrupted;
+    out.complaint = "interrupted after " + brief(ended.ended_at_s) + " s: the wrench is zero, the recording is closed";
+  }
+  return out;
+}
+
+}  // namespace asperity::command

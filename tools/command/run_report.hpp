@@ -1,0 +1,36 @@
+// A session told to a program and to a person.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "cli.hpp"
+#include "device_replay.hpp"
+#include "gpu_use.hpp"
+#include "run_command.hpp"
+#include "run_start.hpp"
+#include "session.hpp"
+#include "session_summary.hpp"
+
+namespace asperity::command {
+
+/// What a session holds in memory, bytes, and on a GPU.
+struct memory_use {
+  std::size_t models = 0;
+  std::size_t renderer = 0;
+  std::shared_ptr<gpu_use> gpu{};  ///< null where no GPU is used
+};
+
+/// All that a session left to tell.
+struct session_findings {
+  given_poses poses;
+  session_outcome ended;
+  session_summary summary;
+  memory_use memory;
+  std::optional<replay_outcome> replay;  ///< only of a replay
+};
+
+[[nodiscard]] answer report(const run_command& options, const session_findings& found);
+
+}  // namespace asperity::command

@@ -1,0 +1,90 @@
+#include "run_start.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <thread>
+
+#include "approach.hpp"
+#include "poses.hpp"
+
+namespace asperity::command {
+namespace {
+
+constexpr double clearance_m = 0.003;  // the hand starts this far above the touch
+
+std::int64_t steady_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+}  // namespace
+
+result<given_poses> read_poses(const run_command& options) {
+  if (options.fixed_poses.size() > options.fixed.size()) {
+    return error{error_code::invalid_argument, "there are more --fixed-pose than --fixed: give at most one for each"};
+  }
+  given_poses out{std::nullopt, std::vector<pose>(options.fixed.size())};
+  if (!options.probe_pose.empty()) {
+    const result<pose> T_wa = read_pose("--probe-pose", options.probe_pose);
+    if (!T_wa) return T_wa.error();
+    out.T_wa = *T_wa;
+  }
+  for (std::size_t i = 0; i < options.fixed_poses.size(); ++i) {
+    const result<pose> T_wb = read_pose("--fixed-pose", options.fixed_poses[i]);
+    if (!T_wb) return T_wb.error();
+    out.T_wb[i] = *T_wb;
+  }
+  return out;
+}
+
+result<pose> start_above(const run_command& options, chosen_renderer& feel, const std::vector<pose>& T_wb) {
+  const step_function step = [&](const scene_pose& at, tick& out) { return feel.step(at, out); };
+  result<pose> touch = find_touch(feel.scene(), step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
+  if (touch && options.motion != "free") touch->position.z += clearance_m;
+  return touch;
+}
+
+workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a) {
+  const quat& r = T_wa_start.rotation;
+  return {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), T_wa_start * centre_of_mass_a},
+          .scale = 1.0,
+          .T_ha = {r, -(r * centre_of_mass_a)}};
+}
+
+workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, const pose& T_dh_start) {
+  const vec3 grip_w = T_wa_start * centre_of_mass_a;
+  const pose T_wh_start{T_dh_start.rotation, grip_w};
+  return {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), grip_w - T_dh_start.position},
+          .scale = 1.0,
+          .T_ha = inverse(T_wh_start) * T_wa_start};
+}
+
+result<pose> first_pose(any_device& device) {
+  device_sample sample;
+  for (int ms = 0; ms < 1000; ++ms) {
+    const std::int64_t now_ns = steady_ns();
+    if (device.read(now_ns, sample) == status::ok && has_all(sample.valid, sample_field::position)) return sample.T_dh;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return error{error_code::io_failed,
+               std::string(device.capabilities().name) +
+                   " is open and measured nothing for a second: unplug it, plug it in again, and "
+                   "see `asperity devices`"};
+}
+
+motion_config motion_of(const run_command& options, const scene& bodies) {
+  const double size = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
+  motion_config motion;
+  motion.kind = options.motion == "press"   ? motion_kind::press
+                : options.motion == "twist" ? motion_kind::twist
+                : options.motion == "free"  ? motion_kind::free
+                                            : motion_kind::scrub;
+  // Oblique to both horizontal axes, so that ridges along either of them are felt.
+  motion.sideways_d = {0.8, 0.6, 0.0};
+  motion.depth_m = options.press_m + (options.probe_pose.empty() ? clearance_m : 0.0);
+  motion.amplitude_m = std::min(0.01, 0.1 * size);
+  return motion;
+}
+
+}  // namespace asperity::command

@@ -1,0 +1,42 @@
+// How a session begins: where the bodies are, where the handle is, and what the simulated hand means to do.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "asperity/control/workspace_map.hpp"
+#include "asperity/hal/any_device.hpp"
+#include "asperity/hal/simulated/motion_script.hpp"
+#include "chosen_renderer.hpp"
+#include "run_command.hpp"
+
+namespace asperity::command {
+
+/// Where the bodies are; the probe's start is found later where nobody gave it.
+struct given_poses {
+  std::optional<pose> T_wa;
+  std::vector<pose> T_wb;
+};
+
+/// @return invalid_argument
+[[nodiscard]] result<given_poses> read_poses(const run_command& options);
+
+/// The probe's pose just above the first touch, or at the touch for a motion that has no approach.
+[[nodiscard]] result<pose> start_above(const run_command& options, chosen_renderer& feel,
+                                       const std::vector<pose>& T_wb);
+
+/// The simulated hand's: the handle sits at the probe's centre of mass, and its torque is then the one that turns the
+/// probe in the hand.
+[[nodiscard]] workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a);
+
+/// That of a device of one's own: its axes are the world's; the probe is taken up in the pose in which the hand holds
+/// the handle.
+[[nodiscard]] workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, const pose& T_dh_start);
+
+/// Where the handle is: a device needs a moment for its first measurement. @return io_failed after a second
+[[nodiscard]] result<pose> first_pose(any_device& device);
+
+/// What the simulated hand means to do with these bodies.
+[[nodiscard]] motion_config motion_of(const run_command& options, const scene& bodies);
+
+}  // namespace asperity::command
