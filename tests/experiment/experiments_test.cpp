@@ -36,7 +36,7 @@ std::vector<const experiment*> pointers() {
 }
 
 INSTANTIATE_TEST_SUITE_P(brief, experiments, testing::ValuesIn(pointers()),
-                         [](const auto& info) { return std::string(info.param->name); });
+                         [](const auto& one) { return std::string(one.param->name); });
 
 }  // namespace
 }  // namespace asperity::experiment

@@ -7,12 +7,14 @@
 
 #include "broken_renderers.hpp"
 #include "experiment.hpp"
+#include "publish.hpp"
 #include "text.hpp"
 
 namespace broken {
 namespace {
 
 using asperity::experiment::all_experiments;
+using asperity::experiment::bound_text;
 using asperity::experiment::findings;
 using asperity::experiment::statement;
 using asperity::experiment::variant;
@@ -62,11 +64,11 @@ TEST_P(mutations_are_noticed, by_a_statement) {
   EXPECT_FALSE(failed.empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(obvious, mutations_are_noticed, testing::ValuesIn(watches), [](const auto& info) {
-  std::string out = to_string(info.param.how);
+INSTANTIATE_TEST_SUITE_P(obvious, mutations_are_noticed, testing::ValuesIn(watches), [](const auto& one) {
+  std::string out = to_string(one.param.how);
   std::replace_if(
       out.begin(), out.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
-  return out + "_in_" + info.param.experiment;
+  return out + "_in_" + one.param.experiment;
 });
 
 // Otherwise what a statement notices might be how the broken policies are put together.
