@@ -6,7 +6,7 @@
 namespace asperity::experiment {
 namespace {
 
-constexpr double row_pitch_m = 3e-3;
+constexpr double row_pitch_m = 2.4e-3;
 constexpr double run_out_m = 2e-3;  // of the hand beyond the ends of a row, onto the flat
 
 double height_over(const vec2& p) {
@@ -32,8 +32,8 @@ double dot_rows::y_m(std::size_t row) {
 }
 
 result<model_ptr> dot_rows::bake(workbench& bench) {
-  const vec2 size(length_m + 8e-3, row_pitch_m * static_cast<double>(count) + 6e-3);
-  return bake_plate(bench, "dots_in_24_rows", size, 2048, height_over);
+  const vec2 size(length_m + 8e-3, row_pitch_m * static_cast<double>(count) + 4e-3);
+  return bake_plate(bench, "dots_in_18_rows", size, 1024, height_over);
 }
 
 double dot_rows::drop_spacing_m(double ball_m) {

@@ -8,13 +8,13 @@
 
 namespace asperity::experiment {
 
-/// A plate with 24 rows of truncated cones along x, 3 mm apart; their spacing grows by a factor from row to row.
+/// A plate with 18 rows of truncated cones along x, 2.4 mm apart; their spacing grows by a factor from row to row.
 /// @source dimensions of the stimuli of Klatzky and Lederman, spec section 9
 struct dot_rows {
-  static constexpr std::size_t count = 24;
+  static constexpr std::size_t count = 18;
   static constexpr double height_m = 0.46e-3, top_diameter_m = 0.5e-3, base_diameter_m = 1.06e-3;
   static constexpr double smallest_m = 0.6e-3, largest_m = 9e-3;
-  static constexpr double length_m = 44e-3;
+  static constexpr double length_m = 36e-3;
 
   [[nodiscard]] static double spacing_m(std::size_t row);
   [[nodiscard]] static double y_m(std::size_t row);

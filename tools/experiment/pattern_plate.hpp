@@ -28,9 +28,9 @@ struct texture_class {
 /// irregular one are alike, those of a regular one differ in phase.
 class pattern_plate {
  public:
-  static constexpr std::size_t lanes_per_class = 5;
+  static constexpr std::size_t lanes_per_class = 4;
   static constexpr double lane_width_m = 2.4e-3;
-  static constexpr double length_m = 40e-3;
+  static constexpr double length_m = 36e-3;
 
   explicit pattern_plate(std::uint64_t seed);
 

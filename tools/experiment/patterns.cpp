@@ -146,7 +146,7 @@ result<findings> run_patterns(workbench& bench) {
   const result<model_ptr> stylus = bake_stylus(bench, ball_m);
   if (!stylus) return stylus.error();
   const result<model_ptr> plate =
-      bake_plate(bench, "patterns_plate", drawn.size_m(), 2048, [&](const vec2& p) { return drawn.height_m(p); });
+      bake_plate(bench, "patterns_plate", drawn.size_m(), 1024, [&](const vec2& p) { return drawn.height_m(p); });
   if (!plate) return plate.error();
   if (const result<void> on = bench.go_on(); !on) return on.error();
   bench.progress("patterns, stroking", 0.3);

@@ -260,9 +260,9 @@ result<findings> run_roughness(workbench& bench) {
   const result<model_ptr> plate = dot_rows::bake(bench);
   if (!plate) return plate.error();
   study s{bench, *plate, {}, {}};
-  const std::size_t first = bench.brief() ? 7 : 0, last = bench.brief() ? 20 : dot_rows::count;
+  const std::size_t first = bench.brief() ? 5 : 0, last = bench.brief() ? 15 : dot_rows::count;
   for (std::size_t i = first; i < last; ++i) s.rows.push_back(i);
-  s.near = {13, 14, 15, 16};
+  s.near = {9, 10, 11, 12};
   findings out;
   const result<spacing_curve> usual = balls(s, out);
   if (!usual) return usual.error();

@@ -8,8 +8,8 @@ namespace asperity::experiment {
 namespace {
 
 constexpr double shank_half_m = 4e-3;  // across
-constexpr double shank_length_m = 12e-3;
-constexpr double tip_length_m = 2.5e-3;  // from the shank's end to the lowest point of the ball
+constexpr double shank_length_m = 21e-3;
+constexpr double tip_length_m = 1.15e-3;  // from the shank's end to the lowest point of the ball
 constexpr double flank_slope = 2.5;      // of the cone that goes on where the ball gets steeper
 constexpr double plate_thickness_m = 4e-3;
 constexpr double settle_s = 0.15;  // from the start to the first stroke
@@ -106,7 +106,7 @@ felt_stroke cut(const std::vector<session_record>& ticks, double from_s, double 
 result<model_ptr> bake_stylus(workbench& bench, double radius_m) {
   const vec3 half(shank_half_m, shank_half_m, 0.5 * shank_length_m);
   bake::bake_options options;
-  options.texture_size = 1024;
+  options.texture_size = 512;
   options.relief.height_m = [radius_m](const bake::relief_point& p) {
     return p.normal.z < -0.5 ? tip_height(radius_m, std::hypot(p.position.x, p.position.y)) : 0.0;
   };
