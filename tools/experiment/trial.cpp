@@ -25,6 +25,7 @@ result<trial_log> run_trial(command::chosen_renderer feel, trial wanted) {
                             .seconds = wanted.seconds,
                             .contact_period_ns = wanted.contact_period_ns,
                             .contact_one_period_late = wanted.contact_one_period_late,
+                            .hold_wrench = wanted.hold_wrench,
                             .on_tick = [&](const session_record& tick) -> result<void> {
                               if (log.ticks.size() < log.ticks.capacity()) log.ticks.push_back(tick);
                               return {};
