@@ -22,5 +22,7 @@ struct experiment {
 
 // One source file each.
 [[nodiscard]] result<findings> run_fig7(workbench& bench);
+[[nodiscard]] result<findings> run_fig9(workbench& bench);
+[[nodiscard]] result<findings> run_stability(workbench& bench);
 
 }  // namespace asperity::experiment
