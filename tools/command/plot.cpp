@@ -95,6 +95,11 @@ const std::vector<double>& x_of(const plot_page& page, const plot_panel& panel, 
 
 bool has_own_axis(const plot_panel& panel) { return !panel.x_label.empty(); }
 
+// The last panel that shares the page's axis has its numbers, and so has one over a panel with another axis.
+bool is_numbered(const plot_page& page, std::size_t i) {
+  return i + 1 == page.panels.size() || has_own_axis(page.panels[i]) || has_own_axis(page.panels[i + 1]);
+}
+
 axis x_axis_of(const plot_page& page, const plot_panel& panel) {
   range found;
   for (const plot_line& line : panel.lines) {
@@ -154,7 +159,7 @@ class painter {
       y += legend_row * static_cast<double>(out.legend.back().size()) + over_panel;
       out.panel_top.push_back(y);
       const bool last = i + 1 == page.panels.size();
-      y += panel_height + (last ? bottom : panel_gap) + (has_own_axis(page.panels[i]) && !last ? own_axis_height : 0.0);
+      y += panel_height + (last ? bottom : panel_gap) + (is_numbered(page, i) && !last ? own_axis_height : 0.0);
     }
     out.height = std::ceil(y);
     return out;
@@ -173,8 +178,7 @@ class painter {
       y += caption_row;
     }
     for (std::size_t i = 0; i < page.panels.size(); ++i) {
-      const bool last = i + 1 == page.panels.size();
-      panel(page, page.panels[i], at.panel_top[i], at.legend[i], last || has_own_axis(page.panels[i]));
+      panel(page, page.panels[i], at.panel_top[i], at.legend[i], is_numbered(page, i));
     }
   }
 

@@ -37,6 +37,7 @@ th, td { text-align: left; vertical-align: top; padding: .3rem .75rem .3rem 0; b
 th { font-weight: 600; color: var(--soft); }
 td.number, th.number { text-align: right; white-space: nowrap; }
 td.word { white-space: nowrap; }
+td.claim { min-width: 14rem; }
 code { font: .9em ui-monospace, monospace; }
 .holds { color: var(--good); font-weight: 600; }
 .fails { color: var(--bad); font-weight: 600; }
@@ -150,7 +151,7 @@ std::string verdicts(const std::vector<statement>& statements) {
     out += "<tr><td class=\"word\">" + tagged("code", s.name) + "</td>" + tagged("td", value_text(s.value), "number") +
            tagged("td", bound_text(s), "word") +
            (s.holds() ? tagged("td", "holds", "word holds") : tagged("td", "FAILS", "word fails")) +
-           tagged("td", s.claim) + "</tr>\n";
+           tagged("td", s.claim, "claim") + "</tr>\n";
   }
   return out + "</table></div>\n";
 }
