@@ -22,5 +22,6 @@ struct experiment {
 
 // One source file each.
 [[nodiscard]] result<findings> run_fig7(workbench& bench);
+[[nodiscard]] result<findings> run_hammer(workbench& bench);
 
 }  // namespace asperity::experiment
