@@ -129,6 +129,7 @@ ride_figures figures_of(const ride& r, const ride_settings& with) {
   ride_figures out;
   double across = 0.0, largest = 0.0;
   std::size_t slow = 0, rested = 0;
+  double last_way_m = 0.0, last_length = 0.0;  // of the rest before
   for (std::size_t i = from; i < n; ++i) {
     across = std::max(across, std::fabs(r.force_n[0][i]));
     largest = std::max(largest, std::hypot(r.force_n[0][i], r.force_n[1][i], r.force_n[2][i]));
@@ -140,7 +141,17 @@ ride_figures figures_of(const ride& r, const ride_settings& with) {
     rested = rests ? rested + 1 : rested;
     if (rests) continue;
     if (rested > 0 && r.time_s[i - 1] - r.time_s[i - rested] >= shortest_rest_s) {
-      out.rest_z_m.push_back(r.moved_m[2][i - (rested + 1) / 2]);
+      const std::size_t middle = i - (rested + 1) / 2;
+      const auto length = static_cast<double>(rested);
+      // Slow, a little faster and slow again in the same notch is one rest.
+      if (!out.rest_z_m.empty() && way[middle] - last_way_m < 0.5 * models::ridge_wavelength_m) {
+        out.rest_z_m.back() += length / (last_length + length) * (r.moved_m[2][middle] - out.rest_z_m.back());
+        last_length += length;
+      } else {
+        out.rest_z_m.push_back(r.moved_m[2][middle]);
+        last_length = length;
+      }
+      last_way_m = way[middle];
     }
     rested = 0;
   }
