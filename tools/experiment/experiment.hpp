@@ -24,6 +24,7 @@ struct experiment {
 [[nodiscard]] result<findings> run_fig7(workbench& bench);
 [[nodiscard]] result<findings> run_fig8(workbench& bench);
 [[nodiscard]] result<findings> run_fig9(workbench& bench);
+[[nodiscard]] result<findings> run_hammer(workbench& bench);
 [[nodiscard]] result<findings> run_roughness(workbench& bench);
 [[nodiscard]] result<findings> run_baselines(workbench& bench);
 [[nodiscard]] result<findings> run_patterns(workbench& bench);

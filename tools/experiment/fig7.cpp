@@ -26,7 +26,8 @@ ride_settings settings_for(bool brief) {
   with.seconds = with.drive_from_s + ((brief ? 2.0 : 4.0) + 0.125) * wave_m / with.drive_m_per_s;
   return with;
 }
-double expected_rests(bool brief) { return brief ? 3.0 : 5.0; }
+// The notch that it starts in is left before anything is judged.
+double expected_rests(bool brief) { return brief ? 2.0 : 4.0; }
 
 // Furthest that the way from rest to rest is from one wave, as a share of it. One rest alone has no way: no number.
 double spacing_error(const ride_figures& f, const ride_settings& with) {
@@ -52,8 +53,8 @@ void state(const ridden& r, const ride_settings& with, bool brief, findings& out
   out.statements.push_back(at_least("wind_up_" + name,
                                     "correlation of the force along the plane with how far the block hangs behind",
                                     f.wind_up_correlation, 0.9));
-  out.statements.push_back(
-      at_least("dwell_" + name, "share of the time in which z changes slower than a fifth of the drive", f.dwell, 0.35));
+  out.statements.push_back(at_least(
+      "dwell_" + name, "share of the time in which the block is slower than a fifth of the drive", f.dwell, 0.35));
   // At the pitch of the ridges no point further than half a wave from the crown can be the first to touch.
   out.statements.push_back(at_most("pressure_" + name,
                                    "largest distance of the centre of pressure from the gear's crown, mm",
@@ -68,8 +69,9 @@ std::vector<double> scaled(const std::vector<double>& values, double by) {
 
 // The paper's two diagrams, positions over forces.
 figure paper_figure(const ridden& r) {
-  figure f{"fig7", "z rises in steps, y too with small overshoots, x follows the hand; F_x is nothing, F_y and F_z rise "
-                   "while the block hangs back and fall as it jumps.",
+  figure f{"fig7",
+           "z rises in steps, y too with small overshoots, x follows the hand; F_x is nothing, F_y and F_z rise "
+           "while the block hangs back and fall as it jumps.",
            {}};
   f.page.title = "A textured block drawn over a gear: position and force";
   f.page.caption = r.kind.says + ". Drawn along a plane that leans in y and z, swayed in x. Dashed: the hand.";
@@ -89,8 +91,9 @@ figure paper_figure(const ridden& r) {
 }
 
 figure all_figure(const std::vector<ridden>& all) {
-  figure f{"fig7_all", "Every renderer makes the same staircase; with a difference step of a tenth of the wavelength "
-                       "the block creeps instead of resting.",
+  figure f{"fig7_all",
+           "Every renderer makes the same staircase; with a difference step of a tenth of the wavelength "
+           "the block creeps instead of resting.",
            {}};
   f.page.title = "The same ride with every renderer";
   f.page.caption = "Height of the block over time, one renderer to a diagram.";
@@ -127,18 +130,28 @@ variant with_wide_step() {
   return out;
 }
 
+// Central differences reach at least half a sample to each side. A window as wide as the block needs 96 samples for
+// that to be a twentieth of the wavelength, the most that leaves notches to rest in.
+void fit_grid(variant& kind) {
+  if (command::gradient_name(kind.options) == "central" && kind.options.difference_step_m == 0.0)
+    kind.options.grid = 96;
+}
+
 }  // namespace
 
 result<findings> run_fig7(workbench& bench) {
   findings out;
   std::vector<variant> kinds = bench.variants();
   kinds.push_back(with_wide_step());
-  const ride_settings with = settings_for(bench.brief());
+  for (variant& kind : kinds) fit_grid(kind);
   std::vector<ridden> all;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (const result<void> on = bench.go_on(); !on) return on.error();
     const variant& kind = kinds[i];
     bench.progress("fig7, " + kind.says, static_cast<double>(i) / static_cast<double>(kinds.size()));
+    // What draws on a GPU goes half the way: where a program stands in for the GPU, that takes as long as all others.
+    const bool brief = bench.brief() || kind.may_be_missing;
+    const ride_settings with = settings_for(brief);
     result<ride> motion = draw_over_gear(bench, kind, with);
     if (!motion && kind.may_be_missing) {
       out.notes.push_back(kind.name + " was left out: " + motion.error().message);
@@ -147,13 +160,14 @@ result<findings> run_fig7(workbench& bench) {
     if (!motion) return motion.error();
     const ride_figures figures = figures_of(*motion, with);
     all.push_back({kind, std::move(motion).value(), figures});
-    if (i + 1 < kinds.size()) state(all.back(), with, bench.brief(), out);
+    if (i + 1 < kinds.size()) state(all.back(), with, brief, out);
     out.tables.push_back(numbers_of(all.back()));
   }
-  out.statements.push_back(at_most("creeps_wide_step",
-                                   "the same share where differences are taken over a tenth of the wavelength: too soft "
-                                   "to rest on",
-                                   all.back().figures.dwell, 0.1));
+  out.statements.push_back(
+      at_most("creeps_wide_step",
+              "the same share where differences are taken over a tenth of the wavelength: too soft "
+              "to rest on",
+              all.back().figures.dwell, 0.1));
   out.figures.push_back(paper_figure(all.front()));
   out.figures.push_back(all_figure(all));
   return out;

@@ -10,12 +10,29 @@ namespace {
 
 using models::benchmark;
 
-constexpr double start_m = -2.0 * models::ridge_wavelength_m;  // in a notch, left of the middle
+constexpr double start_m = -2.0 * models::ridge_wavelength_m;                        // in a notch, left of the middle
 constexpr double middles_m = models::gear_radius_m + 0.5 * models::block_size_m[2];  // apart, at mid height of both
 constexpr double shortest_rest_s = 0.05;
 
 // Turned about x by this, what lies on the gear's crown and moves along y lies in the leaning plane.
 double turn_of(const ride_settings& with) { return 0.5 * std::numbers::pi - with.lean_rad; }
+
+// The benchmark's block with ridges that run out into the valleys. Those of the benchmark's own end at mid height: on a
+// gear that is longer than the block, that rim lies on the crests and keeps the ridges from interlocking.
+triangle_mesh block_without_rim() {
+  constexpr double run_out_m = 4e-3;
+  triangle_mesh mesh = models::make_full(benchmark::block);
+  for (vec3& p : mesh.positions) {
+    const double outside = std::copysign(1.0, p.z);
+    if (std::fabs(p.z) < 0.5 * models::block_size_m[2] - 1.01 * models::ridge_amplitude_m) continue;
+    const double s = std::clamp((0.5 * models::block_size_m[0] - std::fabs(p.x)) / run_out_m, 0.0, 1.0);
+    const double ridge = std::cos(2.0 * std::numbers::pi / models::ridge_wavelength_m * p.y);
+    const double share = s * s * (3.0 - 2.0 * s);
+    p.z = outside * (0.5 * models::block_size_m[2] - (1.0 - share) * models::ridge_amplitude_m) +
+          share * models::ridge_amplitude_m * ridge;
+  }
+  return mesh;
+}
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b, std::size_t from) {
   const auto n = static_cast<double>(a.size() - from);
@@ -39,8 +56,15 @@ ride_axes axes_of(const ride_settings& with) {
   return {vec3(0.0, s, c), vec3(0.0, c, -s)};
 }
 
+result<model_ptr> ride_block(workbench& bench) {
+  bake::bake_options options;
+  options.coarse = models::make_coarse(benchmark::block);
+  options.texture_size = 512;
+  return bench.baked("fig7_block", block_without_rim, std::move(options));
+}
+
 result<ride> draw_over_gear(workbench& bench, const variant& kind, const ride_settings& with) {
-  result<model_ptr> block = bench.benchmark(benchmark::block);
+  result<model_ptr> block = ride_block(bench);
   if (!block) return block.error();
   result<model_ptr> gear = bench.benchmark(benchmark::gear);
   if (!gear) return gear.error();
@@ -96,26 +120,38 @@ result<ride> draw_over_gear(workbench& bench, const variant& kind, const ride_se
 }
 
 ride_figures figures_of(const ride& r, const ride_settings& with) {
-  const auto from = static_cast<std::size_t>(
-      std::lower_bound(r.time_s.begin(), r.time_s.end(), with.judged_from_s) - r.time_s.begin());
+  const auto from = static_cast<std::size_t>(std::lower_bound(r.time_s.begin(), r.time_s.end(), with.judged_from_s) -
+                                             r.time_s.begin());
   const std::size_t n = r.time_s.size();
-  const double slow_m_per_s = 0.2 * with.drive_m_per_s * axes_of(with).along.z;
-  const std::vector<double>& z = r.moved_m[2];
+  const double slow_m_per_s = 0.2 * with.drive_m_per_s;
+  const std::vector<double>& way = r.along_m;
 
   ride_figures out;
   double across = 0.0, largest = 0.0;
   std::size_t slow = 0, rested = 0;
+  double last_way_m = 0.0, last_length = 0.0;  // of the rest before
   for (std::size_t i = from; i < n; ++i) {
     across = std::max(across, std::fabs(r.force_n[0][i]));
     largest = std::max(largest, std::hypot(r.force_n[0][i], r.force_n[1][i], r.force_n[2][i]));
     out.pressure_m = std::max(out.pressure_m, std::fabs(r.pressure_m[i]));
     const bool last = i + 1 == n;
-    const bool rests = !last && std::fabs((z[i + 1] - z[i - 1]) / (r.time_s[i + 1] - r.time_s[i - 1])) < slow_m_per_s;
+    const bool rests =
+        !last && std::fabs((way[i + 1] - way[i - 1]) / (r.time_s[i + 1] - r.time_s[i - 1])) < slow_m_per_s;
     slow += rests ? 1U : 0U;
     rested = rests ? rested + 1 : rested;
     if (rests) continue;
     if (rested > 0 && r.time_s[i - 1] - r.time_s[i - rested] >= shortest_rest_s) {
-      out.rest_z_m.push_back(z[i - (rested + 1) / 2]);
+      const std::size_t middle = i - (rested + 1) / 2;
+      const auto length = static_cast<double>(rested);
+      // Slow, a little faster and slow again in the same notch is one rest.
+      if (!out.rest_z_m.empty() && way[middle] - last_way_m < 0.5 * models::ridge_wavelength_m) {
+        out.rest_z_m.back() += length / (last_length + length) * (r.moved_m[2][middle] - out.rest_z_m.back());
+        last_length += length;
+      } else {
+        out.rest_z_m.push_back(r.moved_m[2][middle]);
+        last_length = length;
+      }
+      last_way_m = way[middle];
     }
     rested = 0;
   }

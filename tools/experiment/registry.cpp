@@ -5,7 +5,7 @@
 namespace asperity::experiment {
 namespace {
 
-constexpr std::array<experiment, 7> experiments{{
+constexpr std::array<experiment, 8> experiments{{
     {"fig7", "A block drawn over a gear",
      "The textured block is drawn across the ridges of the fixed gear, as in the paper's Fig. 7: it moves in steps, "
      "and "
@@ -19,6 +19,11 @@ constexpr std::array<experiment, 7> experiments{{
      "What a frame takes in the paper's hardest scene, Fig. 9: time for collision, for texture force and in all, and "
      "the number of contacts.",
      run_fig9},
+    {"hammer", "A hammer on a torus",
+     "The paper's textured hammer touches the wrinkled torus, is drawn along the ring, rocked and lifted: is the "
+     "contact "
+     "found and kept, does it follow the surface, and does its torque right the hammer.",
+     run_hammer},
     {"roughness", "What makes dots feel rough",
      "A stylus with a ball for its tip is stroked over rows of dots, as in the experiments on perceived roughness: "
      "which "
