@@ -12,10 +12,10 @@
 #include "experiment.hpp"
 #include "turned_block.hpp"
 
+// A namespace of its own: others that are compiled along with it have functions of these names.
 namespace asperity::experiment {
+namespace rivals {
 namespace {
-
-constexpr double height_m = 2.0 * models::ridge_amplitude_m;
 
 // A place on the block's lower side that is on none of its axes of symmetry.
 const vec3 beside_the_axis{11e-3, 5e-3, -0.5 * models::block_size_m[2]};
@@ -52,7 +52,8 @@ result<loop_work> go_round(command::chosen_renderer feel, int steps) {
   for (int i = 0; i <= steps; ++i) {
     const double t = 2.0 * std::numbers::pi * i / steps;
     pose T_wa = upper_block();
-    T_wa.position += 1e-3 * vec3(0.0, 0.4 + 0.9 * std::cos(t) + 0.2 * std::sin(2.0 * t), 0.25 * std::sin(t + 0.3) - 0.8);
+    T_wa.position +=
+        1e-3 * vec3(0.0, 0.4 + 0.9 * std::cos(t) + 0.2 * std::sin(2.0 * t), 0.25 * std::sin(t + 0.3) - 0.8);
     tick found;
     if (const status s = feel.step({T_wa, T_wb}, found); s != status::ok) {
       return error{error_code::invalid_argument, "loop work: the renderer could not answer on the way round"};
@@ -86,12 +87,10 @@ double resistance(const std::vector<turned_sample>& samples) {
 double largest_rise(const std::vector<turned_sample>& samples) {
   double most = 0.0;
   for (const turned_sample& s : samples) most = std::max(most, std::abs(s.rise_m));
-  return most / height_m;
+  return most / ridge_height_m;
 }
 
-}  // namespace
-
-result<findings> run_baselines(workbench& bench) {
+result<findings> run(workbench& bench) {
   result<scene> bodies = block_on_block(bench);
   if (!bodies) return bodies.error();
   const turning how{.reach_rad = bench.brief() ? 0.12 : 0.14,
@@ -103,7 +102,8 @@ result<findings> run_baselines(workbench& bench) {
     if (const result<void> on = bench.go_on(); !on) return on.error();
     bench.progress("baselines, " + c.says, 0.0);
     if (c.turns) {
-      const result<std::vector<turned_sample>> turned = turn_block(make_point_renderer(*bodies, c.force, c.point_a), how);
+      const result<std::vector<turned_sample>> turned =
+          turn_block(make_point_renderer(*bodies, c.force, c.point_a), how);
       if (!turned) return turned.error();
       out.statements.push_back(at_most("rise_" + c.name, "largest rise over 2a", largest_rise(*turned), 0.1));
       out.statements.push_back(between("torque_" + c.name, "torque against", resistance(*turned), -0.05, 0.05));
@@ -115,13 +115,18 @@ result<findings> run_baselines(workbench& bench) {
     }
   }
   for (const variant& kind : {shared_contacts(), paper_soft()}) {
-      result<command::chosen_renderer> feel = bench.make_renderer(*bodies, kind);
-      if (!feel) return feel.error();
-      const result<loop_work> work = go_round(std::move(feel).value(), steps);
-      if (!work) return work.error();
-      out.statements.push_back(at_most("loop_" + kind.name, "loop work over turnover", std::abs(work->ratio()), 1e-3));
+    result<command::chosen_renderer> feel = bench.make_renderer(*bodies, kind);
+    if (!feel) return feel.error();
+    const result<loop_work> work = go_round(std::move(feel).value(), steps);
+    if (!work) return work.error();
+    out.statements.push_back(at_most("loop_" + kind.name, "loop work over turnover", std::abs(work->ratio()), 1e-3));
   }
   return out;
 }
+
+}  // namespace
+}  // namespace rivals
+
+result<findings> run_baselines(workbench& bench) { return rivals::run(bench); }
 
 }  // namespace asperity::experiment
