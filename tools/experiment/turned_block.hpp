@@ -13,8 +13,8 @@ namespace asperity::experiment {
 struct turning {
   double reach_rad = 0.14;       ///< from 0 to +reach, to -reach and back to 0
   double speed_rad_per_s = 0.2;  ///< at the hand
-  double parts = 4.0;  ///< how much of that way, reach by reach
-  std::int64_t contact_period_ns = 4'000'000;
+  double parts = 4.0;            ///< how much of that way, reach by reach
+  std::int64_t contact_period_ns = 2'000'000;
 };
 
 /// Force with which the hand presses the upper block down, N. It does not hold the block's height.
