@@ -252,8 +252,10 @@ result<findings> run(workbench& bench) {
     const rise_by_brute_force& rise =
         depth == depth_kind::largest ? largest : (depth == depth_kind::soft ? soft : boltzmann);
     judge(kind, *turned, largest, rise, out);
-    motion.add(kind, *turned);
-    law.add(kind, *turned, how.reach_rad);
+    if (!kind.may_be_missing) {  // a GPU's curves would hide those of the CPU, on which they lie
+      motion.add(kind, *turned);
+      law.add(kind, *turned, how.reach_rad);
+    }
     out.tables.push_back(numbers(kind, *turned, rise));
   }
   if (!bench.brief()) {

@@ -80,7 +80,7 @@ result<std::vector<turned_sample>> turn_block(command::chosen_renderer feel, con
   const auto hand_angle = [how](double t_s) {
     return there_and_back(how.speed_rad_per_s * std::max(0.0, t_s - turn_begins_s), how.reach_rad);
   };
-  t.script = [start, how, hand_angle](double t_s) {
+  t.script = [start, hand_angle](double t_s) {
     hand_wish wish;
     wish.T_dh = {exp_rotation(vec3(0.0, 0.0, hand_angle(t_s))), start.position};
     wish.velocity_d.angular.z = (hand_angle(t_s + 1e-6) - hand_angle(t_s)) / 1e-6;
