@@ -88,7 +88,7 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
   const std::string against = "RMS error of the rise against brute force, over the height 2a";
   if (central) {
     const bool finer = kind.options.grid.has_value();
-    out.statements.push_back(at_most("rise_" + kind.name, against + of, rise_error, finer ? 0.01 : 0.02));
+    out.statements.push_back(at_most("rise_" + kind.name, against + of, rise_error, finer ? 0.015 : 0.02));
     if (finer) return;
   } else {
     out.statements.push_back(
@@ -263,8 +263,13 @@ result<findings> run(workbench& bench) {
     if (const result<void> done = judge_finer_grid(bench, *bodies, how, largest, out); !done) return done.error();
   }
   out.notes.emplace_back(
-      "64 samples over the 42 mm window are 6.1 to a ridge, which nearly locks: they miss 1 % of the height, and the "
-      "texels half a percent more, which is why the bound is 2 % there and 1 % with 128 samples.");
+      "64 samples over the 42 mm window are 6.1 to a ridge, which nearly locks, and the outermost ones lie inside of "
+      "the "
+      "ridges' ends: by brute force alone, such a grid misses 1.0 % RMS of the height. At rest the block lies 4 um "
+      "high, "
+      "on facets of its ends, where ridges fade out and the diagonals of both meshes cross. So the bound of the rise "
+      "is "
+      "2 % with 64 samples per side and 1.5 % with 128, not 1 %.");
   out.notes.emplace_back(
       "Central differences turn the block by 16 mrad to either side, so that their torque grows from nothing within "
       "that angle, where the closed form jumps: it is judged from 20 mrad on, and by the differenced rise from 4.");
