@@ -11,8 +11,9 @@ namespace asperity::experiment {
 
 /// How the upper block is turned.
 struct turning {
-  double reach_rad = 0.14;         ///< from 0 to +reach, to -reach and back to 0
-  double speed_rad_per_s = 0.2;    ///< at the hand
+  double reach_rad = 0.14;       ///< from 0 to +reach, to -reach and back to 0
+  double speed_rad_per_s = 0.2;  ///< at the hand
+  double parts = 4.0;            ///< how much of that way, reach by reach
   std::int64_t contact_period_ns = 2'000'000;
 };
 
@@ -37,6 +38,8 @@ struct turned_sample {
 /// Where the upper block lies so that the coarse surfaces of both just meet, their ridges interlocked.
 [[nodiscard]] pose upper_block();
 
+/// Height of the ridges, valley to crest: 2 a. The most that the block can rise.
+inline constexpr double ridge_height_m = 2.0 * models::ridge_amplitude_m;
 /// Half the length over which a ridge has its full height, m: beyond it, it fades out.
 [[nodiscard]] double ridge_half_length_m() noexcept;
 /// Angle from which on somewhere two crests meet, lambda / (2 w), rad.
@@ -49,18 +52,24 @@ struct turned_sample {
 /// Which depth of two surfaces a spring is compressed by.
 enum class depth_kind : std::uint8_t {
   largest,    ///< the largest overlap
-  soft,       ///< tau ln of the mean of exp(overlap / tau): the soft maximum of the paper's contacts
-  boltzmann,  ///< mean overlap with weight exp(overlap / tau): the shared formulation's
+  soft,       ///< the paper's contacts with the soft maximum: tau ln of the mean of exp(overlap / tau)
+  boltzmann,  ///< the shared formulation: mean overlap with weight exp(overlap / tau)
 };
+/// The one that a renderer of these options goes by.
+[[nodiscard]] depth_kind depth_of(const command::render_options& options);
 
 /// The rise of the upper block under a constant force, by brute force over both surfaces as the formulas of the
 /// full-resolution block give them: no mesh, no texture, no window and nothing else of the library has a part in it.
+/// The softness of the soft kinds is the documented one: 2 and 5 % of the relief.
 class rise_by_brute_force {
  public:
-  /// @param tau_m  of the soft depths; the largest overlap needs none
-  explicit rise_by_brute_force(double reach_rad, depth_kind kind = depth_kind::largest, double tau_m = 0.0);
-  /// m, interpolated between angles 5 mrad apart. @pre |angle| <= reach
+  explicit rise_by_brute_force(double reach_rad, depth_kind kind);
+  /// m, interpolated between angles 2.5 mrad apart. @pre |angle| <= reach
   [[nodiscard]] double operator()(double angle_rad) const noexcept;
+  /// Its slope by the angle, taken over `step_rad` to either side, m/rad. @pre |angle| + step <= reach
+  [[nodiscard]] double slope(double angle_rad, double step_rad) const noexcept {
+    return ((*this)(angle_rad + step_rad) - (*this)(angle_rad - step_rad)) / (2.0 * step_rad);
+  }
 
  private:
   std::vector<double> rise_m_;

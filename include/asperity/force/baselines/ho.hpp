@@ -12,8 +12,8 @@ struct ho_settings {
 };
 
 /// F = k d M / |M| with d = depth in the displaced surface and M = N - grad h, the normal that bump mapping turns by
-/// the slope of the height map h. |F| does not know the slope: the force is not the gradient of anything, and a hand can
-/// draw energy from it.
+/// the slope of the height map h. |F| does not know the slope: the force is not the gradient of anything, and a hand
+/// can draw energy from it.
 /// @source paper section 2.2 ("alter the magnitude and direction of 3D normal force based on height field gradient");
 /// how the two are combined is ours
 class ho : public point_model<ho> {

@@ -52,9 +52,7 @@ class point_depth {
     return status::ok;
   }
 
-  [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(scene_.fixed, patch_, bodies_);
-  }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(scene_.fixed, patch_, bodies_); }
 
  private:
   [[nodiscard]] static std::size_t most_triangles(const asperity::scene& s) noexcept {

@@ -15,13 +15,13 @@ namespace asperity::baselines {
 
 /// One contact as a model of one point knows it. World axes.
 struct point_reading {
-  vec3 point_w{0.0};           ///< the probe's point, on its coarse surface
-  vec3 arm_w{0.0};             ///< from the probe's centre of mass to that point, m
-  vec3 outward_w{0.0};         ///< unit normal of the fixed body's coarse contact: away from it
-  double coarse_depth_m = 0.0; ///< how far the point is inside the fixed body's coarse surface; negative outside
-  double relief_m = 0.0;       ///< height of the fixed body's texture over its coarse surface there
-  vec3 relief_slope_w{0.0};    ///< gradient of that height by the point's place in the tangent plane, m/m
-  bool read = false;           ///< false: there is no surface under the point, and all else means nothing
+  vec3 point_w{0.0};            ///< the probe's point, on its coarse surface
+  vec3 arm_w{0.0};              ///< from the probe's centre of mass to that point, m
+  vec3 outward_w{0.0};          ///< unit normal of the fixed body's coarse contact: away from it
+  double coarse_depth_m = 0.0;  ///< how far the point is inside the fixed body's coarse surface; negative outside
+  double relief_m = 0.0;        ///< height of the fixed body's texture over its coarse surface there
+  vec3 relief_slope_w{0.0};     ///< gradient of that height by the point's place in the tangent plane, m/m
+  bool read = false;            ///< false: there is no surface under the point, and all else means nothing
 };
 
 /// Contacts of a finder for models of one point. The same as a contact_set; a type of its own, because what is read of
@@ -74,10 +74,11 @@ class point_model {
       const vec6 normal{n, glm::cross(r.arm_w, n)};
       add_outer(sum.stiffness, -static_cast<const Model&>(*this).stiffness_n_per_m(), normal);
       if (told_ == tellings_.size()) continue;
-      tellings_[told_++] = {contacts.contacts()[i], {.depth_m = glm::dot(force, r.outward_w) /
-                                                                static_cast<const Model&>(*this).stiffness_n_per_m(),
-                                                     .gradient = normal,
-                                                     .witness_w = r.point_w}};
+      tellings_[told_++] = {
+          contacts.contacts()[i],
+          {.depth_m = glm::dot(force, r.outward_w) / static_cast<const Model&>(*this).stiffness_n_per_m(),
+           .gradient = normal,
+           .witness_w = r.point_w}};
     }
     if (!is_finite(sum.on_probe_w)) {
       told_ = 0;
