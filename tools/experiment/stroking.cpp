@@ -10,7 +10,7 @@ namespace {
 constexpr double shank_half_m = 4e-3;  // across
 constexpr double shank_length_m = 21e-3;
 constexpr double tip_length_m = 1.15e-3;  // from the shank's end to the lowest point of the ball
-constexpr double flank_slope = 2.5;      // of the cone that goes on where the ball gets steeper
+constexpr double flank_slope = 2.5;       // of the cone that goes on where the ball gets steeper
 constexpr double plate_thickness_m = 4e-3;
 constexpr double settle_s = 0.15;  // from the start to the first stroke
 
