@@ -12,8 +12,8 @@
 namespace asperity::experiment {
 namespace {
 
-constexpr double ball_m = 1e-3;
-constexpr double push_n = 0.5;
+constexpr double pattern_ball_m = 1e-3;
+constexpr double pattern_push_n = 0.5;
 constexpr std::array<double, 2> speeds_m_per_s{0.05, 0.06};  // there and back: a hand does not keep its pace
 // A force this small, in one band, is not felt: what differs below it does not help to tell textures apart.
 constexpr double unfelt_n = 5e-3;
@@ -27,10 +27,10 @@ stroking all_lanes(const pattern_plate& plate, bool back_too) {
     for (std::size_t l = 0; l < pattern_plate::lanes_per_class; ++l) {
       const int felt = static_cast<int>(t * pattern_plate::lanes_per_class + l);
       const double y = plate.lane_y_m(t, l);
-      how.strokes.push_back({{side, y}, 0.06, push_n, -1});
+      how.strokes.push_back({{side, y}, 0.06, pattern_push_n, -1});
       for (int i = 0; i < (back_too ? 2 : 1); ++i) {
         side = -side;
-        how.strokes.push_back({{side, y}, speeds_m_per_s[side > 0.0 ? 0 : 1], push_n, felt});
+        how.strokes.push_back({{side, y}, speeds_m_per_s[side > 0.0 ? 0 : 1], pattern_push_n, felt});
       }
     }
   }
@@ -47,7 +47,7 @@ struct recognition {
   double regular = 0.0, irregular = 0.0, all = 0.0;
 };
 
-recognition shares(const std::vector<std::vector<std::size_t>>& taken) {
+recognition recognised_shares(const std::vector<std::vector<std::size_t>>& taken) {
   double right[2] = {0.0, 0.0}, seen[2] = {0.0, 0.0};
   for (std::size_t i = 0; i < taken.size(); ++i) {
     const std::size_t side = texture_classes()[i].regular() ? 0 : 1;
@@ -73,12 +73,12 @@ double side_right(const std::vector<std::vector<std::size_t>>& taken) {
 // What a hand would know that feels how strong a texture is, along the plate and across it, and nothing else.
 std::vector<felt_sample> strengths(std::vector<felt_sample> samples, const std::vector<felt_stroke>& felt) {
   for (std::size_t i = 0; i < samples.size(); ++i)
-    samples[i].features = audible({rms(felt[i].normal_n), rms(felt[i].along_n)});
+    samples[i].features = audible({rms_about_mean(felt[i].normal_n), rms_about_mean(felt[i].along_n)});
   return samples;
 }
 
 // Mean spectra of the classes of one side.
-command::plot_panel spectra(const std::vector<std::vector<double>>& mean_n, bool regular) {
+command::plot_panel spectra_panel(const std::vector<std::vector<double>>& mean_n, bool regular) {
   command::plot_panel panel;
   panel.y_label = regular ? "regular: force (N)" : "irregular: force (N)";
   panel.log_y = true;
@@ -130,7 +130,7 @@ void tell_spectra(const std::vector<std::vector<double>>& mean_n, findings& out)
     for (const std::vector<double>& m : mean_n) row.push_back(m[b]);
     numbers.rows.push_back(std::move(row));
   }
-  f.page.panels = {spectra(mean_n, true), spectra(mean_n, false)};
+  f.page.panels = {spectra_panel(mean_n, true), spectra_panel(mean_n, false)};
   out.figures.push_back(std::move(f));
   out.tables.push_back(std::move(numbers));
 }
@@ -142,7 +142,7 @@ result<findings> run_patterns(workbench& bench) {
   const std::size_t classes = texture_classes().size();
   constexpr std::size_t lanes = pattern_plate::lanes_per_class;
   bench.progress("patterns", 0.0);
-  const result<model_ptr> stylus = bake_stylus(bench, ball_m);
+  const result<model_ptr> stylus = bake_stylus(bench, pattern_ball_m);
   if (!stylus) return stylus.error();
   const result<model_ptr> plate =
       bake_plate(bench, "patterns_plate", drawn.size_m(), 1024, [&](const vec2& p) { return drawn.height_m(p); });
@@ -166,7 +166,7 @@ result<findings> run_patterns(workbench& bench) {
     samples.push_back(std::move(sample));
   }
   const auto taken = confusion(samples, classes);
-  const recognition found = shares(taken);
+  const recognition found = recognised_shares(taken);
   findings out;
   out.statements = {
       at_least("regular_recognised", "share of strokes over flat, striped and dotted plates that are recognised",
@@ -180,7 +180,7 @@ result<findings> run_patterns(workbench& bench) {
                side_right(taken), 0.9),
       at_least("spectrum_tells_more_than_strength",
                "how much larger the share of regular plates recognised is by the spectrum than by its strength alone",
-               found.regular - shares(confusion(strengths(samples, *felt), classes)).regular, 0.1)};
+               found.regular - recognised_shares(confusion(strengths(samples, *felt), classes)).regular, 0.1)};
   tell_confusion(taken, out);
   tell_spectra(mean_n, out);
   return out;

@@ -43,7 +43,7 @@ constexpr std::array<loop_kind, 8> other_loops{
 std::string in_mm(double metres) { return command::brief(1e3 * metres); }
 
 // Everything that the parts of the experiment share.
-struct study {
+struct dot_study {
   workbench& bench;
   model_ptr plate;
   std::vector<std::size_t> near;  ///< a few rows about the peak of the usual ball
@@ -82,7 +82,7 @@ struct study {
     spacing_curve out;
     for (std::size_t i = 0; i < felt->size(); ++i) {
       out.spacing_m.push_back(dot_rows::spacing_m(rows[i]));
-      out.value.push_back(rms((*felt)[i].normal_m_per_s2));
+      out.value.push_back(rms_about_mean((*felt)[i].normal_m_per_s2));
     }
     return out;
   }
@@ -101,7 +101,7 @@ double smallest_step(const std::vector<double>& values) {
 }
 
 // A curve for each ball: where its peak is.
-result<spacing_curve> balls(study& s, findings& out) {
+result<spacing_curve> balls(dot_study& s, findings& out) {
   const std::vector<double> radii =
       s.bench.brief() ? std::vector{0.5e-3, 1.5e-3, 3e-3} : std::vector{0.5e-3, 1e-3, 1.5e-3, 2e-3, 3e-3};
   figure f{"radius",
@@ -156,18 +156,18 @@ struct shaking {
   double along = 0.0, normal = 0.0;
 };
 
-shaking mean_of(const std::vector<felt_stroke>& felt, int first, std::size_t count) {
+shaking mean_shaking(const std::vector<felt_stroke>& felt, int first, std::size_t count) {
   shaking out;
   for (const felt_stroke& f : felt) {
     if (f.felt < first || f.felt >= first + static_cast<int>(count)) continue;
-    out.along += rms(f.along_m_per_s2) / static_cast<double>(count);
-    out.normal += rms(f.normal_m_per_s2) / static_cast<double>(count);
+    out.along += rms_about_mean(f.along_m_per_s2) / static_cast<double>(count);
+    out.normal += rms_about_mean(f.normal_m_per_s2) / static_cast<double>(count);
   }
   return out;
 }
 
 // Everything else being equal: harder, and faster.
-result<void> force_and_speed(study& s, findings& out) {
+result<void> force_and_speed(dot_study& s, findings& out) {
   const std::vector<double> pushes_n = s.bench.brief() ? std::vector{0.15, 0.6, 1.2} : std::vector{0.15, 0.3, 0.6, 1.2};
   const std::vector<double> speeds_mm_per_s =
       s.bench.brief() ? std::vector{30.0, 60.0, 120.0} : std::vector{15.0, 30.0, 60.0, 120.0, 220.0};
@@ -190,7 +190,7 @@ result<void> force_and_speed(study& s, findings& out) {
   std::vector<double> along, normal, along_by_speed, normal_by_speed;
   first = 0;
   for (const double push : pushes_n) {
-    const shaking m = mean_of(*felt, first, n);
+    const shaking m = mean_shaking(*felt, first, n);
     by_force.rows.push_back({push, m.along, m.normal});
     along.push_back(m.along);
     normal.push_back(m.normal);
@@ -198,7 +198,7 @@ result<void> force_and_speed(study& s, findings& out) {
   }
   double smallest_ratio = std::numeric_limits<double>::infinity();
   for (const double speed : speeds_mm_per_s) {
-    const shaking m = mean_of(*felt, first, n);
+    const shaking m = mean_shaking(*felt, first, n);
     by_speed.rows.push_back({speed, m.along, m.normal});
     if (!normal_by_speed.empty()) smallest_ratio = std::min(smallest_ratio, m.normal / normal_by_speed.back());
     along_by_speed.push_back(m.along);
@@ -240,7 +240,7 @@ double distortion(const spacing_curve& curve, const spacing_curve& usual) {
 
 // The same ball and rows, with contacts that come less often, that are held instead of linearised, and that are used
 // one period late, as on a machine that takes all its time to compute them.
-result<void> rates(study& s, const spacing_curve& usual, findings& out) {
+result<void> rates(dot_study& s, const spacing_curve& usual, findings& out) {
   figure f{"rate",
            "A contact force that is held between 100 computations a second, or 200 that come late, shakes the hand by "
            "itself: the dots' spacing no longer shows. With the contact's stiffness it takes a late 200 Hz to do harm.",
@@ -286,7 +286,8 @@ result<void> rates(study& s, const spacing_curve& usual, findings& out) {
 result<findings> run_roughness(workbench& bench) {
   const result<model_ptr> plate = dot_rows::bake(bench);
   if (!plate) return plate.error();
-  study s{bench, *plate, bench.brief() ? std::vector<std::size_t>{10, 11} : std::vector<std::size_t>{9, 10, 11, 12}};
+  dot_study s{bench, *plate,
+              bench.brief() ? std::vector<std::size_t>{10, 11} : std::vector<std::size_t>{9, 10, 11, 12}};
   findings out;
   const result<spacing_curve> usual = balls(s, out);
   if (!usual) return usual.error();
