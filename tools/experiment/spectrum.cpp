@@ -10,7 +10,7 @@
 namespace asperity::experiment {
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double cycle_rad = 2.0 * std::numbers::pi;
 constexpr std::size_t lines_per_band = 5;
 
 // Edge of a band; the last one's upper edge is bands.bands.
@@ -18,7 +18,7 @@ double edge_per_m(double edge, const band_settings& b) {
   return b.lowest_per_m * std::pow(b.highest_per_m / b.lowest_per_m, edge / static_cast<double>(b.bands));
 }
 
-double distance(const std::vector<double>& a, const std::vector<double>& b) {
+double squared_distance(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return sum;
@@ -42,7 +42,7 @@ std::vector<double> band_spectrum(const std::vector<double>& x_m, const std::vec
   double window_power = 0.0;
   for (std::size_t i = 1; i + 1 < values.size(); ++i) {
     const double step = 0.5 * std::fabs(x_m[i + 1] - x_m[i - 1]);
-    const double hann = 0.5 - 0.5 * std::cos(two_pi * (x_m[i] - from) / length);
+    const double hann = 0.5 - 0.5 * std::cos(cycle_rad * (x_m[i] - from) / length);
     weighted[i] = (values[i] - mean) * hann * step;
     window_power += hann * hann * step;
   }
@@ -53,7 +53,7 @@ std::vector<double> band_spectrum(const std::vector<double>& x_m, const std::vec
       const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(lines_per_band);
       const double f = edge_per_m(static_cast<double>(b) + share, bands);
       std::complex<double> sum = 0.0;
-      for (std::size_t i = 0; i < weighted.size(); ++i) sum += weighted[i] * std::polar(1.0, -two_pi * f * x_m[i]);
+      for (std::size_t i = 0; i < weighted.size(); ++i) sum += weighted[i] * std::polar(1.0, -cycle_rad * f * x_m[i]);
       power += 2.0 * std::norm(sum) / window_power;  // power density, both sides of zero
     }
     out[b] = std::sqrt(power / static_cast<double>(lines_per_band) * width);
@@ -76,7 +76,7 @@ std::vector<std::vector<std::size_t>> confusion(const std::vector<felt_sample>& 
       }
       if (!(count > 0.0)) continue;
       for (double& m : mean) m /= count;
-      const double d = distance(unknown.features, mean);
+      const double d = squared_distance(unknown.features, mean);
       if (d < nearest) {
         nearest = d;
         taken_for = c;

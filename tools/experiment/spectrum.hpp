@@ -11,7 +11,7 @@ namespace asperity::experiment {
 struct band_settings {
   double lowest_per_m = 150.0;
   double highest_per_m = 3000.0;
-  std::size_t bands = 24;
+  std::size_t bands = 36;
 };
 
 /// Root of the power in each band, in the values' unit. @pre x_m and values of one length; x_m runs one way, more or

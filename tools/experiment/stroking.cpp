@@ -10,11 +10,11 @@ namespace {
 constexpr double shank_half_m = 4e-3;  // across
 constexpr double shank_length_m = 21e-3;
 constexpr double tip_length_m = 1.15e-3;  // from the shank's end to the lowest point of the ball
-constexpr double flank_slope = 2.5;      // of the cone that goes on where the ball gets steeper
+constexpr double flank_slope = 2.5;       // of the cone that goes on where the ball gets steeper
 constexpr double plate_thickness_m = 4e-3;
 constexpr double settle_s = 0.15;  // from the start to the first stroke
 
-triangle_mesh box(const vec3& low, const vec3& high) {
+triangle_mesh box_between(const vec3& low, const vec3& high) {
   triangle_mesh mesh;
   for (int i = 0; i < 8; ++i) {
     mesh.positions.emplace_back((i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
@@ -35,7 +35,7 @@ double tip_height(double radius_m, double off_axis_m) {
 }
 
 // Where the hand wants to be, and what it pushes with: the legs of its way, one after another.
-struct way {
+struct hand_way {
   struct leg {
     double from_s, to_s;
     vec2 from_m, to_m;
@@ -43,7 +43,7 @@ struct way {
   };
   std::vector<leg> legs;
 
-  explicit way(const stroking& how) {
+  explicit hand_way(const stroking& how) {
     double now = settle_s;
     vec2 at = how.from_m;
     legs.push_back({0.0, now, at, at, how.strokes.front().push_n});
@@ -81,7 +81,7 @@ hand_grip loose_grip() {
   return grip;
 }
 
-felt_stroke cut(const std::vector<session_record>& ticks, double from_s, double to_s, int felt) {
+felt_stroke cut_stroke(const std::vector<session_record>& ticks, double from_s, double to_s, int felt) {
   constexpr double h = 1e-9 * static_cast<double>(command::device_period_ns);
   felt_stroke out;
   out.felt = felt;
@@ -111,7 +111,7 @@ result<model_ptr> bake_stylus(workbench& bench, double radius_m) {
     return p.normal.z < -0.5 ? tip_height(radius_m, std::hypot(p.position.x, p.position.y)) : 0.0;
   };
   return bench.baked(
-      "stylus_" + std::to_string(std::lround(1e6 * radius_m)) + "um", [half] { return box(-half, half); },
+      "stylus_" + std::to_string(std::lround(1e6 * radius_m)) + "um", [half] { return box_between(-half, half); },
       std::move(options));
 }
 
@@ -123,7 +123,7 @@ result<model_ptr> bake_plate(workbench& bench, const std::string& name, const ve
     return p.normal.z > 0.5 ? height_m(vec2(p.position)) : 0.0;
   };
   return bench.baked(
-      name, [size_m] { return box(vec3(-0.5 * size_m, -plate_thickness_m), vec3(0.5 * size_m, 0.0)); },
+      name, [size_m] { return box_between(vec3(-0.5 * size_m, -plate_thickness_m), vec3(0.5 * size_m, 0.0)); },
       std::move(options));
 }
 
@@ -131,7 +131,7 @@ result<std::vector<felt_stroke>> stroke_plate(workbench& bench, const variant& k
                                               const model_ptr& plate, const stroking& how) {
   result<command::chosen_renderer> feel = bench.make_renderer({stylus, {plate}}, kind);
   if (!feel) return feel.error();
-  const way planned(how);
+  const hand_way planned(how);
   trial t;
   constexpr double above_m = 1e-4;
   t.T_wa_start = {quat(1.0, 0.0, 0.0, 0.0), vec3(how.from_m, 0.5 * shank_length_m + tip_length_m + above_m)};
@@ -150,14 +150,14 @@ result<std::vector<felt_stroke>> stroke_plate(workbench& bench, const variant& k
   std::vector<felt_stroke> out;
   for (std::size_t i = 0; i < how.strokes.size(); ++i) {
     if (how.strokes[i].felt < 0) continue;
-    const way::leg& l = planned.legs[i + 1];
+    const hand_way::leg& l = planned.legs[i + 1];
     const double length_s = l.to_s - l.from_s;
-    out.push_back(cut(log->ticks, l.from_s + 0.2 * length_s, l.to_s - 0.02 * length_s, how.strokes[i].felt));
+    out.push_back(cut_stroke(log->ticks, l.from_s + 0.2 * length_s, l.to_s - 0.02 * length_s, how.strokes[i].felt));
   }
   return out;
 }
 
-double rms(const std::vector<double>& values) {
+double rms_about_mean(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
   const double n = static_cast<double>(values.size());
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;

@@ -53,6 +53,6 @@ struct felt_stroke {
                                                             const stroking& how);
 
 /// Root of the mean square about the mean.
-[[nodiscard]] double rms(const std::vector<double>& values);
+[[nodiscard]] double rms_about_mean(const std::vector<double>& values);
 
 }  // namespace asperity::experiment
