@@ -113,10 +113,11 @@ figure timing_picture(const scrubbed& path, const timed_frames& soft, const std:
   figure f{
       "fig9", "Texture force takes most of a frame and follows the number of contacts; collision is a small part.", {}};
   f.page.title = "The file scrubs the CAD part: texture force takes most of a frame, and follows the contacts";
-  f.page.caption = "CPU time of one core of " + machine_name() + "; frames of a session at 200 Hz, played again.";
+  f.page.caption = "CPU time of one core of " + machine_name() +
+                   "; frames of a session at 200 Hz, played again. Top: " + soft.kind.says + ", 50 x 50 samples.";
   f.page.x_label = "frame";
   for (std::size_t i = 0; i < path.contacts.size(); ++i) f.page.x.push_back(static_cast<double>(i));
-  f.page.panels.push_back({"time (ms), " + soft.kind.says,
+  f.page.panels.push_back({"time (ms)",
                            {{"total", in_ms(soft.frame_s)},
                             {"texture force", in_ms(frame_difference(soft.frame_s, path.collision_s))},
                             {"collision", in_ms(path.collision_s)}}});

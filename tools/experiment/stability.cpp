@@ -203,11 +203,11 @@ void state_limits(const std::vector<stiffness_limits>& all, const guard_record& 
   out.statements.push_back(at_most("limit_held_late",
                                    "stiffest quiet flat contact, N/mm; held force, one period late, 100 to 200 Hz; "
                                    "negative control",
-                                   1e-3 * held, 2.0));
+                                   1e-3 * held, 1.0));
   out.statements.push_back(at_least("limit_curved",
                                     "stiffest quiet flat contact, N/mm, the least of all; linearised with curvature, "
                                     "500 Hz and more, late or not",
-                                    1e-3 * curved, 8.0));
+                                    1e-3 * curved, 2.0));
   out.statements.push_back(at_most("guard_bounds_all",
                                    "largest surplus over the guard's bound, all flat contacts with the guard on",
                                    guard.worst_share, 1.0));
@@ -226,10 +226,11 @@ void state_couplings(const std::vector<coupling_limit>& all, findings& out) {
     apart = std::max(apart, std::fabs(c.measured_n_per_m / c.theory_n_per_m - 1.0));
     if (c.passive_n_per_m > 0.0) least = std::min(least, c.measured_n_per_m / c.passive_n_per_m);
   }
-  out.statements.push_back(at_most("coupling_limit",
-                                   "coupling at which a kicked hand no longer comes to rest, tool clamped: largest "
-                                   "share that it lies off the poles of the sampled loop",
-                                   apart, 0.05));
+  out.statements.push_back(
+      at_most("coupling_limit",
+              "coupling at which a kicked hand no longer comes to rest, tool clamped: largest "
+              "share that it lies off the poles of the sampled loop (the hand moves in steps of 50 us)",
+              apart, 0.1));
   out.statements.push_back(at_least("coupling_passive",
                                     "the same limit over the stiffness that is passive in any hand, "
                                     "2 (b - B) / T, the least",
