@@ -52,8 +52,6 @@ class changed_renderer {
   contact_line line_;
 };
 
-constexpr double beside_m = 0.1e-3;
-
 // A pad with the ridges of the benchmark's block, but only two and a half of them: one contact costs a seventh of the
 // block's at the same pitch of samples, and hundreds of sessions are wanted. It is high so that it may dive deep before
 // the finder gives up, at a tenth of its diagonal.
@@ -86,9 +84,9 @@ triangle_mesh make_coarse_pad() {
 // The pads' ridges fit into each other where one lies right above the other.
 trial held_pad(const notch& where, const holding& how) {
   const double crest_to_crest_m = where.is_flat() ? 0.0 : 2.0 * models::ridge_amplitude_m;
-  const double rise_m = crest_to_crest_m * std::sin(std::numbers::pi * beside_m / models::ridge_wavelength_m);
+  const double rise_m = crest_to_crest_m * std::sin(std::numbers::pi * how.beside_m / models::ridge_wavelength_m);
   trial t;
-  t.T_wa_start = {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, beside_m, pad_height_m + rise_m + 20e-6)};
+  t.T_wa_start = {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, how.beside_m, pad_height_m + rise_m + 20e-6)};
   t.T_wb = {pose{}};
   t.script = [start = t.T_wa_start, press_n = how.press_n](double t_s) {
     hand_wish wish;

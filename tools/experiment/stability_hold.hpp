@@ -48,8 +48,9 @@ struct holding {
   bool late = true;  ///< one period late
   bool guard = false;
   double press_n = 1.0;
-  double settle_s = 1.0;  ///< the hand brings the block down and comes to rest
-  double hold_s = 2.5;    ///< what is judged
+  double beside_m = 0.1e-3;  ///< where the hand brings the pad down and holds it: so far beside the notch
+  double settle_s = 1.0;     ///< the hand brings the block down and comes to rest
+  double hold_s = 2.5;       ///< what is judged
 };
 
 /// What the hand had of it, from the end of settling on.
@@ -64,7 +65,7 @@ struct held_still {
   std::vector<double> time_s, sideways_m, energy_j;  ///< of the whole session, tick by tick
 };
 
-/// A hand of 100 N/m sideways holds the upper pad 0.1 mm beside the notch and presses. No limit but the
+/// A hand of 100 N/m sideways holds the upper pad a little beside the notch and presses. No limit but the
 /// simulated device's peak and slew rate.
 /// @return the trial's error
 [[nodiscard]] result<held_still> hold_still(const notch& where, const holding& how);
