@@ -222,11 +222,11 @@ void state_limits(const std::vector<stiffness_limits>& all, const guard_record& 
   out.statements.push_back(at_most("limit_held_late",
                                    "stiffest quiet flat contact, N/mm; held force, one period late, 100 to 200 Hz; "
                                    "negative control",
-                                   1e-3 * held, 1.0));
+                                   1e-3 * held, 2.0));
   out.statements.push_back(at_least("limit_curved",
                                     "stiffest quiet flat contact, N/mm, the least of all; linearised with curvature, "
                                     "500 Hz and more, late or not",
-                                    1e-3 * curved, 2.0));
+                                    1e-3 * curved, 4.0));
   out.statements.push_back(at_most("guard_bounds_all",
                                    "largest surplus over the guard's bound, all flat contacts with the guard on",
                                    guard.worst_share, 1.0));
