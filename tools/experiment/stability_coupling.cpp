@@ -88,13 +88,13 @@ bool poles_are_inside(double K, double B) {
 }  // namespace
 
 result<std::vector<coupling_limit>> coupling_limits(workbench& bench, const std::vector<double>& dampings_n_s_per_m) {
-  const result<notch> where = notch::make(bench, paper_soft());
+  const result<notch> where = notch::make(bench, paper_soft(), true);
   if (!where) return where.error();
   std::vector<coupling_limit> out;
   for (const double B : dampings_n_s_per_m) {
     if (const result<void> on = bench.go_on(); !on) return on.error();
     const result<double> measured =
-        largest_stable([&](double K) { return comes_to_rest(*where, K, B); }, bench.brief() ? 9 : 13);
+        largest_stable([&](double K) { return comes_to_rest(*where, K, B); }, bench.brief() ? 10 : 13);
     if (!measured) return measured.error();
     const result<double> theory = largest_stable([&](double K) -> result<bool> { return poles_are_inside(K, B); }, 40);
     if (!theory) return theory.error();

@@ -52,27 +52,24 @@ class changed_renderer {
   contact_line line_;
 };
 
-constexpr double beside_m = 0.4e-3;
-constexpr double press_n = 1.0;
-
 // A pad with the ridges of the benchmark's block, but only two and a half of them: one contact costs a seventh of the
 // block's at the same pitch of samples, and hundreds of sessions are wanted. It is high so that it may dive deep before
 // the finder gives up, at a tenth of its diagonal.
-constexpr double pad_m = 10e-3, pad_height_m = 40e-3;
+constexpr double pad_m = 10e-3, pad_height_m = 20e-3;
 constexpr std::uint32_t pad_grid = 24;
 
-triangle_mesh make_pad() {
+triangle_mesh make_pad(double amplitude_m) {
   constexpr double half = 0.5 * pad_m, half_z = 0.5 * pad_height_m, fade = models::ridge_fade_m;
   models::lattice_solid solid;
   solid.axes[0] = {{-half, -half + fade, half - fade, half}, {4, 8, 4}};
   solid.axes[1] = {{-half, half}, {80}};
   solid.axes[2] = {{-half_z, half_z}, {8}};
   solid.filled = [](const vec3&) { return true; };
-  return models::surface_of(solid, [](const vec3& p) {
+  return models::surface_of(solid, [amplitude_m](const vec3& p) {
     if (std::abs(p.z) < half_z) return p;
     const double share = smoothstep((half - std::abs(p.x)) / fade);
     const double wave = std::cos(2.0 * std::numbers::pi / models::ridge_wavelength_m * p.y);
-    return p + vec3(0.0, 0.0, share * models::ridge_amplitude_m * wave);
+    return p + vec3(0.0, 0.0, share * amplitude_m * wave);
   });
 }
 
@@ -85,13 +82,13 @@ triangle_mesh make_coarse_pad() {
 }
 
 // The pads' ridges fit into each other where one lies right above the other.
-trial held_pad(const holding& how) {
-  const double crest_to_crest_m = 2.0 * models::ridge_amplitude_m;
-  const double rise_m = crest_to_crest_m * std::sin(std::numbers::pi * beside_m / models::ridge_wavelength_m);
+trial held_pad(const notch& where, const holding& how) {
+  const double crest_to_crest_m = where.is_flat() ? 0.0 : 2.0 * models::ridge_amplitude_m;
+  const double rise_m = crest_to_crest_m * std::sin(std::numbers::pi * how.beside_m / models::ridge_wavelength_m);
   trial t;
-  t.T_wa_start = {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, beside_m, pad_height_m + rise_m + 20e-6)};
+  t.T_wa_start = {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, how.beside_m, pad_height_m + rise_m + 20e-6)};
   t.T_wb = {pose{}};
-  t.script = [start = t.T_wa_start](double t_s) {
+  t.script = [start = t.T_wa_start, press_n = how.press_n](double t_s) {
     hand_wish wish;
     wish.T_dh.position = start.position;
     wish.push_d.force.z = -press_n * std::clamp(t_s / 0.2, 0.0, 1.0);
@@ -131,17 +128,22 @@ double fast_motion(const std::vector<vec3>& velocity, double h_s) {
 
 }  // namespace
 
-result<notch> notch::make(workbench& bench, const variant& kind) {
+result<notch> notch::make(workbench& bench, const variant& kind, bool flat) {
   bake::bake_options options;
   options.coarse = make_coarse_pad();
   options.texture_size = 256;
-  const result<model_ptr> pad = bench.baked("ridged_pad_10x10x40mm", make_pad, std::move(options));
+  const result<model_ptr> pad =
+      flat ? bench.baked(
+                 "flat_pad_10x10x20mm", [] { return make_pad(0.0); }, std::move(options))
+           : bench.baked(
+                 "ridged_pad_10x10x20mm", [] { return make_pad(models::ridge_amplitude_m); }, std::move(options));
   if (!pad) return pad.error();
   variant on_pad = kind;
   if (kind.options.contacts == "paper") on_pad.options.grid = pad_grid;
   result<command::chosen_renderer> feel = bench.make_renderer({*pad, {*pad}}, on_pad);
   if (!feel) return feel.error();
   notch out;
+  out.flat_ = flat;
   out.inner_ = std::make_shared<command::chosen_renderer>(std::move(feel).value());
   out.one_contact_ = std::make_shared<bool>(true);
   return out;
@@ -166,7 +168,7 @@ double guard_bound_j(double speed_m_per_s, double speed_rad_per_s) noexcept {
 }
 
 result<held_still> hold_still(const notch& where, const holding& how) {
-  result<trial_log> log = run_trial(where.with(how.stiffness_n_per_m, how.line), held_pad(how));
+  result<trial_log> log = run_trial(where.with(how.stiffness_n_per_m, how.line), held_pad(where, how));
   if (!log) return log.error();
   held_still out;
   out.shut = log->ended.fault != gate_fault::none;
@@ -193,6 +195,7 @@ result<held_still> hold_still(const notch& where, const holding& how) {
     if (t_s >= how.settle_s) velocity.push_back(v);
   }
   if (!ticks.empty()) {
+    out.touches = ticks.back().max_depth_m > 0.0;
     out.given_j = ticks.back().delivered_j - before_j;
     out.guard_share = static_cast<double>(acted) / static_cast<double>(ticks.size());
   }

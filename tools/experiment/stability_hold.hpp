@@ -1,4 +1,5 @@
-// A block held still in a notch of another one: what the hand gets from a contact that is late, held or linearised.
+// A pad held still on another one, in a notch of its ridges: what the hand gets from a contact that is late, held or
+// linearised.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,9 @@ enum class contact_line : std::uint8_t {
 /// One renderer for many sessions, so that its preparation is paid for once.
 class notch {
  public:
-  /// Two textured blocks, felt with a variant. @return what a model or the renderer's maker says
-  [[nodiscard]] static result<notch> make(workbench& bench, const variant& kind);
+  /// Two pads whose ridges fit into each other, or two flat ones, felt with a variant.
+  /// @return what a model or the renderer's maker says
+  [[nodiscard]] static result<notch> make(workbench& bench, const variant& kind, bool flat);
 
   /// A renderer with this contact stiffness, which hands over that much of each contact. Wrench and stiffness matrix
   /// are proportional to the contact stiffness, so scaling both is the same as setting it.
@@ -30,7 +32,10 @@ class notch {
   /// Whether every tick so far that was linearised without curvature had one contact only, as that needs.
   [[nodiscard]] bool was_one_contact() const noexcept { return *one_contact_; }
 
+  [[nodiscard]] bool is_flat() const noexcept { return flat_; }
+
  private:
+  bool flat_ = false;
   std::shared_ptr<command::chosen_renderer> inner_;
   std::shared_ptr<bool> one_contact_;
 };
@@ -42,8 +47,10 @@ struct holding {
   std::int64_t contact_period_ns = 1'000'000;
   bool late = true;  ///< one period late
   bool guard = false;
-  double settle_s = 1.0;  ///< the hand brings the block down and comes to rest
-  double hold_s = 2.5;    ///< what is judged
+  double press_n = 1.0;
+  double beside_m = 0.1e-3;  ///< where the hand brings the pad down and holds it: so far beside the notch
+  double settle_s = 1.0;     ///< the hand brings the block down and comes to rest
+  double hold_s = 2.5;       ///< what is judged
 };
 
 /// What the hand had of it, from the end of settling on.
@@ -53,11 +60,12 @@ struct held_still {
   double surplus_j = 0.0;          ///< largest, from the beginning on: see passivity_guard
   double bound_j = 0.0;            ///< what passivity_guard promises of it at the hand's largest speeds
   double guard_share = 0.0;        ///< of the ticks in which the guard acted
+  bool touches = false;            ///< at the end; a tool that was thrown off or through does not
   bool shut = false;               ///< the output gate shut: energy past the cut-off
   std::vector<double> time_s, sideways_m, energy_j;  ///< of the whole session, tick by tick
 };
 
-/// A hand of 100 N/m sideways holds the upper block 0.4 mm beside the notch and presses with 1 N. No limit but the
+/// A hand of 100 N/m sideways holds the upper pad a little beside the notch and presses. No limit but the
 /// simulated device's peak and slew rate.
 /// @return the trial's error
 [[nodiscard]] result<held_still> hold_still(const notch& where, const holding& how);
