@@ -217,7 +217,6 @@ result<void> judge_finer_grid(workbench& bench, const scene& bodies, turning how
   finer.options.grid = 128;
   bench.progress("fig8, " + finer.says, 0.0);
   how.parts = 1.0;
-  how.contact_period_ns = 4'000'000;
   result<command::chosen_renderer> feel = bench.make_renderer(bodies, finer);
   if (!feel) return feel.error();
   const result<samples> turned = turn_block(std::move(feel).value(), how);
