@@ -77,7 +77,7 @@ constexpr double difference_rad = 1.05 / 64.0;
 
 // What holds of every kind. `largest` is geometry, `rise` what brute force makes of the kind's own depth.
 void judge(const variant& kind, const samples& all, const rise_by_brute_force& largest, const rise_by_brute_force& rise,
-           findings& out) {
+           bool brief, findings& out) {
   const depth_kind depth = depth_of(kind.options);
   const bool central = depth == depth_kind::largest;
   const std::string of = " (" + kind.says + ")";
@@ -88,7 +88,9 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
   const std::string against = "RMS error of the rise against brute force, over the height 2a";
   if (central) {
     const bool finer = kind.options.grid.has_value();
-    out.statements.push_back(at_most("rise_" + kind.name, against + of, rise_error, finer ? 0.015 : 0.02));
+    // In a brief run the hand turns twice as fast, and its damping along n holds the block back a little.
+    out.statements.push_back(
+        at_most("rise_" + kind.name, against + of, rise_error, finer ? 0.015 : (brief ? 0.025 : 0.02)));
     if (finer) return;
   } else {
     out.statements.push_back(
@@ -215,12 +217,11 @@ result<void> judge_finer_grid(workbench& bench, const scene& bodies, turning how
   finer.options.grid = 128;
   bench.progress("fig8, " + finer.says, 0.0);
   how.parts = 1.0;
-  how.contact_period_ns = 4'000'000;
   result<command::chosen_renderer> feel = bench.make_renderer(bodies, finer);
   if (!feel) return feel.error();
   const result<samples> turned = turn_block(std::move(feel).value(), how);
   if (!turned) return turned.error();
-  judge(finer, *turned, largest, largest, out);
+  judge(finer, *turned, largest, largest, bench.brief(), out);
   out.tables.push_back(numbers(finer, *turned, largest));
   return {};
 }
@@ -251,7 +252,7 @@ result<findings> run(workbench& bench) {
     const depth_kind depth = depth_of(kind.options);
     const rise_by_brute_force& rise =
         depth == depth_kind::largest ? largest : (depth == depth_kind::soft ? soft : boltzmann);
-    judge(kind, *turned, largest, rise, out);
+    judge(kind, *turned, largest, rise, bench.brief(), out);
     if (!kind.may_be_missing) {  // a GPU's curves would hide those of the CPU, on which they lie
       motion.add(kind, *turned);
       law.add(kind, *turned, how.reach_rad);
@@ -267,7 +268,7 @@ result<findings> run(workbench& bench) {
       "the "
       "ridges' ends: by brute force alone, such a grid misses 1.0 % RMS of the height. At rest the block lies 4 um "
       "high, "
-      "on facets of its ends, where ridges fade out and the diagonals of both meshes cross. So the bound of the rise "
+      "on its ends, where ridges fade out and the facets of both meshes differ. So the bound of the rise "
       "is "
       "2 % with 64 samples per side and 1.5 % with 128, not 1 %.");
   out.notes.emplace_back(

@@ -18,8 +18,8 @@ constexpr double half_y_m = 0.5 * models::block_size_m[1];
 constexpr double per_m = 2.0 * pi / models::ridge_wavelength_m;
 
 // The hand takes the block down, waits until it lies still, and turns it at one speed.
-constexpr double turn_begins_s = 0.4;
-constexpr double rest_begins_s = 0.32;
+constexpr double turn_begins_s = 0.5;
+constexpr double rest_begins_s = 0.4;
 
 constexpr double step_rad = 0.0025;  // between angles of the brute force
 
