@@ -163,7 +163,7 @@ void state(const std::string& name, const touch& t, const schedule& s, findings&
     if (t.time_s[i] < s.down || t.time_s[i] > s.lift) continue;
     held += 1.0;
     kept += t.contacts[i] > 0.0 && t.normal_n[i] > 0.0 ? 1.0 : 0.0;
-    off_middle_m = std::max(off_middle_m, t.off_middle_m[i]);
+    if (t.time_s[i] > s.rock) off_middle_m = std::max(off_middle_m, t.off_middle_m[i]);
     low_m = std::min(low_m, t.lean_lever_m[i]);
     high_m = std::max(high_m, t.lean_lever_m[i]);
     if (std::fabs(t.lean_rad[i]) < 0.5 * rock_rad) continue;
@@ -190,7 +190,8 @@ void state(const std::string& name, const touch& t, const schedule& s, findings&
                         1e3 * (high_m - low_m), 1e3 * face_half_m));
   // The furthest point is a corner. While the hammer leans it hangs lower than the middle, by the relief more, and a
   // force that slants by 45 degrees there passes the middle's height that much further out.
-  to.push_back(at_most("on_face_" + name, "largest distance of the centre of pressure from the face's middle, mm",
+  to.push_back(at_most("on_face_" + name,
+                       "largest distance of the centre of pressure from the face's middle while it rocks, mm",
                        1e3 * off_middle_m, 1e3 * (face_corner_m * (1.0 + rock_rad) + relief_m)));
   // People tell two forces apart from about 7 % on.
   to.push_back(at_most("jump_" + name, "largest change of the force on the hand from one millisecond to the next, N",
