@@ -200,9 +200,9 @@ void state(const std::string& name, const touch& t, const schedule& s, findings&
       at_most("energy_" + name, "energy that the hand has got back after the lift, mJ", 1e3 * t.delivered_j, 0.0));
 }
 
-std::vector<double> scaled(const std::vector<double>& values, double by) {
+std::vector<double> in_milli(const std::vector<double>& values) {
   std::vector<double> out(values);
-  for (double& v : out) v *= by;
+  for (double& v : out) v *= 1e3;
   return out;
 }
 
@@ -244,11 +244,11 @@ result<findings> run_hammer(workbench& bench) {
     if (f.page.x.empty()) {
       f.page.x = touched->time_s;
       f.page.panels[0].lines.push_back(
-          {"full resolution", scaled(touched->drop_height_m, 1e3), touched->asked_s, command::plot_style::dashed});
+          {"full resolution", in_milli(touched->drop_height_m), touched->asked_s, command::plot_style::dashed});
     }
-    f.page.panels[0].lines.push_back({kind.says, scaled(touched->height_m, 1e3)});
+    f.page.panels[0].lines.push_back({kind.says, in_milli(touched->height_m)});
     f.page.panels[1].lines.push_back({kind.says, touched->normal_n});
-    f.page.panels[2].lines.push_back({kind.says, scaled(touched->lean_lever_m, 1e3)});
+    f.page.panels[2].lines.push_back({kind.says, in_milli(touched->lean_lever_m)});
   }
   out.figures.push_back(std::move(f));
   return out;
