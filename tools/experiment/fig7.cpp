@@ -101,6 +101,7 @@ figure all_figure(const std::vector<ridden>& all) {
   for (const ridden& r : all) {
     command::plot_panel panel{"z (mm)", {{r.kind.says, scaled(r.motion.moved_m[2], 1e3)}}};
     panel.x = r.motion.time_s;
+    panel.x_label = "time (s)";  // not all rides are as long
     f.page.panels.push_back(std::move(panel));
   }
   f.page.x = all.front().motion.time_s;

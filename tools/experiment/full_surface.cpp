@@ -6,7 +6,7 @@
 
 namespace asperity::experiment {
 
-constexpr double nothing = -std::numeric_limits<double>::infinity();
+static constexpr double no_surface_m = -std::numeric_limits<double>::infinity();
 
 surface_from_above::surface_from_above(const triangle_mesh& full, const pose& T_wb, const vec3& middle_m, double half_m,
                                        double step_m)
@@ -14,7 +14,7 @@ surface_from_above::surface_from_above(const triangle_mesh& full, const pose& T_
       y0_(middle_m.y - half_m),
       step_(step_m),
       n_(static_cast<long>(std::ceil(2.0 * half_m / step_m)) + 1),
-      z_(static_cast<std::size_t>(n_ * n_), nothing) {
+      z_(static_cast<std::size_t>(n_ * n_), no_surface_m) {
   std::vector<vec3> placed;
   placed.reserve(full.positions.size());
   for (const vec3& p : full.positions) placed.push_back(T_wb * p);
@@ -46,14 +46,14 @@ void surface_from_above::draw(const vec3& a, const vec3& b, const vec3& c) {
 double surface_from_above::height(double x_m, double y_m) const noexcept {
   const double u = (x_m - x0_) / step_, v = (y_m - y0_) / step_;
   const auto i = static_cast<long>(std::floor(u)), j = static_cast<long>(std::floor(v));
-  if (i < 0 || j < 0 || i + 1 >= n_ || j + 1 >= n_) return nothing;
+  if (i < 0 || j < 0 || i + 1 >= n_ || j + 1 >= n_) return no_surface_m;
   const double s = u - static_cast<double>(i), t = v - static_cast<double>(j);
   return (1.0 - t) * ((1.0 - s) * at(i, j) + s * at(i + 1, j)) + t * ((1.0 - s) * at(i, j + 1) + s * at(i + 1, j + 1));
 }
 
 double depth_along_z(const surface_from_above& fixed, const std::vector<vec3>& points_a, const pose& T_wa) noexcept {
   const mat3 r = glm::mat3_cast(T_wa.rotation);
-  double deepest = nothing;
+  double deepest = no_surface_m;
   for (const vec3& p_a : points_a) {
     const vec3 p = r * p_a + T_wa.position;
     deepest = std::max(deepest, fixed.height(p.x, p.y) - p.z);
