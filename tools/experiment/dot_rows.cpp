@@ -7,7 +7,7 @@ namespace asperity::experiment {
 namespace {
 
 constexpr double row_pitch_m = 2.4e-3;
-constexpr double run_out_m = 2e-3;  // of the hand beyond the ends of a row, onto the flat
+constexpr double off_the_end_m = 2e-3;  // of the hand beyond the ends of a row, onto the flat
 
 double height_over(const vec2& p) {
   const double row = std::round(p.y / row_pitch_m + 0.5 * static_cast<double>(dot_rows::count - 1));
@@ -43,7 +43,7 @@ double dot_rows::drop_spacing_m(double ball_m) {
 void add_rows(stroking& how, const std::vector<std::size_t>& rows, double speed_m_per_s, double push_n,
               int first_felt) {
   constexpr double across_m_per_s = 0.06;
-  const double end_m = 0.5 * dot_rows::length_m + run_out_m;
+  const double end_m = 0.5 * dot_rows::length_m + off_the_end_m;
   if (how.strokes.empty()) how.from_m = {-end_m, dot_rows::y_m(rows.front())};
   double side = how.strokes.empty() || how.strokes.back().to_m.x < 0.0 ? -1.0 : 1.0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
