@@ -23,6 +23,9 @@ class chosen_renderer {
       : chosen_renderer(std::move(r)) {
     gpu_ = std::move(gpu);
   }
+  /// Anything else with step(), scene() and memory_bytes(): what changes the ticks of another renderer, for instance.
+  template <class Renderer>
+  chosen_renderer(std::in_place_type_t<Renderer>, Renderer r) : kind_(std::make_unique<held<Renderer>>(std::move(r))) {}
 
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept { return kind_->step(at, out); }
   [[nodiscard]] const asperity::scene& scene() const noexcept { return kind_->scene(); }

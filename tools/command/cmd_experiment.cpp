@@ -37,23 +37,42 @@ result<void> prepare(const fs::path& folder) {
   return check_writable(folder / "index.html");
 }
 
+std::string full_name(const experiment::published& one, const experiment::statement& s) {
+  return std::string(one.what->name) + '/' + s.name;
+}
+
 // What a person wants to know first: does it hold, and if not, where.
-void tell(const experiment::published& one, answer& out) {
+void tell(const experiment::published& one, answer& out, std::vector<std::string>& failed) {
   std::size_t held = 0;
   for (const experiment::statement& s : one.found.statements) held += s.holds() ? 1U : 0U;
   out.text += std::string(one.what->name) + ": " + one.what->title + ", " + std::to_string(held) + " of " +
               std::to_string(one.found.statements.size()) + " statements hold\n";
-  json statements = json::array();
   for (const experiment::statement& s : one.found.statements) {
     out.text +=
         row(s.name, brief(s.value) + " (" + bound_text(s) + ")" + (s.holds() ? "" : "  FAILS") + "  " + s.claim);
-    statements.push_back({{"name", s.name}, {"value", s.value}, {"pass", s.holds()}});
+    if (!s.holds()) failed.push_back(full_name(one, s));
   }
   for (const std::string& note : one.found.notes) out.text += "  note: " + note + "\n";
-  out.document["experiments"].push_back({{"name", one.what->name},
-                                         {"pass", held == one.found.statements.size()},
-                                         {"statements", std::move(statements)},
-                                         {"notes", one.found.notes}});
+  out.document["experiments"].push_back(to_json(one));
+}
+
+std::string complaint_of(const std::vector<std::string>& failed) {
+  constexpr std::size_t named = 3;
+  std::string out =
+      failed.size() == 1 ? "a statement does not hold: " : std::to_string(failed.size()) + " statements do not hold: ";
+  for (std::size_t i = 0; i < std::min(named, failed.size()); ++i) out += (i == 0 ? "" : ", ") + failed[i];
+  if (failed.size() > named) out += " and " + std::to_string(failed.size() - named) + " more";
+  return out + "; see the lines that end in FAILS, or verdict.json";
+}
+
+// Of those that were asked for, the ones that are not there.
+std::string missing(const std::vector<experiment::published>& done, const error& why) {
+  std::string names;
+  for (const experiment::experiment& e : all_experiments()) {
+    const bool is_there = std::any_of(done.begin(), done.end(), [&](const auto& one) { return one.what == &e; });
+    if (!is_there) names += (names.empty() ? "" : ", ") + std::string(e.name);
+  }
+  return "Missing: " + names + ". The run ended before: " + why.message + ".";
 }
 
 result<answer> run_experiments(const experiment_command& options, const common_options& common) {
@@ -69,26 +88,43 @@ result<answer> run_experiments(const experiment_command& options, const common_o
                                .make_renderer = {},
                                .progress = [&](std::string_view what, double done) { progress.show(what, done); },
                                .cancelled = [] { return interrupted(); }});
+  experiment::page_facts facts{ASPERITY_VERSION, experiment::machine_text(), options.brief, {}};
+  const bool all = options.name == "all";
   answer out;
-  out.document = {{"output", options.folder}, {"brief", options.brief}, {"experiments", json::array()}};
+  out.document = {{"output", options.folder},
+                  {"page", all ? json((out_folder / "index.html").string()) : json()},
+                  {"brief", options.brief},
+                  {"machine", facts.machine},
+                  {"experiments", json::array()}};
   std::vector<experiment::published> done;
-  bool all_hold = true;
+  std::vector<std::string> failed;
+  std::optional<error> ended;
   for (const experiment::experiment& e : all_experiments()) {
-    if (options.name != "all" && options.name != e.name) continue;
+    if (!all && options.name != e.name) continue;
     result<experiment::findings> found = e.run(bench);
-    if (!found) return found.error();
+    if (!found) {
+      ended = found.error();
+      break;
+    }
     done.push_back({&e, std::move(found).value()});
-    if (const result<void> written = write_findings(done.back(), out_folder); !written) return written.error();
-    tell(done.back(), out);
-    for (const experiment::statement& s : done.back().found.statements) all_hold = all_hold && s.holds();
+    if (const result<void> written = write_findings(done.back(), out_folder); !written) {
+      done.pop_back();
+      ended = written.error();
+      break;
+    }
+    tell(done.back(), out, failed);
   }
-  if (options.name == "all") {
-    if (const result<void> written = write_page(done, out_folder); !written) return written.error();
+  // The page shows what is there: an older one would belong to other files.
+  if (all && ended) facts.missing = missing(done, *ended);
+  if (all) {
+    const result<void> written = write_page(done, facts, out_folder);
+    if (!written && !ended) return written.error();
     out.text += row("page", (out_folder / "index.html").string());
   }
-  if (!all_hold) {
+  if (ended) return *ended;
+  if (!failed.empty()) {
     out.exit_status = exit_failed;
-    out.complaint = "a statement does not hold: see the lines that end in FAILS, or verdict.json";
+    out.complaint = complaint_of(failed);
   }
   return out;
 }

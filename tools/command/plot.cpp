@@ -8,15 +8,21 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace asperity::command {
 namespace {
 
 // Sizes in points of the SVG and pixels of the PNG.
 constexpr double page_width = 1200.0;
-constexpr double left = 90.0, right = 30.0, top = 92.0, bottom = 55.0;
-constexpr double panel_height = 230.0, panel_gap = 30.0;
+constexpr double left = 90.0, right = 30.0, bottom = 55.0;
+constexpr double inner_width = page_width - left - right;
+constexpr double panel_height = 230.0;
 constexpr double own_axis_height = 45.0;  // numbers and label under a panel that is not the last
+constexpr double title_size = 19.0, caption_size = 13.0, label_size = 14.0, number_size = 13.0, legend_size = 13.0;
+constexpr double title_row = 24.0, caption_row = 18.0, legend_row = 19.0;
+constexpr double first_row = 34.0, under_head = 12.0, over_panel = 7.0, panel_gap = 11.0;
+constexpr double key_width = 22.0, key_space = 6.0, key_gap = 16.0;
 
 struct colour {
   double r, g, b;
@@ -89,6 +95,11 @@ const std::vector<double>& x_of(const plot_page& page, const plot_panel& panel, 
 
 bool has_own_axis(const plot_panel& panel) { return !panel.x_label.empty(); }
 
+// The last panel that shares the page's axis has its numbers, and so has one over a panel with another axis.
+bool is_numbered(const plot_page& page, std::size_t i) {
+  return i + 1 == page.panels.size() || has_own_axis(page.panels[i]) || has_own_axis(page.panels[i + 1]);
+}
+
 axis x_axis_of(const plot_page& page, const plot_panel& panel) {
   range found;
   for (const plot_line& line : panel.lines) {
@@ -124,32 +135,56 @@ void for_each_rule(const axis& a, Rule rule) {
 
 enum class anchor { start, middle, end };
 
+/// Where everything on the page goes: texts and legends take as many rows as they need.
+struct page_layout {
+  std::vector<std::string> title, caption;                    ///< rows
+  std::vector<std::vector<std::vector<std::size_t>>> legend;  ///< of each panel: rows of lines by number
+  std::vector<double> panel_top;
+  double height = 0.0;
+};
+
 class painter {
  public:
   explicit painter(cairo_t* to) : to_(to) {
     cairo_select_font_face(to_, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
   }
 
-  void paint(const plot_page& page) {
+  /// Needs a context to measure letters with; what is drawn on it does not matter.
+  [[nodiscard]] page_layout arrange(const plot_page& page) {
+    page_layout out{wrapped(page.title, title_size), wrapped(page.caption, caption_size), {}, {}, 0.0};
+    double y = first_row + title_row * static_cast<double>(out.title.size()) +
+               caption_row * static_cast<double>(out.caption.size()) - caption_row + under_head;
+    for (std::size_t i = 0; i < page.panels.size(); ++i) {
+      out.legend.push_back(legend_rows(page.panels[i]));
+      y += legend_row * static_cast<double>(out.legend.back().size()) + over_panel;
+      out.panel_top.push_back(y);
+      const bool last = i + 1 == page.panels.size();
+      y += panel_height + (last ? bottom : panel_gap) + (is_numbered(page, i) && !last ? own_axis_height : 0.0);
+    }
+    out.height = std::ceil(y);
+    return out;
+  }
+
+  void paint(const plot_page& page, const page_layout& at) {
     set(colour{1.0, 1.0, 1.0});
     cairo_paint(to_);
-    text(left, 34.0, page.title, 19.0, anchor::start);
-    text(left, 58.0, page.caption, 13.0, anchor::start);
-    double y_top = top;
+    double y = first_row;
+    for (const std::string& row : at.title) {
+      text(left, y, row, title_size, anchor::start);
+      y += title_row;
+    }
+    for (const std::string& row : at.caption) {
+      text(left, y, row, caption_size, anchor::start);
+      y += caption_row;
+    }
     for (std::size_t i = 0; i < page.panels.size(); ++i) {
-      const bool last = i + 1 == page.panels.size();
-      panel(page, page.panels[i], y_top, last || has_own_axis(page.panels[i]));
-      y_top += height_of(page.panels[i], last) + panel_gap;
+      panel(page, page.panels[i], at.panel_top[i], at.legend[i], is_numbered(page, i));
     }
   }
 
-  /// Height of a panel with the numbers under it that belong to no other.
-  static double height_of(const plot_panel& p, bool last) {
-    return panel_height + (has_own_axis(p) && !last ? own_axis_height : 0.0);
-  }
-
  private:
-  void panel(const plot_page& page, const plot_panel& p, double y_top, bool numbered) {
+  void panel(const plot_page& page, const plot_panel& p, double y_top,
+             const std::vector<std::vector<std::size_t>>& legend_of_lines, bool numbered) {
     const axis x = x_axis_of(page, p), y = y_axis_of(p);
     const double x_right = page_width - right, y_bottom = y_top + panel_height;
     const auto at_x = [&](double v) { return left + x.share(v) * (x_right - left); };
@@ -157,11 +192,11 @@ class painter {
 
     for_each_rule(x, [&](double v, bool main) {
       rule(at_x(v), y_top, at_x(v), y_bottom, main ? grid : fine_grid);
-      if (numbered && main) text(at_x(v), y_bottom + 20.0, number(v, x), 13.0, anchor::middle);
+      if (numbered && main) text(at_x(v), y_bottom + 20.0, number(v, x), number_size, anchor::middle);
     });
     for_each_rule(y, [&](double v, bool main) {
       rule(left, at_y(v), x_right, at_y(v), main ? grid : fine_grid);
-      if (main) text(left - 8.0, at_y(v) + 4.5, number(v, y), 13.0, anchor::end);
+      if (main) text(left - 8.0, at_y(v) + 4.5, number(v, y), number_size, anchor::end);
     });
     if (!y.logarithmic && y.low < 0.0 && y.high > 0.0) rule(left, at_y(0.0), x_right, at_y(0.0), colour{0.6, 0.6, 0.6});
 
@@ -182,14 +217,17 @@ class painter {
     cairo_set_line_width(to_, 1.0);
     cairo_rectangle(to_, left, y_top, x_right - left, panel_height);
     cairo_stroke(to_);
-    legend(p, x_right, y_top - 7.0);
+    legend(p, legend_of_lines, x_right, y_top - over_panel);
     cairo_save(to_);
     cairo_translate(to_, 22.0, 0.5 * (y_top + y_bottom));
     cairo_rotate(to_, -1.5707963267948966);
-    text(0.0, 0.0, p.y_label, 14.0, anchor::middle);
+    // A long one is written smaller: it would run into the neighbour's.
+    text(0.0, 0.0, p.y_label, label_size * std::min(1.0, panel_height / std::max(1.0, width_of(p.y_label, label_size))),
+         anchor::middle);
     cairo_restore(to_);
     if (numbered) {
-      text(0.5 * (left + x_right), y_bottom + 42.0, has_own_axis(p) ? p.x_label : page.x_label, 14.0, anchor::middle);
+      text(0.5 * (left + x_right), y_bottom + 42.0, has_own_axis(p) ? p.x_label : page.x_label, label_size,
+           anchor::middle);
     }
   }
 
@@ -199,14 +237,31 @@ class painter {
     cairo_set_line_width(to_, 1.3);
     cairo_set_line_join(to_, CAIRO_LINE_JOIN_ROUND);
     if (line.style == plot_style::dashed) cairo_set_dash(to_, dashes.data(), static_cast<int>(dashes.size()), 0.0);
-    bool down = false;
-    for (std::size_t i = 0; i < std::min(x.size(), line.y.size()); ++i) {
+    // A curve of many thousand values would make a picture of megabytes: what lies within a tenth of a point of the
+    // last value drawn cannot be seen, and is drawn only where a gap follows.
+    constexpr double unseen = 0.1;
+    const std::size_t count = std::min(x.size(), line.y.size());
+    bool down = false, held_back = false;
+    double last_h = 0.0, last_v = 0.0, pen_h = 0.0, pen_v = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
       const double h = at_x(x[i]), v = at_y(line.y[i]);
       const bool drawn = std::isfinite(h) && std::isfinite(v);
-      if (drawn && down) cairo_line_to(to_, h, v);
-      if (drawn && !down) cairo_move_to(to_, h, v);
+      if (!drawn && held_back) cairo_line_to(to_, last_h, last_v);
+      held_back = drawn && down && std::fabs(h - pen_h) < unseen && std::fabs(v - pen_v) < unseen;
+      if (drawn && !held_back) {
+        if (down) {
+          cairo_line_to(to_, h, v);
+        } else {
+          cairo_move_to(to_, h, v);
+        }
+        pen_h = h;
+        pen_v = v;
+      }
+      last_h = h;
+      last_v = v;
       down = drawn;
     }
+    if (held_back) cairo_line_to(to_, last_h, last_v);
     cairo_stroke(to_);
     cairo_set_dash(to_, nullptr, 0, 0.0);
   }
@@ -223,15 +278,54 @@ class painter {
   }
 
   // Right-aligned above the panel, where no curve can run under the words.
-  void legend(const plot_panel& p, double x_right, double y) {
-    constexpr double size = 13.0, dash = 22.0, space = 6.0, gap = 16.0;
-    double x = x_right + gap;
-    for (const plot_line& line : p.lines) x -= dash + space + width_of(line.label, size) + gap;
-    for (std::size_t i = 0; i < p.lines.size(); ++i) {
-      key(p.lines[i].style, x, y - 4.0, dash, line_colour(i));
-      text(x + dash + space, y, p.lines[i].label, size, anchor::start);
-      x += dash + space + width_of(p.lines[i].label, size) + gap;
+  void legend(const plot_panel& p, const std::vector<std::vector<std::size_t>>& rows, double x_right, double y) {
+    for (std::size_t r = rows.size(); r-- > 0; y -= legend_row) {
+      double x = x_right + key_gap;
+      for (const std::size_t i : rows[r]) x -= entry_width(p.lines[i]);
+      for (const std::size_t i : rows[r]) {
+        key(p.lines[i].style, x, y - 4.0, key_width, line_colour(i));
+        text(x + key_width + key_space, y, p.lines[i].label, legend_size, anchor::start);
+        x += entry_width(p.lines[i]);
+      }
     }
+  }
+
+  [[nodiscard]] double entry_width(const plot_line& line) {
+    return key_width + key_space + width_of(line.label, legend_size) + key_gap;
+  }
+
+  // A line without a label is not in the legend: it goes with another one.
+  [[nodiscard]] std::vector<std::vector<std::size_t>> legend_rows(const plot_panel& p) {
+    std::vector<std::vector<std::size_t>> rows;
+    double used = 0.0;
+    for (std::size_t i = 0; i < p.lines.size(); ++i) {
+      if (p.lines[i].label.empty()) continue;
+      const double width = entry_width(p.lines[i]);
+      if (rows.empty() || used + width > inner_width + key_gap) {
+        rows.emplace_back();
+        used = 0.0;
+      }
+      rows.back().push_back(i);
+      used += width;
+    }
+    return rows;
+  }
+
+  // Broken between words where it is wider than the panels.
+  [[nodiscard]] std::vector<std::string> wrapped(const std::string& words, double size) {
+    std::vector<std::string> rows{""};
+    for (std::size_t from = 0; from < words.size();) {
+      const std::size_t to = std::min(words.find(' ', from), words.size());
+      const std::string word = words.substr(from, to - from);
+      std::string longer = rows.back().empty() ? word : rows.back() + ' ' + word;
+      if (!rows.back().empty() && width_of(longer, size) > inner_width) {
+        rows.push_back(word);
+      } else {
+        rows.back() = std::move(longer);
+      }
+      from = to + 1;
+    }
+    return rows;
   }
 
   void key(plot_style style, double x, double y, double width, colour c) {
@@ -290,33 +384,39 @@ class painter {
 };
 
 struct sink {
-  output_file* file;
+  const plot_writer* write;
   std::optional<error> fault;  // Cairo forgets the reason
 };
 
 cairo_status_t write_some(void* closure, const unsigned char* bytes, unsigned int size) {
   auto& to = *static_cast<sink*>(closure);
-  const result<void> written = to.file->write({reinterpret_cast<const char*>(bytes), size});
+  const result<void> written = (*to.write)({reinterpret_cast<const char*>(bytes), size});
   if (written) return CAIRO_STATUS_SUCCESS;
   to.fault = written.error();
   return CAIRO_STATUS_WRITE_ERROR;
 }
 
+using surface_ptr = std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)>;
+using context_ptr = std::unique_ptr<cairo_t, void (*)(cairo_t*)>;
+
+page_layout arrange(const plot_page& page) {
+  const surface_ptr none(cairo_image_surface_create(CAIRO_FORMAT_RGB24, 1, 1), cairo_surface_destroy);
+  const context_ptr context(cairo_create(none.get()), cairo_destroy);
+  return painter(context.get()).arrange(page);
+}
+
 }  // namespace
 
-result<void> draw(const plot_page& page, plot_format format, output_file& out) {
-  double height = top + bottom - panel_gap;
-  for (std::size_t i = 0; i < page.panels.size(); ++i) {
-    height += painter::height_of(page.panels[i], i + 1 == page.panels.size()) + panel_gap;
-  }
-  sink to{&out, std::nullopt};
-  const std::unique_ptr<cairo_surface_t, void (*)(cairo_surface_t*)> surface(
+result<void> draw(const plot_page& page, plot_format format, const plot_writer& write) {
+  const page_layout at = arrange(page);
+  sink to{&write, std::nullopt};
+  const surface_ptr surface(
       format == plot_format::svg
-          ? cairo_svg_surface_create_for_stream(write_some, &to, page_width, height)
-          : cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(page_width), static_cast<int>(height)),
+          ? cairo_svg_surface_create_for_stream(write_some, &to, page_width, at.height)
+          : cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(page_width), static_cast<int>(at.height)),
       cairo_surface_destroy);
-  const std::unique_ptr<cairo_t, void (*)(cairo_t*)> context(cairo_create(surface.get()), cairo_destroy);
-  painter(context.get()).paint(page);
+  const context_ptr context(cairo_create(surface.get()), cairo_destroy);
+  painter(context.get()).paint(page, at);
   cairo_show_page(context.get());
 
   cairo_status_t status = cairo_status(context.get());
@@ -330,6 +430,10 @@ result<void> draw(const plot_page& page, plot_format format, output_file& out) {
     return error{error_code::io_failed, std::string("the plot could not be drawn: ") + cairo_status_to_string(status)};
   }
   return {};
+}
+
+result<void> draw(const plot_page& page, plot_format format, output_file& out) {
+  return draw(page, format, [&](std::string_view bytes) { return out.write(bytes); });
 }
 
 }  // namespace asperity::command

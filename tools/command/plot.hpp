@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "asperity/core/status.hpp"
@@ -18,7 +20,7 @@ enum class plot_style : std::uint8_t {
 };
 
 struct plot_line {
-  std::string label;
+  std::string label;           ///< empty: not in the legend
   std::vector<double> y;       ///< one value per entry of x; a NaN leaves a gap
   std::vector<double> x = {};  ///< its own; empty: the panel's
   plot_style style = plot_style::line;
@@ -34,7 +36,7 @@ struct plot_panel {
 };
 
 struct plot_page {
-  std::string title;    ///< one sentence: what is to be seen
+  std::string title;    ///< one sentence: what is to be seen; long ones are wrapped
   std::string caption;  ///< how it was made
   std::string x_label;
   std::vector<double> x;  ///< ascending
@@ -43,6 +45,11 @@ struct plot_page {
 
 enum class plot_format { png, svg };
 
+/// Takes the bytes of a picture, in order.
+using plot_writer = std::function<result<void>(std::string_view bytes)>;
+
+/// Draws the page. @return the writer's error | io_failed
+[[nodiscard]] result<void> draw(const plot_page& page, plot_format format, const plot_writer& write);
 /// Writes the page into an open file; the caller commits it. @return io_failed
 [[nodiscard]] result<void> draw(const plot_page& page, plot_format format, output_file& out);
 

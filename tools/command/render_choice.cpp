@@ -118,6 +118,7 @@ depth_settings grid_settings(const render_options& options) {
       gradient_name(options) == "central" ? gradient_scheme::central_difference : gradient_scheme::soft_max;
   settings.parallax = lookup_name(options) == "paper" ? parallax_mode::paper_lookup : parallax_mode::exact;
   if (options.grid) settings.grid = *options.grid;
+  settings.difference_step_m = options.difference_step_m;
   return settings;
 }
 

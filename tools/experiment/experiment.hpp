@@ -22,5 +22,12 @@ struct experiment {
 
 // One source file each.
 [[nodiscard]] result<findings> run_fig7(workbench& bench);
+[[nodiscard]] result<findings> run_fig8(workbench& bench);
+[[nodiscard]] result<findings> run_fig9(workbench& bench);
+[[nodiscard]] result<findings> run_hammer(workbench& bench);
+[[nodiscard]] result<findings> run_roughness(workbench& bench);
+[[nodiscard]] result<findings> run_baselines(workbench& bench);
+[[nodiscard]] result<findings> run_patterns(workbench& bench);
+[[nodiscard]] result<findings> run_stability(workbench& bench);
 
 }  // namespace asperity::experiment

@@ -61,6 +61,8 @@ const char* to_string(relation is) noexcept {
   return "unknown";
 }
 
+}  // namespace
+
 json to_json(const published& one) {
   json statements = json::array();
   bool pass = !one.found.statements.empty();
@@ -82,14 +84,14 @@ json to_json(const published& one) {
           {"notes", one.found.notes}};
 }
 
-}  // namespace
-
 result<void> write_findings(const published& one, const fs::path& out) {
   const fs::path folder = out / one.what->name;
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed)
     return error{error_code::io_failed, "cannot make the folder " + folder.string() + ": " + failed.message()};
+  // One of an earlier run must not stand beside files of this one.
+  fs::remove(folder / "verdict.json", failed);
   for (const table& t : one.found.tables) {
     if (const result<void> written = write_file(folder / (t.name + ".csv"), to_csv(t)); !written) return written;
   }

@@ -25,6 +25,7 @@ result<trial_log> run_trial(command::chosen_renderer feel, trial wanted) {
                             .seconds = wanted.seconds,
                             .contact_period_ns = wanted.contact_period_ns,
                             .contact_one_period_late = wanted.contact_one_period_late,
+                            .hold_wrench = wanted.hold_wrench,
                             .on_tick = [&](const session_record& tick) -> result<void> {
                               if (log.ticks.size() < log.ticks.capacity()) log.ticks.push_back(tick);
                               return {};
@@ -32,7 +33,7 @@ result<trial_log> run_trial(command::chosen_renderer feel, trial wanted) {
                            silent);
   if (!ended) return ended.error();
   if (ended->interrupted) return error{error_code::cancelled, "interrupted: the experiment was not finished"};
-  if (ended->fault != gate_fault::none) {
+  if (ended->fault != gate_fault::none && !wanted.gate_may_shut) {
     return error{error_code::invalid_argument, "the output gate shut after " + std::to_string(ended->ended_at_s) +
                                                    " s (" + to_string(ended->fault) +
                                                    "): the experiment's motion or settings are out of range"};

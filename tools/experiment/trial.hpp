@@ -23,7 +23,9 @@ struct trial {
   double seconds = 1.0;
   std::int64_t contact_period_ns = 1'000'000;
   bool contact_one_period_late = true;  ///< as on a real machine, where a contact takes its time to compute
-  control_config control{};             ///< its map is set by the trial
+  bool hold_wrench = false;    ///< the contact's wrench without its stiffness: what a loop without linear contacts does
+  control_config control{};    ///< its map is set by the trial
+  bool gate_may_shut = false;  ///< that is an outcome, not an error: the log ends there, ended.fault says why
 };
 
 /// Every device tick, and what the loops took.

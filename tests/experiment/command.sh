@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# The command as a user runs it: files, documents, exit statuses, an interrupt.
+#   command.sh ASPERITY FOLDER-OF-MODELS
+set -uo pipefail
+command=$1
+models=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failed=0
+fault() { echo "command.sh: $*"; failed=1; }
+
+# One experiment: its folder, and a document.
+"$command" experiment fig7 --brief --models "$models" -o "$work/one" --json > "$work/one.json" 2> "$work/one.err"
+status=$?
+[[ $status == 0 ]] || fault "fig7 ended with status $status: $(cat "$work/one.err")"
+[[ -s $work/one/fig7/verdict.json ]] || fault "no verdict.json"
+ls "$work"/one/fig7/*.svg "$work"/one/fig7/*.png > /dev/null || fault "no figure"
+[[ ! -e $work/one/index.html ]] || fault "a page was made of one experiment"
+grep -q '"schema": *"asperity.experiment/1"' "$work/one.json" || fault "no schema in $(head -c 200 "$work/one.json")"
+grep -q '"pass": *true' "$work/one.json" || fault "no statement in the document"
+[[ -z $(find "$work/one" -name '*.partial*') ]] || fault "something half-written is left"
+
+# Interrupted while it is at work: what was finished is whole, and the page says what is missing.
+"$command" experiment all --brief --no-gpu --models "$models" -o "$work/all" > "$work/all.out" 2> "$work/all.err" &
+pid=$!
+for ((i = 0; i < 600; ++i)); do
+  [[ -e $work/all/fig7/verdict.json ]] && break
+  kill -0 $pid 2> /dev/null || break
+  sleep 0.1
+done
+kill -INT $pid
+wait $pid
+status=$?
+[[ $status == 130 ]] || fault "interrupted, the status is $status: $(cat "$work/all.err")"
+grep -q 'Missing: ' "$work/all/index.html" || fault "the page does not say what is missing"
+for folder in "$work"/all/*/; do
+  [[ -e $folder/verdict.json ]] || fault "$folder has no verdict.json"
+done
+[[ -z $(find "$work/all" -name '*.partial*') ]] || fault "something half-written is left"
+
+# What is wrong with the command line.
+"$command" experiment fig99 -o "$work/none" > /dev/null 2> "$work/unknown.err"
+[[ $? == 2 ]] || fault "an unknown experiment is no usage error"
+grep -q 'fig7' "$work/unknown.err" || fault "the names are not listed: $(cat "$work/unknown.err")"
+[[ $(wc -l < "$work/unknown.err") == 1 ]] || fault "more than one line: $(cat "$work/unknown.err")"
+"$command" experiment fig7 -o "$work/unknown.err/folder" > /dev/null 2> "$work/folder.err"
+[[ $? == 1 ]] || fault "a folder in a file is no failure"
+grep -q 'unknown.err/folder' "$work/folder.err" || fault "the folder is not named: $(cat "$work/folder.err")"
+exit $failed

@@ -1,0 +1,164 @@
+#include "fig7_ride.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace asperity::experiment {
+namespace {
+
+using models::benchmark;
+
+constexpr double start_m = -2.0 * models::ridge_wavelength_m;                        // in a notch, left of the middle
+constexpr double middles_m = models::gear_radius_m + 0.5 * models::block_size_m[2];  // apart, at mid height of both
+constexpr double shortest_rest_s = 0.05;
+
+// Turned about x by this, what lies on the gear's crown and moves along y lies in the leaning plane.
+double turn_of(const ride_settings& with) { return 0.5 * std::numbers::pi - with.lean_rad; }
+
+// The benchmark's block with ridges that run out into the valleys. Those of the benchmark's own end at mid height: on a
+// gear that is longer than the block, that rim lies on the crests and keeps the ridges from interlocking.
+triangle_mesh block_without_rim() {
+  constexpr double run_out_m = 4e-3;
+  triangle_mesh mesh = models::make_full(benchmark::block);
+  for (vec3& p : mesh.positions) {
+    const double outside = std::copysign(1.0, p.z);
+    if (std::fabs(p.z) < 0.5 * models::block_size_m[2] - 1.01 * models::ridge_amplitude_m) continue;
+    const double s = std::clamp((0.5 * models::block_size_m[0] - std::fabs(p.x)) / run_out_m, 0.0, 1.0);
+    const double ridge = std::cos(2.0 * std::numbers::pi / models::ridge_wavelength_m * p.y);
+    const double share = s * s * (3.0 - 2.0 * s);
+    p.z = outside * (0.5 * models::block_size_m[2] - (1.0 - share) * models::ridge_amplitude_m) +
+          share * models::ridge_amplitude_m * ridge;
+  }
+  return mesh;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b, std::size_t from) {
+  const auto n = static_cast<double>(a.size() - from);
+  double mean_a = 0.0, mean_b = 0.0, ab = 0.0, aa = 0.0, bb = 0.0;
+  for (std::size_t i = from; i < a.size(); ++i) {
+    mean_a += a[i] / n;
+    mean_b += b[i] / n;
+  }
+  for (std::size_t i = from; i < a.size(); ++i) {
+    ab += (a[i] - mean_a) * (b[i] - mean_b);
+    aa += (a[i] - mean_a) * (a[i] - mean_a);
+    bb += (b[i] - mean_b) * (b[i] - mean_b);
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+}  // namespace
+
+ride_axes axes_of(const ride_settings& with) {
+  const double s = std::sin(with.lean_rad), c = std::cos(with.lean_rad);
+  return {vec3(0.0, s, c), vec3(0.0, c, -s)};
+}
+
+result<model_ptr> ride_block(workbench& bench) {
+  bake::bake_options options;
+  options.coarse = models::make_coarse(benchmark::block);
+  options.texture_size = 512;
+  return bench.baked("fig7_block", block_without_rim, std::move(options));
+}
+
+result<ride> draw_over_gear(workbench& bench, const variant& kind, const ride_settings& with) {
+  result<model_ptr> block = ride_block(bench);
+  if (!block) return block.error();
+  result<model_ptr> gear = bench.benchmark(benchmark::gear);
+  if (!gear) return gear.error();
+  result<command::chosen_renderer> feel = bench.make_renderer({*block, {*gear}}, kind);
+  if (!feel) return feel.error();
+
+  // The gear turns with the plane: a crest always points at the block.
+  const ride_axes axes = axes_of(with);
+  const quat turn = exp_rotation(vec3(turn_of(with), 0.0, 0.0));
+  trial t;
+  t.T_wb = {pose{turn, vec3(0.0)}};
+  t.T_wa_start = {turn, start_m * axes.along - (middles_m + 3.0 * models::ridge_amplitude_m) * axes.into};
+  t.seconds = with.seconds;
+  t.contact_period_ns = with.contact_period_ns;
+  t.contact_one_period_late = with.contact_one_period_late;
+  t.control.probe = {with.probe_mass_kg, mat3(4e-4 * with.probe_mass_kg)};
+  t.control.coupling.max_damping_n_s_per_m = 1e3;  // critical whatever the mass: the hand is rigid
+  t.control.coupling.max_damping_n_m_s_per_rad = 1e3;
+  const double push_m = 3.0 * models::ridge_amplitude_m + with.press_n / t.control.coupling.stiffness_n_per_m;
+  t.script = [=, start = t.T_wa_start](double t_s) {
+    const double driven_s = std::max(0.0, t_s - with.drive_from_s);
+    hand_wish wish;
+    wish.T_dh.position = start.position + push_m * std::clamp(t_s / with.touch_s, 0.0, 1.0) * axes.into;
+    wish.T_dh.position += with.drive_m_per_s * driven_s * axes.along;
+    wish.T_dh.position.x += with.sway_m * std::sin(2.0 * std::numbers::pi * driven_s / with.sway_period_s);
+    return wish;
+  };
+  const result<trial_log> log = run_trial(std::move(feel).value(), t);
+  if (!log) return log.error();
+
+  ride out;
+  for (const session_record& r : log->ticks) {
+    const vec3 moved = r.T_wa.position - t.T_wa_start.position;
+    const vec3 hand = r.T_wa_target.position - t.T_wa_start.position;
+    const wrench& w = r.on_probe_w;
+    out.time_s.push_back(1e-9 * static_cast<double>(r.time_ns - log->ticks.front().time_ns));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto axis = static_cast<int>(i);
+      out.moved_m[i].push_back(moved[axis]);
+      out.hand_m[i].push_back(hand[axis]);
+      out.force_n[i].push_back(w.force[axis]);
+    }
+    out.along_m.push_back(start_m + glm::dot(moved, axes.along));
+    out.wind_up_m.push_back(glm::dot(hand - moved, axes.along));
+    out.along_n.push_back(-glm::dot(w.force, axes.along));
+    // The wrench about the point of the mid plane on the gear's crown: what is left of the torque about x is the
+    // normal force times its distance.
+    const wrench about_crown = transport(w, r.T_wa.position, -models::gear_radius_m * axes.into);
+    const double normal_n = -glm::dot(w.force, axes.into);
+    out.pressure_m.push_back(normal_n > 0.0 ? about_crown.torque.x / normal_n : 0.0);
+  }
+  return out;
+}
+
+ride_figures figures_of(const ride& r, const ride_settings& with) {
+  const auto from = static_cast<std::size_t>(std::lower_bound(r.time_s.begin(), r.time_s.end(), with.judged_from_s) -
+                                             r.time_s.begin());
+  const std::size_t n = r.time_s.size();
+  const double slow_m_per_s = 0.2 * with.drive_m_per_s;
+  const std::vector<double>& way = r.along_m;
+
+  ride_figures out;
+  double across = 0.0, largest = 0.0;
+  std::size_t slow = 0, rested = 0;
+  double last_way_m = 0.0, last_length = 0.0;  // of the rest before
+  for (std::size_t i = from; i < n; ++i) {
+    across = std::max(across, std::fabs(r.force_n[0][i]));
+    largest = std::max(largest, std::hypot(r.force_n[0][i], r.force_n[1][i], r.force_n[2][i]));
+    out.pressure_m = std::max(out.pressure_m, std::fabs(r.pressure_m[i]));
+    const bool last = i + 1 == n;
+    const bool rests =
+        !last && std::fabs((way[i + 1] - way[i - 1]) / (r.time_s[i + 1] - r.time_s[i - 1])) < slow_m_per_s;
+    slow += rests ? 1U : 0U;
+    rested = rests ? rested + 1 : rested;
+    if (rests) continue;
+    if (rested > 0 && r.time_s[i - 1] - r.time_s[i - rested] >= shortest_rest_s) {
+      const std::size_t middle = i - (rested + 1) / 2;
+      const auto length = static_cast<double>(rested);
+      // Slow, a little faster and slow again in the same notch is one rest.
+      if (!out.rest_z_m.empty() && way[middle] - last_way_m < 0.5 * models::ridge_wavelength_m) {
+        out.rest_z_m.back() += length / (last_length + length) * (r.moved_m[2][middle] - out.rest_z_m.back());
+        last_length += length;
+      } else {
+        out.rest_z_m.push_back(r.moved_m[2][middle]);
+        last_length = length;
+      }
+      last_way_m = way[middle];
+    }
+    rested = 0;
+  }
+  out.across_share = across / largest;
+  out.dwell = static_cast<double>(slow) / static_cast<double>(n - from);
+  out.wind_up_correlation = correlation(r.along_n, r.wind_up_m, from);
+  return out;
+}
+
+}  // namespace asperity::experiment
