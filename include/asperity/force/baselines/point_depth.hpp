@@ -95,8 +95,10 @@ class point_depth {
       const vec3 &a = t.corner[k], &b = t.corner[(k + 1) % 3];
       return (b.x - a.x) * (at.y - a.y) - (b.y - a.y) * (at.x - a.x);
     };
-    const double s0 = side(0), s1 = side(1), s2 = side(2);
-    return (s0 >= 0.0 && s1 >= 0.0 && s2 >= 0.0) || (s0 <= 0.0 && s1 <= 0.0 && s2 <= 0.0);
+    // A point on a shared edge belongs to both triangles, whatever rounding makes of it.
+    const double s0 = side(0), s1 = side(1), s2 = side(2), border = 1e-9 * (s0 + s1 + s2);
+    return border > 0.0 ? (s0 >= -border && s1 >= -border && s2 >= -border)
+                        : (s0 <= -border && s1 <= -border && s2 <= -border);
   }
 
   asperity::scene scene_;
