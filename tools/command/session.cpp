@@ -108,8 +108,8 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
                                   .device_period_ns = device_period_ns,
                                   .contact_period_ns = setup.contact_period_ns,
                                   .contact_one_period_late = setup.contact_one_period_late};
-  virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds, setup.hold_wrench), setup.placement, dev,
-                          setup.control, schedule, keep_last{&last});
+  virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds, setup.hold_wrench),
+                          setup.placement, dev, setup.control, schedule, keep_last{&last});
   std::optional<error> failed;
   const auto step = [&] {
     const double begin = cpu_seconds();
