@@ -27,15 +27,17 @@ double frame_mean(const std::vector<double>& v) {
   return sum / static_cast<double>(v.size());
 }
 
-double contact_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-  const double mean_a = frame_mean(a), mean_b = frame_mean(b);
-  double ab = 0.0, aa = 0.0, bb = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    ab += (a[i] - mean_a) * (b[i] - mean_b);
-    aa += (a[i] - mean_a) * (a[i] - mean_a);
-    bb += (b[i] - mean_b) * (b[i] - mean_b);
+// How much longer the frames with many contacts take than those with few, over how many more contacts they have: 1
+// where the time is in proportion to the contacts.
+double proportion_to_contacts(const std::vector<double>& seconds, const std::vector<double>& contacts) {
+  const double usual = frame_mean(contacts);
+  std::vector<double> many_s, few_s, many, few;
+  for (std::size_t i = 0; i < seconds.size(); ++i) {
+    (contacts[i] > usual ? many_s : few_s).push_back(seconds[i]);
+    (contacts[i] > usual ? many : few).push_back(contacts[i]);
   }
-  return ab / std::sqrt(aa * bb);
+  if (many.empty() || few.empty()) return 0.0;
+  return frame_mean(many_s) / frame_mean(few_s) / (frame_mean(many) / frame_mean(few));
 }
 
 std::vector<double> frame_difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -90,10 +92,11 @@ void state_texture(const scrubbed& path, const timed_frames& timed, findings& ou
   out.statements.push_back(at_least("texture_costs_most_" + timed.kind.name,
                                     "texture force over collision, medians; " + timed.kind.says,
                                     time_at_share(texture_s, 0.5) / time_at_share(path.collision_s, 0.5), 1.0));
-  out.statements.push_back(
-      at_least("texture_follows_contacts_" + timed.kind.name,
-               "correlation of the time for texture force with the number of contacts; " + timed.kind.says,
-               contact_correlation(texture_s, path.contacts), 0.5));
+  out.statements.push_back(between("texture_follows_contacts_" + timed.kind.name,
+                                   "how many times longer texture force takes in frames with more contacts than usual "
+                                   "than in the others, over how many times more contacts they have; " +
+                                       timed.kind.says,
+                                   proportion_to_contacts(texture_s, path.contacts), 0.85, 1.2));
 }
 
 // Central differences measure the depth at eleven poses, and share what does not depend on the pose.

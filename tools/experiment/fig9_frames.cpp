@@ -19,7 +19,7 @@ using models::benchmark;
 constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr std::int64_t frame_ns = 5'000'000;  // 200 Hz, the better end of the paper's
 constexpr std::size_t frames = 500, frames_brief = 100;
-constexpr std::size_t repeats = 3, repeats_brief = 1;
+constexpr std::size_t repeats = 3;
 
 trial file_in_hole(std::size_t how_many) {
   trial t;
@@ -103,7 +103,7 @@ result<scrubbed> scrub(workbench& bench) {
   if (!log) return log.error();
   constexpr std::size_t ticks_per_frame = frame_ns / command::device_period_ns;
   for (std::size_t i = 0; i < log->ticks.size(); i += ticks_per_frame) path.T_wa.push_back(log->ticks[i].T_wa);
-  time_collision(path, bench.brief() ? repeats_brief : repeats);
+  time_collision(path, repeats);
   return path;
 }
 
@@ -113,7 +113,7 @@ result<timed_frames> time_frames(workbench& bench, const variant& kind, const sc
   const bool on_gpu = kind.may_be_missing;
   const std::size_t stride = on_gpu ? 25 : 1;
   const std::vector<pose> T_wb(1);
-  std::vector<std::vector<double>> runs(on_gpu || bench.brief() ? repeats_brief : repeats);
+  std::vector<std::vector<double>> runs(on_gpu ? 1 : repeats);
   for (std::vector<double>& run : runs) {
     for (std::size_t i = 0; i < path.T_wa.size(); i += stride) {
       tick found;

@@ -11,7 +11,7 @@ namespace asperity::experiment {
 namespace {
 
 constexpr double period_s = 1e-9 * static_cast<double>(command::device_period_ns);
-constexpr double softest_n_per_m = 100.0, stiffest_n_per_m = 2e5;
+constexpr double softest_coupling_n_per_m = 100.0, stiffest_coupling_n_per_m = 2e5;
 
 trial kicked_hand(double stiffness_n_per_m, double damping_n_s_per_m) {
   trial t;
@@ -60,7 +60,7 @@ result<bool> comes_to_rest(const notch& where, double stiffness_n_per_m, double 
 
 // The largest stiffness at which `holds` is true, to `steps` halvings of the range.
 result<double> largest_stable(const std::function<result<bool>(double)>& holds, int steps) {
-  double low = softest_n_per_m, high = stiffest_n_per_m;
+  double low = softest_coupling_n_per_m, high = stiffest_coupling_n_per_m;
   for (int i = 0; i < steps; ++i) {
     const double middle = std::sqrt(low * high);
     const result<bool> held = holds(middle);
