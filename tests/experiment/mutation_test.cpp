@@ -27,8 +27,8 @@ struct watch {
 };
 
 constexpr watch watches[] = {
-    {mutation::no_transport, "baselines"}, {mutation::flipped_normal, "fig7"},    {mutation::nearest_texel, "fig8"},
-    {mutation::one_sided, "fig8"},         {mutation::no_curvature, "stability"},
+    {mutation::no_transport, "hammer"}, {mutation::flipped_normal, "baselines"}, {mutation::nearest_texel, "fig8"},
+    {mutation::one_sided, "fig8"},      {mutation::no_curvature, "stability"},
 };
 
 workbench bench_with(mutation how) {
