@@ -230,6 +230,7 @@ result<findings> run_hammer(workbench& bench) {
   f.page.panels = {{"height (mm)", {}}, {"normal force (N)", {}}, {"centre of pressure (mm)", {}}};
   const std::unique_ptr<originals> full = full_resolution();
   const schedule s = times(bench.brief());
+  command::plot_line full_height;  // drawn last, so that each renderer has one colour in all panels
   for (const variant& kind : bench.variants()) {
     if (const result<void> on = bench.go_on(); !on) return on.error();
     bench.progress("hammer, " + kind.says, 0.0);
@@ -243,13 +244,14 @@ result<findings> run_hammer(workbench& bench) {
     out.tables.push_back(numbers_of(kind.name, *touched));
     if (f.page.x.empty()) {
       f.page.x = touched->time_s;
-      f.page.panels[0].lines.push_back(
-          {"full resolution", in_milli(touched->drop_height_m), touched->asked_s, command::plot_style::dashed});
+      full_height = {"full resolution", in_milli(touched->drop_height_m), touched->asked_s,
+                     command::plot_style::dashed};
     }
     f.page.panels[0].lines.push_back({kind.says, in_milli(touched->height_m)});
     f.page.panels[1].lines.push_back({kind.says, touched->normal_n});
     f.page.panels[2].lines.push_back({kind.says, in_milli(touched->lean_lever_m)});
   }
+  f.page.panels[0].lines.push_back(std::move(full_height));
   out.figures.push_back(std::move(f));
   return out;
 }
