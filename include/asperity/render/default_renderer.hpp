@@ -34,7 +34,8 @@ namespace detail {
   bool all = cells != nullptr && bodies.probe && cells->probe && cells->fixed.size() == bodies.fixed.size();
   for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && cells->fixed[b];
   if (all) return {};
-  return error{error_code::invalid_argument, "the cells are not as many as the scene's bodies: cut these bodies, make_cell_scene() does"};
+  return error{error_code::invalid_argument,
+               "the cells are not as many as the scene's bodies: cut these bodies, make_cell_scene() does"};
 }
 
 /// Softness of the shared maximum for a scene, the automatic one filled in. One for all bodies, whatever the pose.
@@ -54,7 +55,8 @@ namespace detail {
 /// The default renderer for a scene whose models were cut before, by make_cell_scene(); its ticks' memory is taken
 /// here. Cutting takes about a second per model: several renderers of the same bodies can share the cells, and their
 /// memory.
-/// @pre cells are of these bodies, in their order; whether they are as many is checked, whether they are the same is not
+/// @pre cells are of these bodies, in their order; whether they are as many is checked, whether they are the same is
+/// not
 /// @return invalid_argument (no probe, no fixed body, cells missing, a setting out of range)
 [[nodiscard]] inline result<renderer> make_renderer(scene bodies, std::shared_ptr<const cell_scene> cells,
                                                     const renderer_settings& settings) {
