@@ -21,8 +21,7 @@ namespace {
 // A renderer with a stopwatch around it, so that no tick has to read a clock itself.
 class timed_renderer {
  public:
-  timed_renderer(chosen_renderer feel, std::vector<double>& seconds, bool hold_wrench = false)
-      : feel_(std::move(feel)), seconds_(&seconds), hold_wrench_(hold_wrench) {}
+  timed_renderer(chosen_renderer feel, std::vector<double>& seconds) : feel_(std::move(feel)), seconds_(&seconds) {}
 
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     const double begin = cpu_seconds();
@@ -30,7 +29,6 @@ class timed_renderer {
     const double taken = cpu_seconds() - begin;
     taken_ += taken;
     if (seconds_->size() < seconds_->capacity()) seconds_->push_back(taken);
-    if (hold_wrench_) out.force.stiffness = {};
     return s;
   }
 
@@ -40,7 +38,6 @@ class timed_renderer {
  private:
   chosen_renderer feel_;
   std::vector<double>* seconds_;
-  bool hold_wrench_;
   double taken_ = 0.0;
 };
 
@@ -108,8 +105,8 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
                                   .device_period_ns = device_period_ns,
                                   .contact_period_ns = setup.contact_period_ns,
                                   .contact_one_period_late = setup.contact_one_period_late};
-  virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds, setup.hold_wrench),
-                          setup.placement, dev, setup.control, schedule, keep_last{&last});
+  virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
+                          setup.control, schedule, keep_last{&last});
   std::optional<error> failed;
   const auto step = [&] {
     const double begin = cpu_seconds();

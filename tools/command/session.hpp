@@ -37,9 +37,6 @@ struct session_setup {
   /// On the virtual clock: a contact is used when its computation is over and not when it begins, as on a real machine.
   bool contact_one_period_late = true;
   std::optional<given_ticks> ticks{};  ///< virtual clock only; without them one every device_period_ns
-  /// For experiments: the contact's wrench without its stiffness, so that the probe feels the same wrench until the
-  /// next contact, as in a loop that knows no linear contact.
-  bool hold_wrench = false;
   /// Told of every device tick, outside it and in order. An error ends the session.
   std::function<result<void>(const session_record&)> on_tick;
 };

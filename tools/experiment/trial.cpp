@@ -5,8 +5,31 @@
 #include <utility>
 
 namespace asperity::experiment {
+namespace {
+
+/// Another renderer's wrench without its stiffness.
+class held_wrench {
+ public:
+  explicit held_wrench(command::chosen_renderer inner) : inner_(std::move(inner)) {}
+
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
+    const status s = inner_.step(at, out);
+    out.force.stiffness = {};
+    return s;
+  }
+  [[nodiscard]] const asperity::scene& scene() const noexcept { return inner_.scene(); }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept { return inner_.memory_bytes(); }
+
+ private:
+  command::chosen_renderer inner_;
+};
+
+}  // namespace
 
 result<trial_log> run_trial(command::chosen_renderer feel, trial wanted) {
+  if (wanted.hold_wrench) {
+    feel = command::chosen_renderer(std::in_place_type<held_wrench>, held_wrench(std::move(feel)));
+  }
   const vec3 centre_a = feel.scene().probe->mass.centre_of_mass;
   const quat& r = wanted.T_wa_start.rotation;
   wanted.control.map = {.T_wd = pose{}, .scale = 1.0, .T_ha = {r, -(r * centre_a)}};
@@ -25,7 +48,6 @@ result<trial_log> run_trial(command::chosen_renderer feel, trial wanted) {
                             .seconds = wanted.seconds,
                             .contact_period_ns = wanted.contact_period_ns,
                             .contact_one_period_late = wanted.contact_one_period_late,
-                            .hold_wrench = wanted.hold_wrench,
                             .on_tick = [&](const session_record& tick) -> result<void> {
                               if (log.ticks.size() < log.ticks.capacity()) log.ticks.push_back(tick);
                               return {};
