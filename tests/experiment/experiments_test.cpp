@@ -19,6 +19,7 @@ TEST_P(experiments, every_statement_holds) {
   workbench bench({.models = ASPERITY_EXPERIMENT_MODELS_DIR,
                    .brief = true,
                    .gpu = false,
+                   .variants = {},
                    .make_renderer = {},
                    .progress = {},
                    .cancelled = {}});

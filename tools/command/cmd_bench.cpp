@@ -1,19 +1,15 @@
 // asperity bench: what a contact costs, stage by stage, on this machine.
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <utility>
 
-#include "asperity/bake/bake.hpp"
 #include "asperity/depth/settings.hpp"
-#include "asperity/io/textured_model_file.hpp"
 #include "backend_report.hpp"
-#include "benchmark_models.hpp"
 #include "cli.hpp"
 #include "interrupt.hpp"
 #include "model_report.hpp"
+#include "model_shelf.hpp"
 #include "options.hpp"
-#include "output_file.hpp"
 #include "progress.hpp"
 #include "scene_loading.hpp"
 #include "stage_times.hpp"
@@ -22,8 +18,6 @@
 
 namespace asperity::command {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct bench_command {
   std::string probe;
@@ -36,39 +30,15 @@ struct bench_command {
   std::optional<std::size_t> repeats;
 };
 
-/// Bakes a benchmark model, or takes it from the folder of baked models.
-result<model_ptr> benchmark_model(models::benchmark which, const bench_command& options, progress_line& progress) {
-  const std::string name(models::to_string(which));
-  const fs::path kept = options.models.empty() ? fs::path() : fs::path(options.models) / (name + ".glb");
-  std::error_code ignored;
-  if (!kept.empty() && fs::exists(kept, ignored)) {
-    result<textured_model> loaded = io::load_textured_model(kept);
-    if (!loaded) return loaded.error();
-    return model_ptr(std::make_shared<const textured_model>(std::move(loaded).value()));
-  }
-  if (!kept.empty()) {
-    if (const result<void> ok = check_writable(kept); !ok) return ok.error();
-  }
-  bake::bake_options settings;
-  settings.name = name;
-  settings.triangles = models::coarse_triangle_count(which);
-  settings.progress = [&](std::string_view stage, double done) {
-    progress.show("baking " + name + ", " + std::string(stage), done);
-    return !interrupted();
-  };
-  result<textured_model> baked = bake::bake(models::make_full(which), settings);
-  if (!baked) return baked.error();
-  if (!kept.empty()) {
-    if (const result<void> saved = io::save_textured_model(*baked, kept); !saved) return saved.error();
-  }
-  return model_ptr(std::make_shared<const textured_model>(std::move(baked).value()));
-}
-
 result<scene> bench_scene(const bench_command& options, progress_line& progress) {
   if (!options.probe.empty()) return load_scene(options.probe, {options.fixed}, false);
-  result<model_ptr> probe = benchmark_model(models::benchmark::file, options, progress);
+  experiment::model_shelf shelf(options.models, [&](std::string_view what, double done) {
+    progress.show(what, done);
+    return !interrupted();
+  });
+  result<model_ptr> probe = shelf.benchmark(models::benchmark::file);
   if (!probe) return probe.error();
-  result<model_ptr> fixed = benchmark_model(models::benchmark::cad_part, options, progress);
+  result<model_ptr> fixed = shelf.benchmark(models::benchmark::cad_part);
   if (!fixed) return fixed.error();
   return scene{std::move(probe).value(), {std::move(fixed).value()}};
 }

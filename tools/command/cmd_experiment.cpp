@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
-#include <system_error>
 #include <vector>
 
 #include "cli.hpp"
@@ -26,16 +25,6 @@ struct experiment_command {
   bool brief = false;
   bool no_gpu = false;
 };
-
-result<void> prepare(const fs::path& folder) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) {
-    return error{error_code::io_failed, "cannot make the folder " + folder.string() + ": " + failed.message() +
-                                            "; give a folder, or a name in an existing, writable one"};
-  }
-  return check_writable(folder / "index.html");
-}
 
 std::string full_name(const experiment::published& one, const experiment::statement& s) {
   return std::string(one.what->name) + '/' + s.name;
@@ -78,13 +67,16 @@ std::string missing(const std::vector<experiment::published>& done, const error&
 result<answer> run_experiments(const experiment_command& options, const common_options& common) {
   const fs::path out_folder(options.folder);
   const fs::path models_folder = options.models.empty() ? out_folder / "models" : fs::path(options.models);
-  if (const result<void> ready = prepare(out_folder); !ready) return ready.error();
-  if (const result<void> ready = prepare(models_folder); !ready) return ready.error();
+  for (const fs::path& folder : {out_folder, models_folder}) {
+    if (const result<void> made = make_folder(folder); !made) return made.error();
+  }
+  if (const result<void> ready = check_writable(out_folder / "index.html"); !ready) return ready.error();
 
   progress_line progress(common.quiet);
   experiment::workbench bench({.models = models_folder,
                                .brief = options.brief,
                                .gpu = !options.no_gpu,
+                               .variants = {},
                                .make_renderer = {},
                                .progress = [&](std::string_view what, double done) { progress.show(what, done); },
                                .cancelled = [] { return interrupted(); }});

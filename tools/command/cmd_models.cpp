@@ -1,7 +1,6 @@
 // asperity models: the paper's six benchmark models as files.
 #include <algorithm>
 #include <filesystem>
-#include <system_error>
 #include <vector>
 
 #include "asperity/io/mesh_file.hpp"
@@ -45,19 +44,10 @@ result<std::vector<written_mesh>> write_model(models::benchmark which, const fs:
   return written;
 }
 
-result<void> prepare_folder(const fs::path& folder) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed || !fs::is_directory(folder, failed)) {
-    return error{error_code::io_failed, "cannot make the folder " + folder.string() +
-                                            (failed ? ": " + failed.message() : "") +
-                                            "; give a folder, or a name in an existing, writable one"};
-  }
-  return check_writable(folder / "block.ply");
-}
-
 result<answer> write_models(const models_command& options, const common_options& common) {
-  if (const result<void> ready = prepare_folder(options.folder); !ready) return ready.error();
+  const fs::path folder(options.folder);
+  if (const result<void> made = make_folder(folder); !made) return made.error();
+  if (const result<void> ready = check_writable(folder / "block.ply"); !ready) return ready.error();
 
   progress_line progress(common.quiet);
   answer out;
@@ -71,7 +61,7 @@ result<answer> write_models(const models_command& options, const common_options&
     const std::size_t all = options.only.empty() ? models::all_benchmarks.size() : options.only.size();
     progress.show(name, static_cast<double>(done++) / static_cast<double>(all));
 
-    const auto written = write_model(which, options.folder);
+    const auto written = write_model(which, folder);
     if (!written) return written.error();
     for (const written_mesh& mesh : *written) {
       meshes.push_back({{"name", mesh.name},

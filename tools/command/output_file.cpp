@@ -85,4 +85,13 @@ result<void> check_writable(const fs::path& destination) {
   return {};
 }
 
+result<void> make_folder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (!failed && fs::is_directory(folder, failed)) return {};
+  return error{error_code::io_failed, "cannot make the folder " + folder.string() +
+                                          (failed ? ": " + failed.message() : "") +
+                                          "; give a folder, or a name in an existing, writable one"};
+}
+
 }  // namespace asperity::command

@@ -38,4 +38,7 @@ class output_file {
 /// For results that a library function writes: it opens the file only when the long work is done.
 [[nodiscard]] result<void> check_writable(const std::filesystem::path& destination);
 
+/// Makes the folder, and those above it, where it is not there. @return io_failed with the path and the reason
+[[nodiscard]] result<void> make_folder(const std::filesystem::path& folder);
+
 }  // namespace asperity::command

@@ -6,6 +6,7 @@
 
 #include "experiment.hpp"
 #include "fig7_ride.hpp"
+#include "series.hpp"
 
 namespace asperity::experiment {
 namespace {
@@ -68,12 +69,6 @@ void state(const ridden& r, const ride_settings& with, bool brief, findings& out
                                    1e3 * f.pressure_m, half_wave_mm));
 }
 
-std::vector<double> scaled(const std::vector<double>& values, double by) {
-  std::vector<double> out(values);
-  for (double& v : out) v *= by;
-  return out;
-}
-
 // The paper's two diagrams, positions over forces.
 figure paper_figure(const ridden& r) {
   figure f{"fig7",
@@ -87,12 +82,12 @@ figure paper_figure(const ridden& r) {
   f.page.panels = {{"position (mm)", {}}, {"force (N)", {}}};
   constexpr std::array axes{"x", "y", "z"};
   for (std::size_t i = 0; i < 3; ++i) {
-    f.page.panels[0].lines.push_back({axes[i], scaled(r.motion.moved_m[i], 1e3)});
+    f.page.panels[0].lines.push_back({axes[i], in_milli(r.motion.moved_m[i])});
     f.page.panels[1].lines.push_back({std::string("F_") + axes[i], r.motion.force_n[i]});
   }
   for (std::size_t i = 0; i < 3; ++i) {
     f.page.panels[0].lines.push_back(
-        {std::string(axes[i]) + " of the hand", scaled(r.motion.hand_m[i], 1e3), {}, command::plot_style::dashed});
+        {std::string(axes[i]) + " of the hand", in_milli(r.motion.hand_m[i]), {}, command::plot_style::dashed});
   }
   return f;
 }
@@ -106,7 +101,7 @@ figure all_figure(const std::vector<ridden>& all) {
   f.page.caption = "Height of the block over time, one renderer to a diagram.";
   f.page.x_label = "time (s)";
   for (const ridden& r : all) {
-    command::plot_panel panel{"z (mm)", {{r.kind.says, scaled(r.motion.moved_m[2], 1e3)}}};
+    command::plot_panel panel{"z (mm)", {{r.kind.says, in_milli(r.motion.moved_m[2])}}};
     panel.x = r.motion.time_s;
     panel.x_label = "time (s)";  // not all rides are as long
     f.page.panels.push_back(std::move(panel));
@@ -153,24 +148,19 @@ result<findings> run_fig7(workbench& bench) {
   kinds.push_back(with_wide_step());
   for (variant& kind : kinds) fit_grid(kind);
   std::vector<ridden> all;
-  for (std::size_t i = 0; i < kinds.size(); ++i) {
-    if (const result<void> on = bench.go_on(); !on) return on.error();
-    const variant& kind = kinds[i];
-    bench.progress("fig7, " + kind.says, static_cast<double>(i) / static_cast<double>(kinds.size()));
+  const auto ride_with = [&](const variant& kind) -> result<void> {
     // What draws on a GPU goes half the way: where a program stands in for the GPU, that takes as long as all others.
     const bool brief = bench.brief() || kind.may_be_missing;
     const ride_settings with = settings_for(brief);
     result<ride> motion = draw_over_gear(bench, kind, with);
-    if (!motion && kind.may_be_missing) {
-      out.notes.push_back(kind.name + " was left out: " + motion.error().message);
-      continue;
-    }
     if (!motion) return motion.error();
     const ride_figures figures = figures_of(*motion, with);
     all.push_back({kind, std::move(motion).value(), figures});
-    if (i + 1 < kinds.size()) state(all.back(), with, brief, out);
+    if (kind.name != with_wide_step().name) state(all.back(), with, brief, out);
     out.tables.push_back(numbers_of(all.back()));
-  }
+    return {};
+  };
+  if (const result<void> ran = bench.with_each("fig7", kinds, out, ride_with); !ran) return ran.error();
   out.statements.push_back(
       at_most("creeps_wide_step",
               "the same share where differences are taken over a tenth of the wavelength: too soft "

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "striped_block.hpp"
+
 namespace asperity::experiment {
 namespace {
 
@@ -16,23 +18,6 @@ constexpr double shortest_rest_s = 0.05;
 
 // Turned about x by this, what lies on the gear's crown and moves along y lies in the leaning plane.
 double turn_of(const ride_settings& with) { return 0.5 * std::numbers::pi - with.lean_rad; }
-
-// The benchmark's block with ridges that run out into the valleys. Those of the benchmark's own end at mid height: on a
-// gear that is longer than the block, that rim lies on the crests and keeps the ridges from interlocking.
-triangle_mesh block_without_rim() {
-  constexpr double run_out_m = 4e-3;
-  triangle_mesh mesh = models::make_full(benchmark::block);
-  for (vec3& p : mesh.positions) {
-    const double outside = std::copysign(1.0, p.z);
-    if (std::fabs(p.z) < 0.5 * models::block_size_m[2] - 1.01 * models::ridge_amplitude_m) continue;
-    const double s = std::clamp((0.5 * models::block_size_m[0] - std::fabs(p.x)) / run_out_m, 0.0, 1.0);
-    const double ridge = std::cos(2.0 * std::numbers::pi / models::ridge_wavelength_m * p.y);
-    const double share = s * s * (3.0 - 2.0 * s);
-    p.z = outside * (0.5 * models::block_size_m[2] - (1.0 - share) * models::ridge_amplitude_m) +
-          share * models::ridge_amplitude_m * ridge;
-  }
-  return mesh;
-}
 
 double correlation(const std::vector<double>& a, const std::vector<double>& b, std::size_t from) {
   const auto n = static_cast<double>(a.size() - from);
@@ -56,17 +41,10 @@ ride_axes axes_of(const ride_settings& with) {
   return {vec3(0.0, s, c), vec3(0.0, c, -s)};
 }
 
-result<model_ptr> ride_block(workbench& bench) {
-  bake::bake_options options;
-  options.coarse = models::make_coarse(benchmark::block);
-  options.texture_size = 512;
-  return bench.baked("fig7_block", block_without_rim, std::move(options));
-}
-
 result<ride> draw_over_gear(workbench& bench, const variant& kind, const ride_settings& with) {
-  result<model_ptr> block = ride_block(bench);
+  result<model_ptr> block = striped_block(bench);
   if (!block) return block.error();
-  result<model_ptr> gear = bench.benchmark(benchmark::gear);
+  result<model_ptr> gear = bench.models().benchmark(benchmark::gear);
   if (!gear) return gear.error();
   result<command::chosen_renderer> feel = bench.make_renderer({*block, {*gear}}, kind);
   if (!feel) return feel.error();

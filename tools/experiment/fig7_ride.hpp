@@ -31,9 +31,6 @@ struct ride_axes {
 };
 [[nodiscard]] ride_axes axes_of(const ride_settings& with);
 
-/// The block that is drawn. @return what baking says
-[[nodiscard]] result<model_ptr> ride_block(workbench& bench);
-
 /// One ride, one entry for every device tick.
 struct ride {
   std::vector<double> time_s;

@@ -6,6 +6,7 @@
 
 #include "experiment.hpp"
 #include "fig9_frames.hpp"
+#include "series.hpp"
 #include "text.hpp"
 
 namespace asperity::experiment {
@@ -44,11 +45,6 @@ std::vector<double> frame_difference(const std::vector<double>& a, const std::ve
   std::vector<double> out;
   for (std::size_t i = 0; i < a.size(); ++i) out.push_back(a[i] - b[i]);
   return out;
-}
-
-std::vector<double> in_ms(std::vector<double> seconds) {
-  for (double& t : seconds) t *= 1e3;
-  return seconds;
 }
 
 // A row of the report: a stage at its percentiles.
@@ -121,13 +117,13 @@ figure timing_picture(const scrubbed& path, const timed_frames& soft, const std:
   f.page.x_label = "frame";
   for (std::size_t i = 0; i < path.contacts.size(); ++i) f.page.x.push_back(static_cast<double>(i));
   f.page.panels.push_back({"time (ms)",
-                           {{"total", in_ms(soft.frame_s)},
-                            {"texture force", in_ms(frame_difference(soft.frame_s, path.collision_s))},
-                            {"collision", in_ms(path.collision_s)}}});
+                           {{"total", in_milli(soft.frame_s)},
+                            {"texture force", in_milli(frame_difference(soft.frame_s, path.collision_s))},
+                            {"collision", in_milli(path.collision_s)}}});
   f.page.panels.push_back({"contacts", {{"clusters", path.contacts}}});
   command::plot_panel totals{"total (ms)", {}};
   for (const timed_frames& t : all) {
-    if (t.frame_s.size() == path.contacts.size()) totals.lines.push_back({t.kind.says, in_ms(t.frame_s)});
+    if (t.frame_s.size() == path.contacts.size()) totals.lines.push_back({t.kind.says, in_milli(t.frame_s)});
   }
   f.page.panels.push_back(std::move(totals));
   return f;
@@ -171,15 +167,9 @@ result<findings> run_fig9(workbench& bench) {
       "Time of a frame on " + machine_name(),
       {"stage", "median", "90 %", "99 %", "longest", "median rate over 100, 200 Hz", "99 % rate over 100, 200 Hz"},
       {timing_row("collision", path->collision_s, false)}};
-  for (const variant& usual : bench.variants()) {
-    if (const result<void> on = bench.go_on(); !on) return on.error();
+  const auto time_with = [&](const variant& usual) -> result<void> {
     const variant kind = at_papers_resolution(usual);
-    bench.progress("fig9, " + kind.says, 0.0);
     result<timed_frames> timed = time_frames(bench, kind, *path);
-    if (!timed && kind.may_be_missing) {
-      out.notes.push_back(kind.name + " was left out: " + timed.error().message);
-      continue;
-    }
     if (!timed) return timed.error();
     const bool on_gpu = kind.may_be_missing;
     if (!on_gpu && kind.options.grid) {
@@ -188,7 +178,9 @@ result<findings> run_fig9(workbench& bench) {
     }
     times.rows.push_back(timing_row("total, " + kind.says + (on_gpu ? " (on the wall)" : ""), timed->frame_s, true));
     all.push_back(std::move(timed).value());
-  }
+    return {};
+  };
+  if (const result<void> ran = bench.with_each("fig9", bench.variants(), out, time_with); !ran) return ran.error();
   const timed_frames* soft = find_times(all, paper_soft().name);
   const timed_frames* central = find_times(all, paper_central().name);
   const timed_frames* shared = find_times(all, shared_contacts().name);

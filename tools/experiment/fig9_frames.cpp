@@ -89,9 +89,9 @@ std::string machine_name() {
 }
 
 result<scrubbed> scrub(workbench& bench) {
-  result<model_ptr> file = bench.benchmark(benchmark::file);
+  result<model_ptr> file = bench.models().benchmark(benchmark::file);
   if (!file) return file.error();
-  result<model_ptr> part = bench.benchmark(benchmark::cad_part);
+  result<model_ptr> part = bench.models().benchmark(benchmark::cad_part);
   if (!part) return part.error();
   scrubbed path;
   path.bodies = {*file, {*part}};

@@ -8,6 +8,7 @@
 
 #include "experiment.hpp"
 #include "full_surface.hpp"
+#include "series.hpp"
 #include "trial.hpp"
 
 namespace asperity::experiment {
@@ -83,9 +84,9 @@ struct touch {
 constexpr std::size_t every = 5;
 
 result<touch> touch_ring(workbench& bench, const variant& kind, const originals& full) {
-  result<model_ptr> hammer = bench.benchmark(benchmark::hammer);
+  result<model_ptr> hammer = bench.models().benchmark(benchmark::hammer);
   if (!hammer) return hammer.error();
-  result<model_ptr> torus = bench.benchmark(benchmark::torus);
+  result<model_ptr> torus = bench.models().benchmark(benchmark::torus);
   if (!torus) return torus.error();
   result<command::chosen_renderer> feel = bench.make_renderer({*hammer, {*torus}}, kind);
   if (!feel) return feel.error();
@@ -200,12 +201,6 @@ void state(const std::string& name, const touch& t, const schedule& s, findings&
       at_most("energy_" + name, "energy that the hand has got back after the lift, mJ", 1e3 * t.delivered_j, 0.0));
 }
 
-std::vector<double> in_milli(const std::vector<double>& values) {
-  std::vector<double> out(values);
-  for (double& v : out) v *= 1e3;
-  return out;
-}
-
 table numbers_of(const std::string& name, const touch& t) {
   table out{name, {"time_s", "height_m", "normal_force_n", "contacts", "lean_rad", "lean_lever_m", "off_middle_m"}, {}};
   for (std::size_t i = 0; i < t.time_s.size(); ++i) {
@@ -231,14 +226,8 @@ result<findings> run_hammer(workbench& bench) {
   const std::unique_ptr<originals> full = full_resolution();
   const schedule s = times(bench.brief());
   command::plot_line full_height;  // drawn last, so that each renderer has one colour in all panels
-  for (const variant& kind : bench.variants()) {
-    if (const result<void> on = bench.go_on(); !on) return on.error();
-    bench.progress("hammer, " + kind.says, 0.0);
+  const auto touch_with = [&](const variant& kind) -> result<void> {
     const result<touch> touched = touch_ring(bench, kind, *full);
-    if (!touched && kind.may_be_missing) {
-      out.notes.push_back(kind.name + " was left out: " + touched.error().message);
-      continue;
-    }
     if (!touched) return touched.error();
     state(kind.name, *touched, s, out);
     out.tables.push_back(numbers_of(kind.name, *touched));
@@ -250,7 +239,9 @@ result<findings> run_hammer(workbench& bench) {
     f.page.panels[0].lines.push_back({kind.says, in_milli(touched->height_m)});
     f.page.panels[1].lines.push_back({kind.says, touched->normal_n});
     f.page.panels[2].lines.push_back({kind.says, in_milli(touched->lean_lever_m)});
-  }
+    return {};
+  };
+  if (const result<void> ran = bench.with_each("hammer", bench.variants(), out, touch_with); !ran) return ran.error();
   f.page.panels[0].lines.push_back(std::move(full_height));
   out.figures.push_back(std::move(f));
   return out;

@@ -86,12 +86,10 @@ json to_json(const published& one) {
 
 result<void> write_findings(const published& one, const fs::path& out) {
   const fs::path folder = out / one.what->name;
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed)
-    return error{error_code::io_failed, "cannot make the folder " + folder.string() + ": " + failed.message()};
+  if (const result<void> made = command::make_folder(folder); !made) return made;
   // One of an earlier run must not stand beside files of this one.
-  fs::remove(folder / "verdict.json", failed);
+  std::error_code ignored;
+  fs::remove(folder / "verdict.json", ignored);
   for (const table& t : one.found.tables) {
     if (const result<void> written = write_file(folder / (t.name + ".csv"), to_csv(t)); !written) return written;
   }

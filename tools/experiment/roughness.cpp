@@ -9,6 +9,7 @@
 
 #include "dot_rows.hpp"
 #include "experiment.hpp"
+#include "series.hpp"
 #include "text.hpp"
 
 namespace asperity::experiment {
@@ -88,12 +89,6 @@ struct dot_study {
   }
 };
 
-std::vector<double> in_mm(const std::vector<double>& metres) {
-  std::vector<double> out;
-  for (const double m : metres) out.push_back(1e3 * m);
-  return out;
-}
-
 double smallest_step(const std::vector<double>& values) {
   double out = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < values.size(); ++i) out = std::min(out, values[i] - values[i - 1]);
@@ -110,7 +105,7 @@ result<spacing_curve> balls(dot_study& s, findings& out) {
   f.page.title = "Which spacing of dots shakes the hand most";
   f.page.caption = "Truncated cones 0.46 mm high; a hand of 100 g, 0.6 N, 60 mm/s.";
   command::plot_panel curves{"normal acceleration, RMS (m/s\u00b2)", {}, "spacing of the dots (mm)", {}, false, false};
-  command::plot_panel peaks{"spacing of the peak (mm)", {}, "radius of the ball (mm)", in_mm(radii), false, false};
+  command::plot_panel peaks{"spacing of the peak (mm)", {}, "radius of the ball (mm)", in_milli(radii), false, false};
   table numbers{"radius", {"radius_mm", "spacing_mm", "normal_rms_m_per_s2"}, {}};
   table peak_numbers{"radius_peaks", {"radius_mm", "peak_spacing_mm", "drop_spacing_mm", "peak_m_per_s2"}, {}};
   std::vector<double> peak_mm, drop_mm, low_mm, high_mm;
@@ -121,7 +116,7 @@ result<spacing_curve> balls(dot_study& s, findings& out) {
     if (!curve) return curve.error();
     if (ball_m == usual_ball_m) usual = *curve;
     curves.lines.push_back(
-        {"radius " + in_mm(ball_m) + " mm", curve->value, in_mm(curve->spacing_m), command::plot_style::marked});
+        {"radius " + in_mm(ball_m) + " mm", curve->value, in_milli(curve->spacing_m), command::plot_style::marked});
     for (std::size_t i = 0; i < curve->value.size(); ++i)
       numbers.rows.push_back({1e3 * ball_m, 1e3 * curve->spacing_m[i], curve->value[i]});
     const curve_peak peak = peak_of(*curve);
@@ -248,7 +243,7 @@ result<void> rates(dot_study& s, const spacing_curve& usual, findings& out) {
   f.page.title = "What the rate of the contacts makes of it";
   f.page.caption = "A ball of 1.5 mm, 0.6 N, 60 mm/s; the device's loop runs at 1 kHz in all of them.";
   f.page.x_label = "spacing of the dots (mm)";
-  f.page.x = in_mm(usual.spacing_m);
+  f.page.x = in_milli(usual.spacing_m);
   command::plot_panel at_once{"used at once: RMS (m/s\u00b2)", {}, {}, {}, false, true};
   command::plot_panel late{"one period late: RMS (m/s\u00b2)", {}, {}, {}, false, true};
   for (command::plot_panel* p : {&at_once, &late})

@@ -68,9 +68,10 @@ void scripted_hand::close() noexcept {
 }
 
 status scripted_hand::read(std::int64_t now_ns, device_sample& in) noexcept {
-  if (machine_.state() != device_state::ready && !may_put_out(machine_.state())) return status::not_ready;
+  if (!measures(machine_.state())) return status::not_ready;
   advance(now_ns);
-  if (sequence_ == 0 || in.host_time_ns != now_ns) ++sequence_;
+  if (sequence_ == 0 || sampled_ns_ != now_ns) ++sequence_;
+  sampled_ns_ = now_ns;
   in.host_time_ns = in.device_time_ns = now_ns;
   in.sequence = sequence_;
   in.lost = 0;
@@ -82,14 +83,14 @@ status scripted_hand::read(std::int64_t now_ns, device_sample& in) noexcept {
 }
 
 status scripted_hand::write(std::int64_t now_ns, const device_command& out) noexcept {
-  if (machine_.state() != device_state::ready && !may_put_out(machine_.state())) return status::not_ready;
+  if (!measures(machine_.state())) return status::not_ready;
   advance(now_ns);
   if (out.frame != wrench_frame::device_base || !is_finite(out.on_hand)) {
     command_ = {};
     machine_.apply(device_event::failed);
     return status::not_finite;
   }
-  const bool zero = out.on_hand.force == vec3(0.0) && out.on_hand.torque == vec3(0.0);
+  const bool zero = is_zero(out.on_hand);
   if (may_put_out(machine_.state())) machine_.apply(zero ? device_event::released : device_event::engaged);
   command_ = may_put_out(machine_.state()) ? out : device_command{};
   return status::ok;

@@ -63,7 +63,7 @@ class scripted_hand {
   pose T_dh_{};
   twist velocity_d_{};
   bool started_ = false;
-  std::int64_t origin_ns_ = 0, at_ns_ = 0;
+  std::int64_t origin_ns_ = 0, at_ns_ = 0, sampled_ns_ = 0;
   std::uint64_t sequence_ = 0;
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "experiment.hpp"
+#include "series.hpp"
 #include "stability_coupling.hpp"
 #include "stability_hold.hpp"
 #include "stability_limits.hpp"
@@ -201,13 +202,10 @@ figure notch_figure(const std::vector<in_notch>& all) {
   for (const in_notch& s : all) {
     const bool shown = s.how.late && s.rate_hz == (s.how.line == contact_line::held ? 200 : 500);
     if (!shown) continue;
-    std::vector<double> y = s.felt.sideways_m, e = s.felt.energy_j;
-    for (double& v : y) v *= 1e3;
-    for (double& v : e) v *= 1e3;
     const std::string label =
         std::string(line_text(s.how.line)) + ", " + std::to_string(s.rate_hz) + " Hz" + (s.how.guard ? ", guard" : "");
-    f.page.panels[0].lines.push_back({label, std::move(y), s.felt.time_s});
-    f.page.panels[1].lines.push_back({label, std::move(e), s.felt.time_s});
+    f.page.panels[0].lines.push_back({label, in_milli(s.felt.sideways_m), s.felt.time_s});
+    f.page.panels[1].lines.push_back({label, in_milli(s.felt.energy_j), s.felt.time_s});
     if (f.page.x.empty()) f.page.x = s.felt.time_s;
   }
   return f;

@@ -133,9 +133,9 @@ result<notch> notch::make(workbench& bench, const variant& kind, bool flat) {
   options.coarse = make_coarse_pad();
   options.texture_size = 256;
   const result<model_ptr> pad =
-      flat ? bench.baked(
+      flat ? bench.models().baked(
                  "flat_pad_10x10x20mm", [] { return make_pad(0.0); }, std::move(options))
-           : bench.baked(
+           : bench.models().baked(
                  "ridged_pad_10x10x20mm", [] { return make_pad(models::ridge_amplitude_m); }, std::move(options));
   if (!pad) return pad.error();
   variant on_pad = kind;

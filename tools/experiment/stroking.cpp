@@ -110,7 +110,7 @@ result<model_ptr> bake_stylus(workbench& bench, double radius_m) {
   options.relief.height_m = [radius_m](const bake::relief_point& p) {
     return p.normal.z < -0.5 ? tip_height(radius_m, std::hypot(p.position.x, p.position.y)) : 0.0;
   };
-  return bench.baked(
+  return bench.models().baked(
       "stylus_" + std::to_string(std::lround(1e6 * radius_m)) + "um", [half] { return box_between(-half, half); },
       std::move(options));
 }
@@ -122,7 +122,7 @@ result<model_ptr> bake_plate(workbench& bench, const std::string& name, const ve
   options.relief.height_m = [height_m = std::move(height_m)](const bake::relief_point& p) {
     return p.normal.z > 0.5 ? height_m(vec2(p.position)) : 0.0;
   };
-  return bench.baked(
+  return bench.models().baked(
       name, [size_m] { return box_between(vec3(-0.5 * size_m, -plate_thickness_m), vec3(0.5 * size_m, 0.0)); },
       std::move(options));
 }

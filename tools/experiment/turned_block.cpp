@@ -13,8 +13,6 @@ namespace {
 using std::numbers::pi;
 
 constexpr double amplitude_m = models::ridge_amplitude_m;
-constexpr double half_x_m = 0.5 * models::block_size_m[0];
-constexpr double half_y_m = 0.5 * models::block_size_m[1];
 constexpr double per_m = 2.0 * pi / models::ridge_wavelength_m;
 
 // The hand takes the block down, waits until it lies still, and turns it at one speed.
@@ -30,19 +28,21 @@ double there_and_back(double travelled, double reach) {
   return std::min(0.0, travelled - 4.0 * reach);
 }
 
-// Height of the block's ridges over mid height; every other side of the block is level.
-double ridges_m(double x, double y) {
-  const double t = std::clamp((half_x_m - std::abs(x)) / models::ridge_fade_m, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t) * amplitude_m * std::cos(per_m * y);
-}
-
-// Peak to valley of the sine with the mean square height of the block's whole surface, its level sides included: what
+// Peak to valley of the sine whose height has the variance of the block's whole surface, its level sides included: what
 // the library measures softness by.
 double relief_m() {
   const auto [lx, ly, lz] = models::block_size_m;
-  const double faded = 2.0 * models::ridge_fade_m * (1.0 - 13.0 / 35.0);  // 13/35: mean square of the fade
-  const double ridged = 2.0 * (lx - faded) * ly / (2.0 * (lx * ly + lx * lz + ly * lz));
-  return 2.0 * amplitude_m * std::sqrt(ridged);
+  constexpr int nx = 400, ny = 380;
+  double height = 0.0, square = 0.0;
+  for (int i = 0; i < nx; ++i) {
+    for (int j = 0; j < ny; ++j) {
+      const ridge_heights h = ridges_at(((i + 0.5) / nx - 0.5) * lx, ((j + 0.5) / ny - 0.5) * ly);
+      height += h.top_m - h.bottom_m;
+      square += h.top_m * h.top_m + h.bottom_m * h.bottom_m;
+    }
+  }
+  const double share = lx * ly / (nx * ny) / (2.0 * (lx * ly + lx * lz + ly * lz));
+  return 2.0 * std::numbers::sqrt2 * std::sqrt(share * square - share * height * share * height);
 }
 
 double turn_about_z(const quat& r) { return 2.0 * std::atan2(r.z, r.w); }
@@ -52,7 +52,7 @@ double turn_about_z(const quat& r) { return 2.0 * std::atan2(r.z, r.w); }
 pose upper_block() { return {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, models::block_size_m[2])}; }
 
 result<scene> block_on_block(workbench& bench) {
-  result<model_ptr> block = bench.benchmark(models::benchmark::block);
+  result<model_ptr> block = striped_block(bench);
   if (!block) return block.error();
   return scene{*block, {*block}};
 }
@@ -108,14 +108,12 @@ result<std::vector<turned_sample>> turn_block(command::chosen_renderer feel, con
   return out;
 }
 
-double ridge_half_length_m() noexcept { return half_x_m - models::ridge_fade_m; }
-
-double saturation_angle_rad() noexcept { return 0.5 * models::ridge_wavelength_m / ridge_half_length_m(); }
+double saturation_angle_rad() noexcept { return 0.5 * models::ridge_wavelength_m / ridge_half_length_m; }
 
 double torque_arm_m(double angle_rad) noexcept {
   if (std::abs(angle_rad) >= saturation_angle_rad()) return 0.0;
-  const double phase = 0.5 * per_m * ridge_half_length_m() * angle_rad;
-  const double arm = amplitude_m * per_m * ridge_half_length_m() * std::cos(phase);
+  const double phase = 0.5 * per_m * ridge_half_length_m * angle_rad;
+  const double arm = amplitude_m * per_m * ridge_half_length_m * std::cos(phase);
   return angle_rad > 0.0 ? -arm : (angle_rad < 0.0 ? arm : 0.0);
 }
 
@@ -130,8 +128,8 @@ rise_by_brute_force::rise_by_brute_force(double reach_rad, depth_kind kind) {
   const double step_m = hard ? 1e-4 : 2e-4;
   const double tau_m = (kind == depth_kind::soft ? 0.02 : 0.05) * relief_m();
   const auto last = static_cast<int>(std::ceil(reach_rad / step_rad)) + 1;
-  const auto nx = static_cast<int>(std::lround(half_x_m / step_m));
-  const auto ny = static_cast<int>(std::lround(half_y_m / step_m));
+  const auto nx = static_cast<int>(std::lround(block_half_m[0] / step_m));
+  const auto ny = static_cast<int>(std::lround(block_half_m[1] / step_m));
   for (int k = 0; k <= last; ++k) {
     const double c = std::cos(k * step_rad), s = std::sin(k * step_rad);
     double largest = 0.0, count = 0.0, sum = 0.0, moment = 0.0;
@@ -140,8 +138,8 @@ rise_by_brute_force::rise_by_brute_force(double reach_rad, depth_kind kind) {
       for (int j = -ny; j < ny; ++j) {
         const double x = (i + 0.5) * step_m, y = (j + 0.5) * step_m;
         const double ax = c * x + s * y, ay = c * y - s * x;
-        if (std::abs(ax) > half_x_m || std::abs(ay) > half_y_m) continue;
-        const double overlap_m = ridges_m(x, y) - ridges_m(ax, ay);
+        if (std::abs(ax) > block_half_m[0] || std::abs(ay) > block_half_m[1]) continue;
+        const double overlap_m = ridges_at(x, y).top_m - ridges_at(ax, ay).bottom_m;
         largest = std::max(largest, overlap_m);
         if (hard) continue;
         const double weight = std::exp(overlap_m / tau_m);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "striped_block.hpp"
 #include "workbench.hpp"
 
 namespace asperity::experiment {
@@ -30,7 +31,7 @@ struct turned_sample {
   double torque_n_m = 0.0;  ///< of the contact on the block, about z
 };
 
-/// Turns the benchmark's block on its twin with this renderer. @param bodies  scene: block on block
+/// Turns the striped block on its twin with this renderer. @param bodies  scene: block on block
 [[nodiscard]] result<std::vector<turned_sample>> turn_block(command::chosen_renderer feel, const turning& how);
 
 /// The scene: the block on a second one.
@@ -38,10 +39,6 @@ struct turned_sample {
 /// Where the upper block lies so that the coarse surfaces of both just meet, their ridges interlocked.
 [[nodiscard]] pose upper_block();
 
-/// Height of the ridges, valley to crest: 2 a. The most that the block can rise.
-inline constexpr double ridge_height_m = 2.0 * models::ridge_amplitude_m;
-/// Half the length over which a ridge has its full height, m: beyond it, it fades out.
-[[nodiscard]] double ridge_half_length_m() noexcept;
 /// Angle from which on somewhere two crests meet, lambda / (2 w), rad.
 [[nodiscard]] double saturation_angle_rad() noexcept;
 /// Torque per newton of normal force about n that geometry asks for, m: minus the slope of the rise. Closed form

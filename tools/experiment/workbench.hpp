@@ -3,15 +3,15 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "asperity/bake/bake.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
-#include "benchmark_models.hpp"
+#include "findings.hpp"
+#include "model_shelf.hpp"
 #include "render_choice.hpp"
 
 namespace asperity::experiment {
@@ -28,6 +28,8 @@ struct workbench_settings {
   std::filesystem::path models;  ///< folder of baked models; what is missing there is baked and kept
   bool brief = false;            ///< a share of each experiment, for tests: fewer variants, shorter motions
   bool gpu = true;               ///< backends on a GPU too, where there is one
+  /// What experiments on forces are run with; empty: the usual ones, see workbench::variants().
+  std::vector<variant> variants;
   /// Makes every renderer; by default the one that the options of the variant ask for. A test that breaks the code on
   /// purpose gives its own.
   std::function<result<command::chosen_renderer>(scene, const variant&)> make_renderer;
@@ -35,26 +37,23 @@ struct workbench_settings {
   std::function<bool()> cancelled;                                   ///< asked between trials
 };
 
-/// Bakes on demand and keeps what it baked. Not for two threads.
+/// Not for two threads.
 class workbench {
  public:
   explicit workbench(workbench_settings settings);
 
-  /// One of the paper's models, baked with the paper's coarse triangle count.
-  /// @return what bake() or the file says | cancelled
-  [[nodiscard]] result<model_ptr> benchmark(models::benchmark which);
-  /// A model of an experiment's own. `name` tells it from every other one, its numbers included: a file of that name is
-  /// taken as it is.
-  [[nodiscard]] result<model_ptr> baked(const std::string& name, const std::function<triangle_mesh()>& full,
-                                        bake::bake_options options);
+  [[nodiscard]] model_shelf& models() noexcept { return models_; }
 
   /// The renderer of a variant. @return what its maker says
   [[nodiscard]] result<command::chosen_renderer> make_renderer(scene bodies, const variant& kind) const;
 
   /// The renderers that an experiment on forces is run with: contacts as one potential, the paper's with either
-  /// gradient and, where the run is not brief, those on a GPU. One that may be missing and cannot be made is left out
-  /// of the findings with a note.
-  [[nodiscard]] const std::vector<variant>& variants() const noexcept { return variants_; }
+  /// gradient and, where the run is not brief, those on a GPU.
+  [[nodiscard]] const std::vector<variant>& variants() const noexcept { return settings_.variants; }
+  /// Runs the experiment `name` with one kind after the other. Where one that may be missing fails, `out` gets a note
+  /// that says why it was left out. @return the first other error | cancelled
+  [[nodiscard]] result<void> with_each(std::string_view name, std::span<const variant> kinds, findings& out,
+                                       const std::function<result<void>(const variant&)>& run) const;
   [[nodiscard]] bool brief() const noexcept { return settings_.brief; }
   void progress(std::string_view what, double done) const;
   /// cancelled where somebody wants the experiments to end, else nothing
@@ -62,8 +61,7 @@ class workbench {
 
  private:
   workbench_settings settings_;
-  std::vector<variant> variants_;
-  std::map<std::string, model_ptr, std::less<>> kept_;
+  model_shelf models_;
 };
 
 /// The paper's contacts on the CPU with the soft maximum: for experiments that need one kind only and its contacts.

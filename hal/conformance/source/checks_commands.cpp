@@ -12,8 +12,6 @@ constexpr std::array<const char*, 7> every_command_check{
     "output.follows_command", "command.over_limit",  "command.nan",    "command.infinite",
     "command.wrong_frame",    "command.valid_until", "command.expired"};
 
-bool zero(const wrench& w) noexcept { return w.force == vec3(0.0) && w.torque == vec3(0.0); }
-
 std::string text_of(const wrench& w) {
   const auto vector = [](const vec3& v) {
     return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
@@ -66,7 +64,7 @@ void check_over_limit(subject& device, ledger& found) {
           if ((c.actuated >> i & 1U) == 0 || (component != 6 && component != i)) continue;
           set(asked, i, sign * size * (i < 3 ? c.peak_force_n : c.peak_torque_n_m));
         }
-        if (zero(asked) || !device.reach(device_state::armed)) continue;
+        if (is_zero(asked) || !device.reach(device_state::armed)) continue;
         static_cast<void>(device.tick(asked));
         if (const std::optional<wrench> got = device.applied()) {
           found.look("command.over_limit",
@@ -85,7 +83,7 @@ void check_over_limit(subject& device, ledger& found) {
 void refused(subject& device, ledger& found, const char* check, const asperity_command& c, const std::string& what) {
   const std::int32_t code = device.write(c);
   if (const std::optional<wrench> got = device.applied()) {
-    found.look(check, zero(*got), [&] { return what + " puts out " + text_of(*got); });
+    found.look(check, is_zero(*got), [&] { return what + " puts out " + text_of(*got); });
   }
   found.look(check, code != ASPERITY_OK, [&] { return what + " is answered with ASPERITY_OK"; });
 }
@@ -119,7 +117,7 @@ void check_times(subject& device, ledger& found) {
     c.valid_until_ns = device.clock().now_ns() - late_ns;
     static_cast<void>(device.write(c));
     if (const std::optional<wrench> got = device.applied()) {
-      found.look("command.expired", zero(*got), [&] {
+      found.look("command.expired", is_zero(*got), [&] {
         return "a command that expired " + std::to_string(late_ns) + " ns ago puts out " + text_of(*got);
       });
     }
@@ -136,7 +134,7 @@ void check_times(subject& device, ledger& found) {
   for (int i = 0; i < 4; ++i) device.clock().wait_ns(device.period_ns());
   for (int i = 0; i < 20; ++i) {
     if (const std::optional<wrench> got = device.applied()) {
-      found.look("command.valid_until", zero(*got), [&] {
+      found.look("command.valid_until", is_zero(*got), [&] {
         return text_of(*got) + " are put out " + std::to_string(i + 1) + " periods after valid_until_ns";
       });
     }
@@ -151,7 +149,7 @@ void check_commands(subject& device, ledger& found) {
   const char* why = nullptr;
   if (!device.may_push) {
     why = "a wrench is put out with --hand-held only";
-  } else if (zero(device.small_wrench())) {
+  } else if (is_zero(device.small_wrench())) {
     why = "the device puts out nothing";
   } else if (!device.tells_applied()) {
     why = "the driver has no applied(), so that nobody sees what it puts out";

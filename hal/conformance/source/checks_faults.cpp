@@ -11,7 +11,7 @@ std::string is(const subject& device) { return std::string("the device is ") + t
 
 bool rests(subject& device) {
   const std::optional<wrench> w = device.applied();
-  return !w || (w->force == vec3(0.0) && w->torque == vec3(0.0));
+  return !w || is_zero(*w);
 }
 
 // As far up as may be: active where a wrench may be put out, armed otherwise.

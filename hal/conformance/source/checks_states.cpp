@@ -39,7 +39,7 @@ const char* name_of(call c) noexcept {
 }
 
 expectation expected(device_state s, call c) noexcept {
-  const bool measures = s == device_state::ready || may_put_out(s);
+  const bool measures = asperity::measures(s);
   switch (c) {
     case call::open:
       return s == device_state::present || s == device_state::closed ? expectation{answer::ok, device_state::ready}

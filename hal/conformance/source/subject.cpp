@@ -164,7 +164,7 @@ std::int32_t subject::clear_fault() {
 std::int32_t subject::disarm() {
   const std::int32_t code = tick_call("disarm", [this] { return t_.disarm(handle_); });
   if (const std::optional<wrench> w = applied()) {
-    found_.look("output.zero_after_disarm", w->force == vec3(0.0) && w->torque == vec3(0.0), [&] {
+    found_.look("output.zero_after_disarm", is_zero(*w), [&] {
       return "disarm() left " + newton(glm::length(w->force), "N") + " and " + newton(glm::length(w->torque), "N m");
     });
   }
@@ -178,7 +178,7 @@ void subject::close() {
     return ASPERITY_OK;
   }));
   if (const std::optional<wrench> w = applied()) {
-    found_.look("output.zero_after_close", w->force == vec3(0.0) && w->torque == vec3(0.0), [&] {
+    found_.look("output.zero_after_close", is_zero(*w), [&] {
       return "close() left " + newton(glm::length(w->force), "N") + " and " + newton(glm::length(w->torque), "N m");
     });
   }

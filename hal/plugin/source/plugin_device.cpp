@@ -21,8 +21,6 @@ vec3 within(const vec3& v, double limit) noexcept {
       .value;
 }
 
-bool is_zero(const wrench& w) noexcept { return w.force == vec3(0.0) && w.torque == vec3(0.0); }
-
 }  // namespace
 
 const char* to_string(plugin_fault f) noexcept {
@@ -207,9 +205,7 @@ class plugin_device::body {
  private:
   [[nodiscard]] const asperity_driver& t() const noexcept { return module_->table(); }
 
-  [[nodiscard]] bool measures() const noexcept {
-    return machine_.state() == device_state::ready || may_put_out(machine_.state());
-  }
+  [[nodiscard]] bool measures() const noexcept { return asperity::measures(machine_.state()); }
 
   [[nodiscard]] error fail(const std::string& what) const {
     return {error_code::bad_format, module_->where() + ": the driver " + t().name + " " + what};

@@ -176,9 +176,7 @@ class spring_handle {
  private:
   static constexpr std::int64_t no_output = -1;  // a watchdog that has run out
 
-  [[nodiscard]] bool measures() const noexcept {
-    return machine_.state() == asperity::device_state::ready || asperity::may_put_out(machine_.state());
-  }
+  [[nodiscard]] bool measures() const noexcept { return asperity::measures(machine_.state()); }
 
   // The link failed: what may put out becomes a fault, and stays one.
   [[nodiscard]] asperity::status lost(const char* cause) noexcept {

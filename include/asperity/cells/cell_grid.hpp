@@ -77,7 +77,7 @@ struct cell_grid {
     for (std::size_t j = ny; j-- > 0;) {
       float* const row = f.data() + j * nx;
       if (j + 1 < ny) from_row(row, row + nx);
-      for (std::size_t i = nx - 1; i-- > 0;) row[i] = pulled(row[i], row[i + 1], straight);
+      for (std::size_t i = nx; i-- > 1;) row[i - 1] = pulled(row[i - 1], row[i], straight);
     }
   }
 

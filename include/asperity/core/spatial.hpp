@@ -60,6 +60,8 @@ struct wrench {
 [[nodiscard]] inline twist to_twist(const vec6& v) noexcept { return {v.linear, v.angular}; }
 /// @rt safe
 [[nodiscard]] inline bool is_finite(const wrench& w) noexcept { return is_finite(w.force) && is_finite(w.torque); }
+/// @rt safe
+[[nodiscard]] inline bool is_zero(const wrench& w) noexcept { return w.force == vec3(0.0) && w.torque == vec3(0.0); }
 
 /// The same effort about another point: torque about `to` of a wrench whose torque is about `from` (same frame).
 /// @rt safe

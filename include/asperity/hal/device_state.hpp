@@ -116,6 +116,10 @@ inline constexpr int device_event_count = 11;
   return s == device_state::armed || s == device_state::active;
 }
 
+/// Whether a device in this state answers read() with a sample.
+/// @rt safe
+[[nodiscard]] constexpr bool measures(device_state s) noexcept { return s == device_state::ready || may_put_out(s); }
+
 /// A state that can change through the table only.
 class device_state_machine {
  public:

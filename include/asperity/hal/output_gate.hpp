@@ -183,7 +183,7 @@ class output_gate {
   /// When the first cause was found. @pre fault() is not none
   [[nodiscard]] std::int64_t fault_time_ns() const noexcept { return fault_ns_; }
   /// Whether nothing is put out.
-  [[nodiscard]] bool at_rest() const noexcept { return last_.force == vec3(0.0) && last_.torque == vec3(0.0); }
+  [[nodiscard]] bool at_rest() const noexcept { return is_zero(last_); }
   /// What left last.
   [[nodiscard]] const wrench& last() const noexcept { return last_; }
   /// The ticks up to and including the one that tripped the gate.

@@ -1,8 +1,6 @@
 // Ho, Basdogan and Srinivasan 1999: the magnitude and the direction of the normal force follow a height map.
 #pragma once
 
-#include <cmath>
-
 #include "asperity/force/baselines/point_reading.hpp"
 
 namespace asperity::baselines {

@@ -1,8 +1,6 @@
 // Minsky 1995: a lateral force against the slope of a height map.
 #pragma once
 
-#include <cmath>
-
 #include "asperity/force/baselines/point_reading.hpp"
 
 namespace asperity::baselines {

@@ -86,9 +86,7 @@ class articulated_device {
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return config_.joints.size(); }
-  [[nodiscard]] bool measures() const noexcept {
-    return machine_.state() == device_state::ready || may_put_out(machine_.state());
-  }
+  [[nodiscard]] bool measures() const noexcept { return asperity::measures(machine_.state()); }
 
   void silence() noexcept;
   void fail(const arm_fault& fault) noexcept;
@@ -242,7 +240,7 @@ inline status articulated_device::write(std::int64_t now_ns, const device_comman
   }
   const bool fresh = now_ns_ <= out.valid_until_ns;
   const wrench on_hand = fresh ? out.on_hand : wrench{};
-  const bool zero = on_hand.force == vec3(0.0) && on_hand.torque == vec3(0.0);
+  const bool zero = is_zero(on_hand);
   machine_.apply(zero ? device_event::released : device_event::engaged);
   command_ = out;
   return put_out(on_hand) ? status::ok : status::backend_failed;

@@ -176,9 +176,7 @@ class falcon_device {
     }
   }
 
-  [[nodiscard]] bool measures() const noexcept {
-    return machine_.state() == device_state::ready || may_put_out(machine_.state());
-  }
+  [[nodiscard]] bool measures() const noexcept { return asperity::measures(machine_.state()); }
 
   void measure() noexcept {
     newest_.host_time_ns = wire_.report_ns();

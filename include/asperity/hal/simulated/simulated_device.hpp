@@ -115,7 +115,7 @@ class simulated_device {
       machine_.apply(device_event::failed);
       return status::not_finite;
     }
-    const bool zero = out.on_hand.force == vec3(0.0) && out.on_hand.torque == vec3(0.0);
+    const bool zero = is_zero(out.on_hand);
     machine_.apply(zero ? device_event::released : device_event::engaged);
     command_ = out;
     command_.on_hand = {saturated(out.on_hand.force, config_.capabilities.peak_force_n),
@@ -181,9 +181,7 @@ class simulated_device {
 
   [[nodiscard]] double unit() noexcept { return static_cast<double>(bits_() >> 11) * 0x1.0p-53; }
 
-  [[nodiscard]] bool measures() const noexcept {
-    return machine_.state() == device_state::ready || may_put_out(machine_.state());
-  }
+  [[nodiscard]] bool measures() const noexcept { return asperity::measures(machine_.state()); }
 
   [[nodiscard]] bool fault_at(device_fault kind, std::int64_t now_ns) const noexcept {
     for (const scripted_fault& f : config_.faults) {

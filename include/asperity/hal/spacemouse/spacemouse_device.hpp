@@ -167,7 +167,7 @@ class spacemouse_device {
       fail(spacemouse_fault::bad_command, device_event::failed);
       return status::not_finite;
     }
-    const bool zero = out.on_hand.force == vec3(0.0) && out.on_hand.torque == vec3(0.0);
+    const bool zero = is_zero(out.on_hand);
     machine_.apply(zero ? device_event::released : device_event::engaged);
     shown_ = out.on_hand;
     return status::ok;
@@ -198,9 +198,7 @@ class spacemouse_device {
   // More than the kernel keeps: a device that sends faster than this cannot hold up a tick for ever.
   static constexpr int most_reports_per_read = 128;
 
-  [[nodiscard]] bool measures() const noexcept {
-    return link_ != nullptr && (machine_.state() == device_state::ready || may_put_out(machine_.state()));
-  }
+  [[nodiscard]] bool measures() const noexcept { return link_ != nullptr && asperity::measures(machine_.state()); }
 
   [[nodiscard]] error refused(const char* what) const {
     return {error_code::invalid_argument,
