@@ -82,34 +82,26 @@ class translator {
     return {};
   }
 
-  translation write(bool cut_before_outputs) const {
+  translation write(cut what) const {
     translation out;
     out.lines = lines_;
-    std::set<std::string> cut;
-    if (cut_before_outputs) {
-      for (const auto& [index, value] : stored_) {
-        const auto found = values_.find(value);
-        if (found != values_.end() && found->second.sort == float64 && values_.count(found->second.passed) > 0) {
-          cut.insert(found->second.passed);
-        }
-      }
-    }
-    out.cuts = cut.size();
+    const std::set<std::string> free = values_to_cut(what);
+    out.cuts = free.size();
     std::set<std::string> needed;
     std::vector<std::string> open;
     for (const auto& [index, value] : stored_) open.push_back(value);
     while (!open.empty()) {
       const std::string value = open.back();
       open.pop_back();
-      if (values_.count(value) == 0 || !needed.insert(value).second || cut.count(value) > 0) continue;
+      if (values_.count(value) == 0 || !needed.insert(value).second || free.count(value) > 0) continue;
       for (const std::string& use : values_.at(value).uses) open.push_back(use);
     }
     for (const auto& [name, sort] : arguments_) out.smt += "(declare-const " + name + ' ' + sort + ")\n";
     for (const std::string& name : order_) {
       if (needed.count(name) == 0) continue;
       const definition& d = values_.at(name);
-      out.smt += cut.count(name) > 0 ? "(declare-const " + name + ' ' + d.sort + ")\n"
-                                     : "(define-fun " + name + " () " + d.sort + ' ' + d.term + ")\n";
+      out.smt += free.count(name) > 0 ? "(declare-const " + name + ' ' + d.sort + ")\n"
+                                      : "(define-fun " + name + " () " + d.sort + ' ' + d.term + ")\n";
     }
     for (const auto& [index, value] : stored_) {
       out.smt += "(define-fun " + (*outputs_)[index] + " () " + float64 + ' ' + value + ")\n";
@@ -118,6 +110,24 @@ class translator {
   }
 
  private:
+  std::set<std::string> values_to_cut(cut what) const {
+    std::set<std::string> out;
+    if (what == cut::before_outputs) {
+      for (const auto& [index, value] : stored_) {
+        const auto found = values_.find(value);
+        if (found != values_.end() && found->second.sort == float64 && values_.count(found->second.passed) > 0) {
+          out.insert(found->second.passed);
+        }
+      }
+    }
+    if (what == cut::quotients_and_roots) {
+      for (const auto& [name, value] : values_) {
+        if (value.term.rfind("(fp.div ", 0) == 0 || value.term.rfind("(fp.sqrt ", 0) == 0) out.insert(name);
+      }
+    }
+    return out;
+  }
+
   static error refuse(const char* what, const std::string& line) {
     return {error_code::unsupported, std::string("the IR holds ") + what + ", which is not translated: " + line};
   }
@@ -238,10 +248,10 @@ std::string smt_literal(double x) {
 }
 
 result<translation> to_smt(const std::string& ir, const std::vector<std::string>& inputs,
-                           const std::vector<std::string>& outputs, bool cut_before_outputs) {
+                           const std::vector<std::string>& outputs, cut what) {
   translator t(inputs, outputs);
   if (result<void> read = t.read(ir); !read) return read.error();
-  return t.write(cut_before_outputs);
+  return t.write(what);
 }
 
 }  // namespace asperity::proof

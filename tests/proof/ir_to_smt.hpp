@@ -14,16 +14,21 @@ struct translation {
   std::size_t cuts = 0;   ///< values that were cut
 };
 
+enum class cut {
+  nothing,
+  before_outputs,       ///< what a final select lets through; an output that is not a select is left as it is
+  quotients_and_roots,  ///< the result of every division and square root
+};
+
 /// Translates the one function of `ir`: doubles and i1 in, results stored through its last argument, a double*.
 /// Argument i is called inputs[i], what is stored at element i outputs[i]. Every operation becomes its IEEE 754
 /// counterpart in binary64, rounded to nearest even, as LLVM defines it without fast-math flags.
 ///
-/// With `cut_before_outputs`, the value that a final select lets through is any double whatever: the solver has to
-/// prove the property for more behaviours than the function has, and sees less of it. Where an output is not a select,
-/// nothing is cut.
+/// What is cut is any double whatever: the solver has to prove the property for more behaviours than the function has,
+/// and sees less of it.
 /// @return an error for every instruction that is not understood: nothing is skipped
 [[nodiscard]] result<translation> to_smt(const std::string& ir, const std::vector<std::string>& inputs,
-                                         const std::vector<std::string>& outputs, bool cut_before_outputs);
+                                         const std::vector<std::string>& outputs, cut what);
 
 /// The literal of a double, bit for bit.
 [[nodiscard]] std::string smt_literal(double x);

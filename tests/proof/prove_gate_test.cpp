@@ -109,13 +109,13 @@ class prove_gate : public testing::Test {
   }
 
   // Compiles, translates, asks. The report says what was decided and how long it took.
-  verdict decide(const std::vector<change>& changes, bool cut, const std::string& assumed,
+  verdict decide(const std::vector<change>& changes, cut what, const std::string& assumed,
                  const std::string& violation) {
     if (!compile(changes)) return {};
-    const result<translation> t = to_smt(gate_.ir, inputs, outputs, cut);
+    const result<translation> t = to_smt(gate_.ir, inputs, outputs, what);
     EXPECT_TRUE(t) << t.error().message;
     if (!t) return {};
-    EXPECT_EQ(t->cuts, cut ? 3U : 0U);
+    EXPECT_EQ(t->cuts, what == cut::before_outputs ? 3U : what == cut::quotients_and_roots ? 4U : 0U);
     const bool real = form_ == form::ieee754;
     const std::string question = t->smt + assumed + "(assert " + violation + ")\n";
     const verdict v = ask(*solver_, folder_, real ? question : any_arithmetic(question), inputs, 120);
@@ -131,7 +131,7 @@ class prove_gate : public testing::Test {
   // A broken copy: there has to be a counter-example, and the compiled copy has to do with it what the solver says.
   std::array<double, 5> counter_example(const std::vector<change>& changes, const std::string& assumed,
                                         const std::string& violation) {
-    const verdict v = decide(changes, false, assumed, violation);
+    const verdict v = decide(changes, cut::nothing, assumed, violation);
     if (v.said != answer::refuted) {
       ADD_FAILURE() << "no counter-example";
       return {};
@@ -168,7 +168,7 @@ class prove_gate : public testing::Test {
 
 TEST_F(prove_gate, never_nan_or_infinite) {
   NEEDS_TOOLS();
-  EXPECT_EQ(decide({}, true, assume_limit(), not_finite).said, answer::proved);
+  EXPECT_EQ(decide({}, cut::before_outputs, assume_limit(), not_finite).said, answer::proved);
 }
 
 // In two questions. What passed the certificate is what it measured: that needs no arithmetic, only that the same
@@ -177,21 +177,24 @@ TEST_F(prove_gate, never_nan_or_infinite) {
 TEST_F(prove_gate, never_longer_than_the_limit) {
   NEEDS_TOOLS();
   form_ = form::any_arithmetic;
-  EXPECT_EQ(decide({}, true, certified(1.0), too_long()).said, answer::proved);
+  EXPECT_EQ(decide({}, cut::before_outputs, certified(1.0), too_long()).said, answer::proved);
   form_ = form::ieee754;
-  EXPECT_EQ(decide({}, true, certified(0.0), leaves).said, answer::proved);
-  EXPECT_EQ(decide({}, true, assume_limit() + certified(0.0) + all_zero, too_long()).said, answer::proved);
+  EXPECT_EQ(decide({}, cut::before_outputs, certified(0.0), leaves).said, answer::proved);
+  EXPECT_EQ(decide({}, cut::before_outputs, assume_limit() + certified(0.0) + all_zero, too_long()).said,
+            answer::proved);
 }
 
+// Whatever the factors that shorten are: zero times them is zero, or fails the certificate.
 TEST_F(prove_gate, stale_or_not_finite_from_rest_is_exactly_zero) {
   NEEDS_TOOLS();
-  EXPECT_EQ(decide({}, false, from_rest + "(assert (or (not allowed) " + odd + "))\n", leaves).said, answer::proved);
+  EXPECT_EQ(decide({}, cut::quotients_and_roots, from_rest + "(assert (or (not allowed) " + odd + "))\n", leaves).said,
+            answer::proved);
 }
 
 // Ordinary means below 1e150: a vector longer than that is not believed either.
 TEST_F(prove_gate, says_truly_whether_the_wanted_vector_is_finite) {
   NEEDS_TOOLS();
-  EXPECT_EQ(decide({}, false, "", wrongly_finite()).said, answer::proved);
+  EXPECT_EQ(decide({}, cut::nothing, "", wrongly_finite()).said, answer::proved);
 }
 
 // A function that always answers zero has all of the above. What is within every limit leaves as it came.
@@ -279,14 +282,14 @@ TEST_F(prove_gate, finds_an_axis_that_is_not_tested) {
 TEST(prove_gate_translation, refuses_what_it_does_not_understand) {
   const std::string head = "define void @f(double %0, double* %1) local {\n";
   const std::string tail = "  store double %3, double* %1, align 8\n  ret void\n}\n";
-  EXPECT_TRUE(to_smt(head + "  %3 = fadd double %0, 1.000000e+00\n" + tail, {"a"}, {"b"}, false));
+  EXPECT_TRUE(to_smt(head + "  %3 = fadd double %0, 1.000000e+00\n" + tail, {"a"}, {"b"}, cut::nothing));
   for (const char* const line :
        {"%3 = fadd fast double %0, 1.0", "%3 = fadd nnan double %0, 1.0", "%3 = frem double %0, 1.0", "br label %9",
         "call void @g()", "%3 = call double @llvm.fma.f64(double %0, double %0, double %0)"}) {
-    EXPECT_FALSE(to_smt(head + "  " + line + '\n' + tail, {"a"}, {"b"}, false)) << line;
+    EXPECT_FALSE(to_smt(head + "  " + line + '\n' + tail, {"a"}, {"b"}, cut::nothing)) << line;
   }
-  EXPECT_FALSE(to_smt(head + tail + head + tail, {"a"}, {"b"}, false)) << "two functions";
-  EXPECT_FALSE(to_smt("", {"a"}, {"b"}, false));
+  EXPECT_FALSE(to_smt(head + tail + head + tail, {"a"}, {"b"}, cut::nothing)) << "two functions";
+  EXPECT_FALSE(to_smt("", {"a"}, {"b"}, cut::nothing));
 }
 
 }  // namespace

@@ -200,7 +200,7 @@ result<findings> run(workbench& bench) {
     std::vector<std::string> row{kind.says, "-", "-", "-"};
     result<command::chosen_renderer> feel = bench.make_renderer(*bodies, kind);
     if (!feel) return feel.error();
-    const result<loop_work> work = go_round(std::move(feel).value(), bench.brief() ? 150 : 600);
+    const result<loop_work> work = go_round(std::move(feel).value(), bench.brief() ? 300 : 600);
     if (!work) return work.error();
     out.statements.push_back(at_most(
         "loop_" + kind.name, "work along a closed path over the sum of |dW| (" + kind.says + ")", work->ratio(), 1e-3));

@@ -21,10 +21,10 @@ struct ridden {
   ride_figures figures;
 };
 
-// The hand ends an eighth of a wave past a notch: the block has come to rest there, and does not leave it yet.
+// The hand ends two fifths of a wave past a notch: the block has left that one, and is on its way to the next.
 ride_settings settings_for(bool brief) {
   ride_settings with;
-  with.seconds = with.drive_from_s + ((brief ? 2.0 : 4.0) + 0.125) * wave_m / with.drive_m_per_s;
+  with.seconds = with.drive_from_s + ((brief ? 2.0 : 4.0) + 0.4) * wave_m / with.drive_m_per_s;
   return with;
 }
 // The notch that it starts in is left before anything is judged.
@@ -44,20 +44,13 @@ void state(const ridden& r, const ride_settings& with, bool brief, findings& out
   const std::string& name = r.kind.name;
   const ride_figures& f = r.figures;
   const double rests = expected_rests(brief);
-  // The texel that belongs to the coarse hit lies beside the sample, so that a notch is felt a little off its place.
-  const bool papers_lookup = command::lookup_name(r.kind.options) == "paper";
   out.statements.push_back(
       at_most("across_" + name, "largest force along the ridges, |F_x|, over the largest force", f.across_share, 2e-3));
   out.statements.push_back(between("rests_" + name, "rests of 50 ms or more, one for each notch that the hand passes",
                                    static_cast<double>(f.rest_z_m.size()), rests, rests));
   out.statements.push_back(at_most("spacing_" + name,
                                    "largest error of the height from rest to rest against wavelength times cos(lean)",
-                                   spacing_error(f, with), papers_lookup ? 0.025 : 0.02));
-  if (papers_lookup) {
-    out.notes.push_back(name +
-                        " takes the paper's lookup, whose notches are up to 2.2 % off, on the CPU as well: its " +
-                        "bound of the spacing is 2.5 %, not 2 %");
-  }
+                                   spacing_error(f, with), 0.02));
   out.statements.push_back(at_least("wind_up_" + name,
                                     "correlation of the force along the plane with how far the block hangs behind",
                                     f.wind_up_correlation, 0.9));
@@ -133,11 +126,11 @@ variant with_wide_step() {
   return out;
 }
 
-// Central differences reach at least half a sample to each side. A window as wide as the block needs 96 samples for
+// Central differences reach at least half a sample to each side. A window as wide as the block needs 100 samples for
 // that to be a twentieth of the wavelength, the most that leaves notches to rest in.
 void fit_grid(variant& kind) {
   if (command::gradient_name(kind.options) == "central" && kind.options.difference_step_m == 0.0)
-    kind.options.grid = 96;
+    kind.options.grid = 100;
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace {
 
 using models::benchmark;
 
-constexpr double start_m = -2.0 * models::ridge_wavelength_m;                        // in a notch, left of the middle
-constexpr double middles_m = models::gear_radius_m + 0.5 * models::block_size_m[2];  // apart, at mid height of both
+constexpr double start_m = -2.0 * models::ridge_wavelength_m;          // in a notch, left of the middle
+constexpr double middles_m = models::gear_radius_m + block_half_m[2];  // apart, at mid height of both
 constexpr double shortest_rest_s = 0.05;
 
 // Turned about x by this, what lies on the gear's crown and moves along y lies in the leaning plane.
@@ -104,34 +104,27 @@ ride_figures figures_of(const ride& r, const ride_settings& with) {
   const double slow_m_per_s = 0.2 * with.drive_m_per_s;
   const std::vector<double>& way = r.along_m;
 
-  ride_figures out;
+  // What is slow again in the same notch, after it overshot or crept on, belongs to the same rest.
+  struct rest {
+    double way_m = 0.0, ticks = 0.0, sum_z_m = 0.0;
+  };
+  std::vector<rest> rests;
   double across = 0.0, largest = 0.0;
-  std::size_t slow = 0, rested = 0;
-  double last_way_m = 0.0, last_length = 0.0;  // of the rest before
-  for (std::size_t i = from; i < n; ++i) {
+  std::size_t slow = 0;
+  ride_figures out;
+  for (std::size_t i = from; i + 1 < n; ++i) {
     across = std::max(across, std::fabs(r.force_n[0][i]));
     largest = std::max(largest, std::hypot(r.force_n[0][i], r.force_n[1][i], r.force_n[2][i]));
     out.pressure_m = std::max(out.pressure_m, std::fabs(r.pressure_m[i]));
-    const bool last = i + 1 == n;
-    const bool rests =
-        !last && std::fabs((way[i + 1] - way[i - 1]) / (r.time_s[i + 1] - r.time_s[i - 1])) < slow_m_per_s;
-    slow += rests ? 1U : 0U;
-    rested = rests ? rested + 1 : rested;
-    if (rests) continue;
-    if (rested > 0 && r.time_s[i - 1] - r.time_s[i - rested] >= shortest_rest_s) {
-      const std::size_t middle = i - (rested + 1) / 2;
-      const auto length = static_cast<double>(rested);
-      // Slow, a little faster and slow again in the same notch is one rest.
-      if (!out.rest_z_m.empty() && way[middle] - last_way_m < 0.5 * models::ridge_wavelength_m) {
-        out.rest_z_m.back() += length / (last_length + length) * (r.moved_m[2][middle] - out.rest_z_m.back());
-        last_length += length;
-      } else {
-        out.rest_z_m.push_back(r.moved_m[2][middle]);
-        last_length = length;
-      }
-      last_way_m = way[middle];
-    }
-    rested = 0;
+    if (std::fabs((way[i + 1] - way[i - 1]) / (r.time_s[i + 1] - r.time_s[i - 1])) >= slow_m_per_s) continue;
+    ++slow;
+    if (rests.empty() || way[i] - rests.back().way_m > 0.25 * models::ridge_wavelength_m) rests.push_back({way[i]});
+    rests.back().ticks += 1.0;
+    rests.back().sum_z_m += r.moved_m[2][i];
+  }
+  const double tick_s = (r.time_s.back() - r.time_s[from]) / static_cast<double>(n - 1 - from);
+  for (const rest& at : rests) {
+    if (at.ticks * tick_s >= shortest_rest_s) out.rest_z_m.push_back(at.sum_z_m / at.ticks);
   }
   out.across_share = across / largest;
   out.dwell = static_cast<double>(slow) / static_cast<double>(n - from);

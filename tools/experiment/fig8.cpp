@@ -117,7 +117,7 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
                                          std::string(central ? "over the difference step" : "with a soft maximum") +
                                          ", over its RMS, 4 to 90 mrad" + of,
                                      rms(all, below_saturation, slope_error) / rms(all, below_saturation, slope_n_m),
-                                     0.06));
+                                     0.05));
   }
   const double peak_n_m = turned_block_press_n * std::abs(torque_arm_m(1e-9));
   out.statements.push_back(at_most("level_torque_" + kind.name, "RMS torque in saturation over the largest one" + of,

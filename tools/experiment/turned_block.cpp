@@ -31,7 +31,7 @@ double there_and_back(double travelled, double reach) {
 // Peak to valley of the sine whose height has the variance of the block's whole surface, its level sides included: what
 // the library measures softness by.
 double relief_m() {
-  const auto [lx, ly, lz] = models::block_size_m;
+  const double lx = 2.0 * block_half_m[0], ly = 2.0 * block_half_m[1], lz = 2.0 * block_half_m[2];
   constexpr int nx = 400, ny = 380;
   double height = 0.0, square = 0.0;
   for (int i = 0; i < nx; ++i) {
@@ -49,7 +49,7 @@ double turn_about_z(const quat& r) { return 2.0 * std::atan2(r.z, r.w); }
 
 }  // namespace
 
-pose upper_block() { return {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, models::block_size_m[2])}; }
+pose upper_block() { return {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, 2.0 * block_half_m[2])}; }
 
 result<scene> block_on_block(workbench& bench) {
   result<model_ptr> block = striped_block(bench);
