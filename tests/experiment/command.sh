@@ -10,11 +10,11 @@ failed=0
 fault() { echo "command.sh: $*"; failed=1; }
 
 # One experiment: its folder, and a document.
-"$command" experiment baselines --brief --models "$models" -o "$work/one" --json > "$work/one.json" 2> "$work/one.err"
+"$command" experiment patterns --brief --models "$models" -o "$work/one" --json > "$work/one.json" 2> "$work/one.err"
 status=$?
-[[ $status == 0 ]] || fault "baselines ended with status $status: $(cat "$work/one.err")"
-[[ -s $work/one/baselines/verdict.json ]] || fault "no verdict.json"
-ls "$work"/one/baselines/*.svg "$work"/one/baselines/*.png > /dev/null || fault "no figure"
+[[ $status == 0 ]] || fault "patterns ended with status $status: $(cat "$work/one.err")"
+[[ -s $work/one/patterns/verdict.json ]] || fault "no verdict.json"
+ls "$work"/one/patterns/*.svg "$work"/one/patterns/*.png > /dev/null || fault "no figure"
 [[ ! -e $work/one/index.html ]] || fault "a page was made of one experiment"
 grep -q '"schema": *"asperity.experiment/1"' "$work/one.json" || fault "no schema in $(head -c 200 "$work/one.json")"
 grep -q '"pass": *true' "$work/one.json" || fault "no statement in the document"

@@ -30,7 +30,7 @@ struct watch {
 
 constexpr watch watches[] = {
     {mutation::no_transport, "hammer", asperity::experiment::paper_soft},
-    {mutation::flipped_normal, "baselines", asperity::experiment::paper_soft},
+    {mutation::flipped_normal, "hammer", asperity::experiment::paper_soft},
     {mutation::nearest_texel, "fig8", asperity::experiment::paper_central},
     {mutation::one_sided, "fig8", asperity::experiment::paper_central},
     {mutation::no_curvature, "stability", asperity::experiment::paper_soft},

@@ -160,7 +160,8 @@ result<loop_work> judge_loop(const rival& r, const scene& bodies, int steps, fin
 result<findings> run(workbench& bench) {
   result<scene> bodies = block_on_block(bench);
   if (!bodies) return bodies.error();
-  const turning how{.reach_rad = 0.13, .speed_rad_per_s = bench.brief() ? 0.4 : 0.2, .parts = 3.0};
+  const turning how{
+      .reach_rad = 0.13, .speed_rad_per_s = bench.brief() ? 0.4 : 0.2, .parts = bench.brief() ? 1.0 : 3.0};
   findings out;
   pictures shown;
   double index = 0.0;

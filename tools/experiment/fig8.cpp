@@ -205,7 +205,7 @@ result<findings> run(workbench& bench) {
   result<scene> bodies = block_on_block(bench);
   if (!bodies) return bodies.error();
   turning how;
-  if (bench.brief()) how = {.reach_rad = 0.13, .speed_rad_per_s = 0.4, .parts = 2.5};
+  if (bench.brief()) how = {.reach_rad = 0.13, .speed_rad_per_s = 0.4, .parts = 1.0};  // one way only
   const auto rise_of = [&](depth_kind d) { return rise_by_brute_force(how.reach_rad + 0.03, d); };
   const rise_by_brute_force largest = rise_of(depth_kind::largest);
   const rise_by_brute_force soft = rise_of(depth_kind::soft), boltzmann = rise_of(depth_kind::boltzmann);

@@ -69,7 +69,14 @@ struct fine_hit {
 
     const texel_triangle& chart = body.index.texels[t->triangle];
     const vec3 bary = chart.barycentric(z);
-    if (chart.within(z, bary, gutter_texels)) continue;
+    if (chart.within(z, bary, gutter_texels)) {
+      // Within one cell a step misses by the twist alone: most steps are the last one, and need not be looked at again.
+      const vec3 left = (dz.x * dz.y) * cell.twist;
+      if (cell.spans(z) && cell.largest_twist() * glm::dot(dz, dz) <= tolerance_m) {
+        return {hit::above, q.z + dx.z * dz.x + dy.z * dz.y + left.z, z};
+      }
+      continue;
+    }
     const std::size_t outermost = chart.outermost(bary);
     // The edge opposite to corner k is edge k + 1.
     const projected_triangle* next = body.patch.find(body.index.neighbour[t->triangle][(outermost + 1) % 3]);
