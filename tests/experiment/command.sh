@@ -20,23 +20,34 @@ grep -q '"schema": *"asperity.experiment/1"' "$work/one.json" || fault "no schem
 grep -q '"pass": *true' "$work/one.json" || fault "no statement in the document"
 [[ -z $(find "$work/one" -name '*.partial*') ]] || fault "something half-written is left"
 
-# Interrupted while it is at work: what was finished is whole, and the page says what is missing.
+# interrupt_at WORK-OF-ONE-RUN FILE: interrupts it as soon as the file is there.
+interrupt_at() {
+  for ((i = 0; i < 600; ++i)); do
+    [[ -e $2 ]] && break
+    kill -0 "$1" 2> /dev/null || break
+    sleep 0.1
+  done
+  kill -INT "$1"
+  wait "$1"
+}
+
+# Interrupted between two: what was finished is whole, and the page says what is missing.
+"$command" experiment stability patterns --brief --models "$models" -o "$work/two" > "$work/two.out" 2> "$work/two.err" &
+interrupt_at $! "$work/two/patterns/verdict.json"
+status=$?
+[[ $status == 130 ]] || fault "interrupted, the status is $status: $(cat "$work/two.err")"
+[[ -s $work/two/patterns/verdict.json ]] || fault "what was finished is not there"
+grep -q 'Missing: stability\.' "$work/two/index.html" || fault "the page does not say what is missing"
+[[ ! -e $work/two/stability ]] || fault "there is a folder of what was not finished"
+[[ -z $(find "$work/two" -name '*.partial*') ]] || fault "something half-written is left"
+
+# All of them, interrupted at the start.
 "$command" experiment all --brief --no-gpu --models "$models" -o "$work/all" > "$work/all.out" 2> "$work/all.err" &
-pid=$!
-for ((i = 0; i < 600; ++i)); do
-  [[ -e $work/all/fig7/verdict.json ]] && break
-  kill -0 $pid 2> /dev/null || break
-  sleep 0.1
-done
-kill -INT $pid
-wait $pid
+interrupt_at $! "$work/all"
 status=$?
 [[ $status == 130 ]] || fault "interrupted, the status is $status: $(cat "$work/all.err")"
-grep -q 'Missing: ' "$work/all/index.html" || fault "the page does not say what is missing"
-for folder in "$work"/all/*/; do
-  [[ -e $folder/verdict.json ]] || fault "$folder has no verdict.json"
-done
-[[ -z $(find "$work/all" -name '*.partial*') ]] || fault "something half-written is left"
+grep -q 'Missing: fig7, fig8, fig9, hammer, roughness, baselines, patterns, stability\.' "$work/all/index.html" ||
+  fault "the page does not name all that is missing"
 
 # What is wrong with the command line.
 "$command" experiment fig99 -o "$work/none" > /dev/null 2> "$work/unknown.err"

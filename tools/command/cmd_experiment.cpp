@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cli.hpp"
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 using experiment::all_experiments;
 
 struct experiment_command {
-  std::string name;
+  std::vector<std::string> names;
   std::string folder;
   std::string models;
   bool brief = false;
@@ -54,13 +55,21 @@ std::string complaint_of(const std::vector<std::string>& failed) {
   return out + "; see the lines that end in FAILS, or verdict.json";
 }
 
-// Of those that were asked for, the ones that are not there.
-std::string missing(const std::vector<experiment::published>& done, const error& why) {
-  std::string names;
+// Those that were asked for, each once, in their own order.
+std::vector<const experiment::experiment*> chosen(const std::vector<std::string>& names) {
+  const auto is_named = [&](std::string_view name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  std::vector<const experiment::experiment*> out;
   for (const experiment::experiment& e : all_experiments()) {
-    const bool is_there = std::any_of(done.begin(), done.end(), [&](const auto& one) { return one.what == &e; });
-    if (!is_there) names += (names.empty() ? "" : ", ") + std::string(e.name);
+    if (is_named("all") || is_named(e.name)) out.push_back(&e);
   }
+  return out;
+}
+
+std::string missing(std::span<const experiment::experiment* const> not_done, const error& why) {
+  std::string names;
+  for (const experiment::experiment* e : not_done) names += (names.empty() ? "" : ", ") + std::string(e->name);
   return "Missing: " + names + ". The run ended before: " + why.message + ".";
 }
 
@@ -81,24 +90,24 @@ result<answer> run_experiments(const experiment_command& options, const common_o
                                .progress = [&](std::string_view what, double done) { progress.show(what, done); },
                                .cancelled = [] { return interrupted(); }});
   experiment::page_facts facts{ASPERITY_VERSION, experiment::machine_text(), options.brief, {}};
-  const bool all = options.name == "all";
+  const std::vector<const experiment::experiment*> wanted = chosen(options.names);
+  const bool with_page = wanted.size() > 1;
   answer out;
   out.document = {{"output", options.folder},
-                  {"page", all ? json((out_folder / "index.html").string()) : json()},
+                  {"page", with_page ? json((out_folder / "index.html").string()) : json()},
                   {"brief", options.brief},
                   {"machine", facts.machine},
                   {"experiments", json::array()}};
   std::vector<experiment::published> done;
   std::vector<std::string> failed;
   std::optional<error> ended;
-  for (const experiment::experiment& e : all_experiments()) {
-    if (!all && options.name != e.name) continue;
-    result<experiment::findings> found = e.run(bench);
+  for (const experiment::experiment* e : wanted) {
+    result<experiment::findings> found = e->run(bench);
     if (!found) {
       ended = found.error();
       break;
     }
-    done.push_back({&e, std::move(found).value()});
+    done.push_back({e, std::move(found).value()});
     if (const result<void> written = write_findings(done.back(), out_folder); !written) {
       done.pop_back();
       ended = written.error();
@@ -107,8 +116,8 @@ result<answer> run_experiments(const experiment_command& options, const common_o
     tell(done.back(), out, failed);
   }
   // The page shows what is there: an older one would belong to other files.
-  if (all && ended) facts.missing = missing(done, *ended);
-  if (all) {
+  if (ended) facts.missing = missing(std::span(wanted).subspan(done.size()), *ended);
+  if (with_page) {
     const result<void> written = write_page(done, facts, out_folder);
     if (!written && !ended) return written.error();
     out.text += row("page", (out_folder / "index.html").string());
@@ -129,7 +138,7 @@ void add_experiment(command_line& line) {
                            [o](const common_options& common) { return run_experiments(*o, common); });
   std::vector<std::string> names{"all"};
   for (const experiment::experiment& e : all_experiments()) names.emplace_back(e.name);
-  sub.add_option("experiment", o->name, "Which one, or all")->required()->check(CLI::IsMember(names));
+  sub.add_option("experiment", o->names, "Which ones, or all")->required()->check(CLI::IsMember(names));
   sub.add_option("-o,--output", o->folder, "Folder to write into; made where it does not exist")->required();
   sub.add_option("--models", o->models,
                  "Folder of baked models; what is missing there is baked and kept. By default a folder of the output");
