@@ -10,7 +10,7 @@
 namespace asperity::bake {
 namespace {
 
-constexpr std::uint32_t side = 256;
+constexpr std::uint32_t atlas_side = 256;
 
 struct projected {
   triangle_mesh coarse;
@@ -28,10 +28,10 @@ struct projected {
 
 projected run(const triangle_mesh& coarse, const triangle_mesh& full, double range_m, unsigned threads = 2) {
   const triangle_bvh tree(full.positions, full.triangles);
-  const atlas charts = *make_atlas(coarse, side);
+  const atlas charts = *make_atlas(coarse, atlas_side);
   const crease_normals directions(coarse, tree, 0.5 * charts.texel_m);
   stage_monitor monitor;
-  return {coarse, charts, *project(coarse, charts, directions, tree, range_m, side, threads, monitor)};
+  return {coarse, charts, *project(coarse, charts, directions, tree, range_m, atlas_side, threads, monitor)};
 }
 
 TEST(CreaseNormals, FlatFacesKeepTheirDirectionWhereTheOriginalHasTheSameEdges) {
@@ -113,7 +113,7 @@ TEST(Project, TexelsOutsideChartsAndGuttersHoldNoPosition) {
   EXPECT_GT(empty, 0u);
   EXPECT_GT(p.out.texels, 0u);
   EXPECT_LT(p.out.texels + empty, p.out.texture.texels.size());  // the gutters are the rest
-  EXPECT_NEAR(static_cast<double>(p.out.texels) / (side * side), p.charts.utilisation, 0.02);
+  EXPECT_NEAR(static_cast<double>(p.out.texels) / (atlas_side * atlas_side), p.charts.utilisation, 0.02);
 }
 
 TEST(Project, MeasuresDisplacementAlongTheNormal) {
