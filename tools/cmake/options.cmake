@@ -20,7 +20,7 @@ set_target_properties(asperity_reproducible PROPERTIES EXPORT_NAME reproducible)
 target_compile_options(asperity_reproducible INTERFACE -ffp-contract=off)
 target_link_libraries(asperity_build_options INTERFACE asperity_reproducible)
 
-# asperity_unity(TARGET FILES): compiles a target's sources FILES at a time, where the build asks for it (the presets do):
+# asperity_unity(TARGET FILES): compiles FILES sources of a target at a time, 0: all, where the build asks for it (presets do):
 # what they all include is then parsed, and what they all instantiate compiled, once and not once per file.
 option(ASPERITY_UNITY "Compile several sources at a time, for quicker whole builds" OFF)
 if(ASPERITY_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
