@@ -13,8 +13,7 @@
 namespace asperity::experiment {
 namespace {
 
-constexpr double trembling_m_per_s = 1e-4;  // spec, A9: what counts as rest
-constexpr double shaken_j = 50e-3;          // spec, A9: what a held force gives a hand in 2.5 s at the least
+constexpr double shaken_j = 50e-3;  // spec, A9: what a held force gives a hand in 2.5 s at the least
 
 // A limit below the softest contact is drawn at half of it, or it would leave the paper.
 double drawn(double n_per_m) { return 1e-3 * (n_per_m > 0.0 ? n_per_m : 0.5 * softest_n_per_m); }
@@ -25,14 +24,17 @@ figure limits_figure(const std::vector<stiffness_limits>& all, const std::vector
            {}};
   f.page.title = "How stiff a contact may be before it gives the hand energy";
   f.page.caption =
-      "Top: a hand presses a flat pad on a flat pad with 0.2 N; coupling 0.5 N/mm; 64 is the stiffest that was tried. "
+      "Top: a hand presses a flat pad on a flat pad, 0.2 N, worst touch; coupling 0.5 N/mm; 64 is the stiffest tried. "
       "Bottom: the tool is clamped.";
   f.page.x_label = "rate of the contact thread (Hz)";
   for (const bool late : {true, false}) {
     command::plot_panel p{
         late ? "limit (N/mm), late" : "limit (N/mm), on time", {}, "rate of the contact thread (Hz)", {}, true, true};
     for (const contact_line line : {contact_line::held, contact_line::linearised, contact_line::curved}) {
-      command::plot_line quiet{line_text(line), {}, {}, command::plot_style::marked};
+      // On a flat contact the two linearised ones lie on each other: dashes leave the lower one to be seen.
+      const bool above = line == contact_line::curved;
+      command::plot_line quiet{
+          line_text(line), {}, {}, above ? command::plot_style::dashed : command::plot_style::marked};
       for (const stiffness_limits& l : all) {
         if (l.line != line || l.late != late) continue;
         quiet.x.push_back(l.rate_hz);
@@ -40,7 +42,7 @@ figure limits_figure(const std::vector<stiffness_limits>& all, const std::vector
       }
       p.lines.push_back(std::move(quiet));
     }
-    command::plot_line guarded{"held force, within the guard's bound", {}, {}, command::plot_style::dashed};
+    command::plot_line guarded{"held force, within the guard's bound", {}, {}, command::plot_style::line};
     for (const stiffness_limits& l : all) {
       if (l.line != contact_line::held || l.late != late) continue;
       guarded.x.push_back(l.rate_hz);

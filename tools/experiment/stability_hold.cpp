@@ -86,7 +86,7 @@ trial held_pad(const notch& where, const holding& how) {
   const double crest_to_crest_m = where.is_flat() ? 0.0 : 2.0 * models::ridge_amplitude_m;
   const double rise_m = crest_to_crest_m * std::sin(std::numbers::pi * how.beside_m / models::ridge_wavelength_m);
   trial t;
-  t.T_wa_start = {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, how.beside_m, pad_height_m + rise_m + 20e-6)};
+  t.T_wa_start = {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, how.beside_m, pad_height_m + rise_m + how.drop_m)};
   t.T_wb = {pose{}};
   t.script = [start = t.T_wa_start, press_n = how.press_n](double t_s) {
     hand_wish wish;

@@ -49,9 +49,13 @@ struct holding {
   bool guard = false;
   double press_n = 1.0;
   double beside_m = 0.1e-3;  ///< where the hand brings the pad down and holds it: so far beside the notch
+  double drop_m = 20e-6;     ///< from how far above the first touch the hand lets the pad down
   double settle_s = 1.0;     ///< the hand brings the block down and comes to rest
   double hold_s = 2.5;       ///< what is judged
 };
+
+/// A hand whose handle moves less than that above 20 Hz rests: spec, A9.
+inline constexpr double trembling_m_per_s = 1e-4;
 
 /// What the hand had of it, from the end of settling on.
 struct held_still {

@@ -14,7 +14,7 @@ struct stiffness_limits {
   contact_line line = contact_line::held;
   bool late = true;
   int rate_hz = 100;
-  double quiet_n_per_m = 0.0;    ///< stiffest at which the hand gets nothing; 0: none of those that were tried
+  double quiet_n_per_m = 0.0;  ///< stiffest at which the hand rests after every touch; 0: none of those that were tried
   double bounded_n_per_m = 0.0;  ///< ... at which it gets no more than the guard would let through, without the guard
   double guarded_n_per_m = 0.0;  ///< the same with the guard
 };
