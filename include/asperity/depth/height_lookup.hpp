@@ -65,14 +65,16 @@ struct fine_hit {
     if (std::fabs(miss.x) <= tolerance_m && std::fabs(miss.y) <= tolerance_m) {
       return {hit::above, q.z + dx.z * dz.x + dy.z * dz.y, z};
     }
+    const bool from_inside = cell.spans(z);
     z += dz;
 
     const texel_triangle& chart = body.index.texels[t->triangle];
     const vec3 bary = chart.barycentric(z);
     if (chart.within(z, bary, gutter_texels)) {
       // Within one cell a step misses by the twist alone: most steps are the last one, and need not be looked at again.
+      // A step from beyond the image's border is not within: there the surface was read beside z.
       const vec3 left = (dz.x * dz.y) * cell.twist;
-      if (cell.spans(z) && cell.largest_twist() * glm::dot(dz, dz) <= tolerance_m) {
+      if (from_inside && cell.spans(z) && cell.largest_twist() * glm::dot(dz, dz) <= tolerance_m) {
         return {hit::above, q.z + dx.z * dz.x + dy.z * dz.y + left.z, z};
       }
       continue;

@@ -183,5 +183,48 @@ TEST(HeightLookup, PastASharpCornerThePapersLookupStandsIn) {
   }
 }
 
+// A face whose chart fills the image, so that its outermost half texel has no cell of its own. The textured surface
+// stands 0.8 texels beside the coarse one: what lies over that strip begins inside the image.
+model_ptr face_to_the_images_border() {
+  constexpr double texel_m = 1e-4;
+  constexpr std::uint32_t side = 16;
+  textured_model m;
+  m.texture.width = m.texture.height = side;
+  for (const vec2& uv : {vec2(0, 0), vec2(1, 0), vec2(1, 1), vec2(0, 1)}) {
+    m.mesh.positions.emplace_back(texel_m * side * vec3(uv - 0.5, 0.0));
+  }
+  m.mesh.triangles.push_back({.vertex = {0, 1, 2}, .uv = {vec2(0, 0), vec2(1, 0), vec2(1, 1)}});
+  m.mesh.triangles.push_back({.vertex = {0, 2, 3}, .uv = {vec2(0, 0), vec2(1, 1), vec2(0, 1)}});
+  for (std::uint32_t j = 0; j < side; ++j) {
+    for (std::uint32_t i = 0; i < side; ++i) {
+      const double x = i + 0.5 - 0.5 * side, y = j + 0.5 - 0.5 * side;
+      m.texture.texels.emplace_back(texel_m * vec3(x - 0.8, y, 0.1 * x));
+    }
+  }
+  m.box = {m.mesh.positions.front(), m.mesh.positions[2]};
+  return std::make_shared<const textured_model>(std::move(m));
+}
+
+TEST(HeightLookup, AtTheImagesBorderExactFindsThePointOverTheSampleToo) {
+  lookup l{face_to_the_images_border()};
+  const contact_window w = window_downwards(8e-4);
+  const pose T{face_down(), vec3(0.0)};
+  const std::size_t above = l.run(w, T, parallax_mode::exact);
+  const sample_grid grid(48, w.half_size_m);
+  const window_map map(w, T);
+  std::size_t from_beyond = 0;
+  for (std::size_t i = 0; i < grid.size(); ++i) {
+    if (l.field.kind[i] != hit::above) continue;
+    const vec2 uv = grid.position(i);
+    const vec3 found = map.point(read(l.model->texture, l.field.texel[i]).point);
+    EXPECT_LT(std::hypot(found.x - uv.x, found.y - uv.y), 1e-9) << "texel " << l.field.texel[i].x;
+    EXPECT_NEAR(l.field.height[i], found.z, 1e-9);
+    const projected_triangle& t = l.patch.triangles()[l.field.owner[i]];
+    from_beyond += t.texel_x(uv.x, uv.y) < 0.0 ? 1U : 0U;
+  }
+  EXPECT_GT(from_beyond, 20U);
+  EXPECT_GT(above, grid.size() / 2);
+}
+
 }  // namespace
 }  // namespace asperity::detail
