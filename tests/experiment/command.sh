@@ -20,7 +20,7 @@ grep -q '"schema": *"asperity.experiment/1"' "$work/one.json" || fault "no schem
 grep -q '"pass": *true' "$work/one.json" || fault "no statement in the document"
 [[ -z $(find "$work/one" -name '*.partial*') ]] || fault "something half-written is left"
 
-# interrupt_at WORK-OF-ONE-RUN FILE: interrupts it as soon as the file is there.
+# interrupt_at PID FILE: interrupts that process as soon as the file is there.
 interrupt_at() {
   for ((i = 0; i < 600; ++i)); do
     [[ -e $2 ]] && break

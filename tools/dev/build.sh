@@ -21,7 +21,7 @@ build() {
   local preset=$1
   shift
   step "build ($preset)"
-  # Ninja would start two more compilers than there are cores: on two cores they are a tenth slower so.
+  # Ninja would start two more compilers than there are cores: on two cores that takes a twentieth longer.
   cmake --build "build/$preset" -j "$(nproc)" ${1:+--target "$@"}
 }
 

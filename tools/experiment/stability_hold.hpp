@@ -54,8 +54,8 @@ struct holding {
   double hold_s = 2.5;       ///< what is judged
 };
 
-/// A hand whose handle moves less than that above 20 Hz rests: spec, A9.
-inline constexpr double trembling_m_per_s = 1e-4;
+/// A hand rests that gets less energy than that, and whose handle moves less than that above 20 Hz: spec, A9.
+inline constexpr double quiet_j = 1e-4, trembling_m_per_s = 1e-4;
 
 /// What the hand had of it, from the end of settling on.
 struct held_still {

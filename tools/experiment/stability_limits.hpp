@@ -28,8 +28,6 @@ struct guard_record {
 
 /// Contact stiffnesses that are tried: every power of two between them, in brief every eighth.
 inline constexpr double softest_n_per_m = 125.0, stiffest_n_per_m = 64e3;
-/// Net energy of a hand that counts as none: spec, A9.
-inline constexpr double quiet_j = 1e-4;
 
 [[nodiscard]] constexpr std::int64_t period_of(int rate_hz) noexcept { return 1'000'000'000 / rate_hz; }
 
