@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <utility>
 
+#include "asperity/control/control_config.hpp"
 #include "asperity/control/exchange.hpp"
 #include "asperity/control/passivity_guard.hpp"
 #include "asperity/control/probe.hpp"
+#include "asperity/control/rate_monitor.hpp"
 #include "asperity/control/session_record.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/control/workspace_map.hpp"
@@ -17,38 +20,23 @@
 
 namespace asperity {
 
-/// Everything that the device loop can be told. The defaults are those of spec section 8.
-struct control_config {
-  probe_config probe{};
-  coupling_config coupling{};
-  guard_config guard{};
-  contact_ageing ageing{};
-  workspace_map map{};
-  sample_check_config samples{};
-  gate_limits limits{.peak_force_n = 1e6,
-                     .continuous_force_n = 1e6,
-                     .force_slew_n_per_s = 1e6,
-                     .peak_torque_n_m = 1e6,
-                     .continuous_torque_n_m = 1e6,
-                     .torque_slew_n_m_per_s = 1e6};  ///< the application's; the device's own apply where they are lower
-  double low_pass_hz = output_gate::no_low_pass;     ///< cut-off of the gate's low-pass on the wrench; infinite: none
-  /// Silence of the application after which the gate shuts (watchdog); 0: no watchdog. See exchange::application.
-  std::int64_t watchdog_ns = 0;
-  int substeps = 8;                          ///< of the probe in one device period
-  std::int64_t longest_step_ns = 5'000'000;  ///< a later tick advances the probe by this much only
-};
-
 /// Owns the stages between one device and the exchange: sample check, probe and coupling, passivity guard, output gate.
 ///
-/// Order of one tick: read, judge the sample, book the energy of the last command, step the probe in substeps towards
-/// the device (which moves evenly from its last pose to this one), coupling wrench, guard, gate, write, publish the
-/// probe's pose, tell the observer.
+/// Order of one tick: read, judge the sample, book the energy of the last command, judge the rates, step the probe in
+/// substeps towards the device (which moves evenly from its last pose to this one), coupling wrench, guard, gate,
+/// write, publish the probe's pose, tell the observer.
 ///
 /// - The probe starts at the device's first good pose, at rest: no jump.
 /// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
 /// - A clock that steps back stands still for one tick; the loop's time, which the device and the record are given,
-/// goes
-///   on from there and never goes back.
+///   goes on from there and never goes back.
+/// - A tick that comes after the last command has expired (command_valid_ns) finds a device that puts out nothing: the
+///   books hold no work for that gap, the slew starts from zero, and nothing is put out until the probe is back at the
+///   hand (rate_monitor). A device without a watchdog of its own (device_capabilities::device_side_watchdog) held its
+///   wrench all the time: then the work is booked.
+/// - A contact older than contact_ageing allows goes on holding the probe, which then does not follow the hand, and is
+///   not felt. Letting it go would bury the probe in the body, and the next contact would throw it out.
+/// - Lateness past rate_limits shuts the gate (stalled, contact_stalled, overloaded) while the device may put out.
 /// - A rejected sample: the wanted wrench is zero in this tick, and the probe goes on towards the last good pose. After
 ///   sample_check_config::reject_limit rejections in a row the gate shuts (bad_samples).
 /// - A probe step that fails (a contact that is not finite): the wanted wrench is zero in this tick.
@@ -74,7 +62,9 @@ class device_loop {
         coupling_(config.coupling, config.probe.mass_kg, mean_inertia(config.probe)),
         probe_(config.probe),
         guard_(guard_for(config.guard, dev.capabilities())),
-        gate_(tighter(limits_of(dev.capabilities()), config.limits), hold_ns, config.low_pass_hz) {}
+        rates_(config.rates, config.ageing),
+        gate_(tighter(limits_of(dev.capabilities()), config.limits), command_valid_ns, config.low_pass_hz),
+        goes_silent_(dev.capabilities().device_side_watchdog) {}
 
   // Who takes a loop away takes the force away: at once, because nobody is left to take it down slowly.
   device_loop(const device_loop&) = delete;
@@ -83,33 +73,43 @@ class device_loop {
     if (may_put_out(device_->state())) static_cast<void>(device_->disarm());
   }
 
+  /// How long a command is valid, ns: a device with a watchdog puts out zero so long after the last tick.
+  static constexpr std::int64_t command_valid_ns = 20'000'000;
+
   /// One period.
   /// @param clock_ns the session's clock
   /// @return ok | stale_input (sample rejected) | not_finite (probe) | not_ready (no good sample yet) |
   ///         backend_failed (the gate is shut: see gate().fault())
   /// @rt as safe as the device: no allocation, lock, throw, print or clock here
   [[nodiscard]] status tick(std::int64_t clock_ns) noexcept {
-    const double dt_s = advance_clock(clock_ns);
+    const std::int64_t gap_ns = advance_clock(clock_ns);
+    const double dt_s = static_cast<double>(std::min(gap_ns, config_.longest_step_ns)) * 1e-9;
     const std::int64_t now_ns = now_ns_;
+    const bool expired = now_ns > valid_until_ns_;
+    const wrench held = expired && goes_silent_ ? wrench{} : gate_.last();
+    if (expired) gate_.rest();
     device_sample seen = last_seen_;
     const sample_verdict verdict = check_.judge(now_ns, device_->read(now_ns, seen), seen);
     if (verdict == sample_verdict::accepted) last_seen_ = seen;
-    unobserved_s_ += dt_s;
+    unobserved_s_ += static_cast<double>(gap_ns) * 1e-9;
 
     const bool accepted = verdict == sample_verdict::accepted;
     if (accepted && !placed_) place(last_seen_);
     status probe_status = status::not_ready;
-    wrench wanted_d;
     guard_action guarded;
+    rate_verdict rates;
     if (placed_) {
-      if (accepted) guard_.observe(last_seen_.T_dh, gate_.last(), std::exchange(unobserved_s_, 0.0));
-      probe_status = move_probe(now_ns, dt_s, accepted);
+      if (accepted) guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0));
+      static_cast<void>(shared_->contacts.refresh());
+      rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), caught_up_);
+      probe_status = move_probe(dt_s, accepted, rates);
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
-        wanted_d = wrench_on_hand();
-        guarded = guard_.adjust(wanted_d);
+        guarded = guard_.adjust(wrench_on_hand());
+        guarded.on_hand = rates.scale * guarded.on_hand;
       }
     }
+    if (rates.fault != gate_fault::none && may_put_out(device_->state())) gate_.trip(rates.fault, now_ns);
     if (guard_.exhausted()) gate_.trip(gate_fault::energy, now_ns);
     if (is_application_silent()) gate_.trip(gate_fault::watchdog, now_ns);
     if (!may_put_out(device_->state())) {
@@ -118,6 +118,7 @@ class device_loop {
     }
     const device_command sent =
         gate_.pass(now_ns, seen, {guarded.on_hand, wrench_frame::device_base, now_ns, ++sequence_});
+    valid_until_ns_ = sent.valid_until_ns;
     judge_device(device_->write(now_ns, sent));
     if (check_.exhausted()) gate_.trip(gate_fault::bad_samples);
     if (gate_.fault() != gate_fault::none && gate_.at_rest() && may_put_out(device_->state())) {
@@ -127,7 +128,7 @@ class device_loop {
       shared_->poses.back() = {probe_.state().T_wc, now_ns};
       shared_->poses.publish();
     }
-    report(now_ns, verdict, probe_status, guarded, sent.on_hand);
+    report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);
     return answer(verdict, probe_status);
   }
 
@@ -136,6 +137,7 @@ class device_loop {
   [[nodiscard]] const asperity::probe& probe() const noexcept { return probe_; }
   [[nodiscard]] const virtual_coupling& coupling() const noexcept { return coupling_; }
   [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
+  [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
   [[nodiscard]] Observer& observer() noexcept { return observer_; }
   [[nodiscard]] Device& device() noexcept { return *device_; }
 
@@ -148,6 +150,7 @@ class device_loop {
     if (!gate_.clear()) return false;
     check_.restart();
     guard_.reset();
+    rates_.restart();
     placed_ = false;
     touched_ = {};
     beat_ns_ = now_ns_;
@@ -176,23 +179,31 @@ class device_loop {
     gate_.trip(gone ? gate_fault::device_departed : gate_fault::device_failed);
   }
 
-  // The first tick counts as a sign of life: somebody started the session.
+  // The first tick counts as a sign of life: somebody started the session. A beat carries no time, so one that is found
+  // behind a long gap may have come at its very end: the whole gap counts as silence.
   [[nodiscard]] bool is_application_silent() noexcept {
     const std::uint64_t beats = shared_->application.beats();
-    if (beats != beats_ || !heard_) beat_ns_ = now_ns_;
+    if (!heard_) beat_ns_ = now_ns_;
+    const bool silent = config_.watchdog_ns > 0 && now_ns_ - beat_ns_ > config_.watchdog_ns;
+    if (beats != beats_) beat_ns_ = now_ns_;
     beats_ = beats;
     heard_ = true;
-    return config_.watchdog_ns > 0 && now_ns_ - beat_ns_ > config_.watchdog_ns;
+    return silent;
   }
 
-  // The loop's time follows the clock forward only. @return what of the step the probe takes, s
-  [[nodiscard]] double advance_clock(std::int64_t clock_ns) noexcept {
+  // The loop's time follows the clock forward only. @return how far it went, ns
+  [[nodiscard]] std::int64_t advance_clock(std::int64_t clock_ns) noexcept {
     if (!started_) now_ns_ = last_clock_ns_ = clock_ns;
     const std::int64_t step = std::max<std::int64_t>(0, clock_ns - last_clock_ns_);
     started_ = true;
     last_clock_ns_ = clock_ns;
     now_ns_ += step;
-    return static_cast<double>(std::min(step, config_.longest_step_ns)) * 1e-9;
+    return step;
+  }
+
+  [[nodiscard]] std::int64_t contact_age_ns(std::int64_t now_ns) const noexcept {
+    const linear_contact& contact = shared_->contacts.front();
+    return contact.answer == status::not_ready ? rate_monitor::no_contact : now_ns - contact.time_ns;
   }
 
   void place(const device_sample& s) noexcept {
@@ -201,31 +212,46 @@ class device_loop {
     probe_.reset(target_T_wc_);
     guard_.reset();
     placed_ = true;
+    caught_up_ = true;
   }
 
   // Where the target goes in this period: evenly from its last pose to the newest one. A step of the target at the
-  // beginning of the period would be felt as a jerk by a probe that runs at several times the device's rate.
-  [[nodiscard]] status move_probe(std::int64_t now_ns, double dt_s, bool accepted) noexcept {
-    static_cast<void>(shared_->contacts.refresh());
+  // beginning of the period would be felt as a jerk by a probe that runs at several times the device's rate. After a
+  // lapse the target returns to the hand no faster than contacts can follow; without contacts it stays.
+  [[nodiscard]] status move_probe(double dt_s, bool accepted, const rate_verdict& rates) noexcept {
     const linear_contact& contact = shared_->contacts.front();
-    const double strength = strength_at(now_ns - contact.time_ns, config_.ageing);
-
     const pose from = target_T_wc_;
     if (accepted) target_T_wc_ = config_.map.to_world(last_seen_.T_dh) * T_hc_;
-    touched_ = evaluate(contact, probe_.state().T_wc, strength);
+    vec6 way = pose_difference(target_T_wc_, from);
+    caught_up_ = true;
+    if (const double part = part_allowed(way, dt_s, rates); part < 1.0) {
+      caught_up_ = false;
+      way = part * way;
+      target_T_wc_ = {glm::normalize(exp_rotation(way.angular) * from.rotation), from.position + way.linear};
+    }
+    touched_ = evaluate(contact, probe_.state().T_wc);
     if (!(dt_s > 0.0)) return status::ok;
 
-    const vec6 way = pose_difference(target_T_wc_, from);
     target_velocity_w_ = to_twist((1.0 / dt_s) * way);
     const int substeps = std::max(1, config_.substeps);
     for (int i = 1; i <= substeps; ++i) {
       const double part = static_cast<double>(i) / substeps;
       const pose target{exp_rotation(part * way.angular) * from.rotation, from.position + part * way.linear};
       const status s = probe_.step(dt_s / substeps, coupling_, target, target_velocity_w_, touched_);
-      touched_ = evaluate(contact, probe_.state().T_wc, strength);
+      touched_ = evaluate(contact, probe_.state().T_wc);
       if (s != status::ok) return s;
     }
     return status::ok;
+  }
+
+  [[nodiscard]] double part_allowed(const vec6& way, double dt_s, const rate_verdict& rates) const noexcept {
+    if (!rates.settling) return 1.0;
+    if (rates.contact_lapsed) return 0.0;
+    const double far_m = glm::length(way.linear);
+    const double far_rad = glm::length(way.angular);
+    const double most_m = rates_.limits().catch_up_m_per_s * dt_s;
+    const double most_rad = rates_.limits().catch_up_rad_per_s * dt_s;
+    return std::min(far_m > most_m ? most_m / far_m : 1.0, far_rad > most_rad ? most_rad / far_rad : 1.0);
   }
 
   [[nodiscard]] wrench wrench_on_hand() const noexcept {
@@ -236,7 +262,7 @@ class device_loop {
   }
 
   void report(std::int64_t now_ns, sample_verdict verdict, status probe_status, const guard_action& guarded,
-              const wrench& sent) noexcept {
+              const rate_verdict& rates, const wrench& sent) noexcept {
     const linear_contact& contact = shared_->contacts.front();
     session_record r;
     r.time_ns = now_ns;
@@ -247,11 +273,12 @@ class device_loop {
     r.on_probe_w = touched_.on_probe_w;
     r.max_depth_m = contact.max_depth_m;
     r.contacts = contact.contacts;
-    r.contact_age_ns = contact.answer == status::not_ready ? 0 : now_ns - contact.time_ns;
+    r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
     r.guard_alpha_per_s = guarded.alpha_per_s;
     r.guard_scale = guarded.scale;
+    r.rate_scale = rates.scale;
     r.pulling = touched_.pulling;
     r.sample = verdict;
     r.contact_status = contact.answer;
@@ -267,8 +294,6 @@ class device_loop {
     return probe_status;
   }
 
-  static constexpr std::int64_t hold_ns = 20'000'000;  // a device's own watchdog falls to zero so long after a tick
-
   Device* device_;
   control_config config_;
   pose T_hc_;
@@ -279,14 +304,18 @@ class device_loop {
   virtual_coupling coupling_;
   asperity::probe probe_;
   passivity_guard guard_;
+  rate_monitor rates_;
   output_gate gate_;
+  bool goes_silent_;  // the device puts out nothing once a command has expired
 
   device_sample last_seen_{};
   bool started_ = false;
   bool placed_ = false;
+  bool caught_up_ = true;  // the target is where the hand is
   std::int64_t last_clock_ns_ = 0;
   std::int64_t now_ns_ = 0;    // the loop's time: the clock's steps forward, summed up
   double unobserved_s_ = 0.0;  // time since the guard saw a pose
+  std::int64_t valid_until_ns_ = std::numeric_limits<std::int64_t>::max();  // of the last command
   std::uint64_t sequence_ = 0;
   std::uint64_t beats_ = 0;   // of the application, as last seen ...
   std::int64_t beat_ns_ = 0;  // ... to change at this time

@@ -29,13 +29,13 @@ struct linear_contact {
   status answer = status::not_ready;  ///< what the renderer answered at q0
 };
 
-/// How long a contact may be used.
+/// How long a contact may be felt. An older one goes on holding the probe, and nothing is put out.
 struct contact_ageing {
-  std::int64_t hold_ns = 50'000'000;  ///< full strength up to this age
+  std::int64_t hold_ns = 50'000'000;  ///< felt in full up to this age
   std::int64_t fade_ns = 50'000'000;  ///< then linearly down to nothing over this time
 };
 
-/// Strength of a contact of this age: 1 up to hold_ns, 0 from hold_ns + fade_ns, linear between.
+/// Share of the output that a contact of this age allows: 1 up to hold_ns, 0 from hold_ns + fade_ns, linear between.
 /// @rt safe
 [[nodiscard]] inline double strength_at(std::int64_t age_ns, const contact_ageing& ageing) noexcept {
   if (age_ns <= ageing.hold_ns) return 1.0;
@@ -56,19 +56,17 @@ struct contact_evaluation {
   bool pulling = false;  ///< the linear wrench would have pulled the probe on, and was set to zero
 };
 
-/// Wrench and stiffness at T_wc, faded to `strength`.
+/// Wrench and stiffness at T_wc.
 /// Where the linear wrench would pull (n . F > 0) both are zero: a surface pushes only. With contacts that face each
 /// other, as in a slot, there is no common direction (mean shorter than one half) and the test is left out: the wrench
 /// of a slot does change its sign.
 /// @rt safe
-[[nodiscard]] inline contact_evaluation evaluate(const linear_contact& contact, const pose& T_wc,
-                                                 double strength) noexcept {
-  if (!(strength > 0.0)) return {};
+[[nodiscard]] inline contact_evaluation evaluate(const linear_contact& contact, const pose& T_wc) noexcept {
   constexpr double agreement = 0.5;
   const wrench w = contact.on_probe_w + to_wrench(contact.stiffness * pose_difference(T_wc, contact.T_wc));
   const vec3& n = contact.direction_ab_w;
   if (glm::dot(n, n) >= agreement * agreement && glm::dot(n, w.force) > 0.0) return {{}, {}, true};
-  return {strength * w, strength * contact.stiffness, false};
+  return {w, contact.stiffness, false};
 }
 
 }  // namespace asperity

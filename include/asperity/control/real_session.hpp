@@ -48,7 +48,8 @@ class real_session {
                const real_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
         contact_(std::move(feel), placement, shared_),
-        device_(dev, config, placement.centre_of_mass_a, shared_, std::move(observer)) {}
+        device_(dev, with_period(config, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
+                std::move(observer)) {}
 
   // The loops hold the address of the exchange, the threads that of the session.
   real_session(const real_session&) = delete;

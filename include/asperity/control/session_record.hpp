@@ -28,6 +28,7 @@ struct session_record {
   double surplus_j = 0.0;           ///< what the passivity guard acts on
   double guard_alpha_per_s = 0.0;   ///< damping rate that the guard added
   double guard_scale = 1.0;         ///< factor that the guard put on the wrench
+  double rate_scale = 1.0;          ///< factor that late loops put on the wrench
   bool pulling = false;             ///< the linear contact would have pulled and was set to zero
   sample_verdict sample = sample_verdict::accepted;
   status contact_status = status::not_ready;  ///< the renderer's answer behind the contact in use

@@ -31,7 +31,8 @@ class virtual_session {
                   const virtual_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
         contact_(std::move(feel), placement, shared_),
-        device_(dev, config, placement.centre_of_mass_a, shared_, std::move(observer)),
+        device_(dev, with_period(config, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
+                std::move(observer)),
         next_contact_ns_(schedule.start_ns),
         next_device_ns_(schedule.start_ns) {}
 

@@ -28,8 +28,11 @@ enum class gate_fault : std::uint8_t {
   device_departed,     ///< the device is no longer there
   watchdog,            ///< the application gave no sign of life in time
   interrupted,         ///< a signal asked for a stop
+  stalled,             ///< the device loop stood still for too long, or again and again
+  contact_stalled,     ///< the contact loop did
+  overloaded,          ///< the loops were late for so long that nothing could be put out
 };
-inline constexpr int gate_fault_count = 12;
+inline constexpr int gate_fault_count = 15;
 
 [[nodiscard]] constexpr const char* to_string(gate_fault f) noexcept {
   switch (f) {
@@ -57,6 +60,12 @@ inline constexpr int gate_fault_count = 12;
       return "application watchdog";
     case gate_fault::interrupted:
       return "interrupted";
+    case gate_fault::stalled:
+      return "device loop stalled";
+    case gate_fault::contact_stalled:
+      return "contact loop stalled";
+    case gate_fault::overloaded:
+      return "overloaded";
   }
   return "unknown fault";
 }
@@ -124,7 +133,7 @@ class output_gate {
   /// The answer is valid for hold_ns: a device with a watchdog falls to zero that long after the last tick.
   [[nodiscard]] device_command pass(std::int64_t now_ns, const device_sample& seen,
                                     const device_command& wanted) noexcept {
-    const double dt = step_s(now_ns);
+    const double dt = advance(now_ns);
     const bool frame_ok = wanted.frame == wrench_frame::device_base;
     const bool fresh = now_ns <= wanted.valid_until_ns;
     const bool allowed = frame_ok & fresh & (fault_ == gate_fault::none);
@@ -143,7 +152,6 @@ class output_gate {
          .max_change = limits_.torque_slew_n_m_per_s * dt},
         allowed);
     last_ = {force.value, torque.value};
-    heat(dt);
 
     flight_.record({now_ns, seen, wanted.on_hand, last_});
     if (!force.finite || !torque.finite) {
@@ -241,17 +249,21 @@ class output_gate {
     return smooth_;
   }
 
-  [[nodiscard]] double step_s(std::int64_t now_ns) noexcept {
-    const double dt = started_ ? static_cast<double>(now_ns - last_ns_) * 1e-9 : 0.0;
+  // The last wrench warmed the motors for as long as it was held; after that they cooled. @return what the slew may use
+  [[nodiscard]] double advance(std::int64_t now_ns) noexcept {
+    const double passed_s = started_ ? std::max(0.0, static_cast<double>(now_ns - last_ns_) * 1e-9) : 0.0;
     started_ = true;
     last_ns_ = now_ns;
-    return std::clamp(dt, 0.0, longest_step_s);
+    const double held_s = std::min(passed_s, static_cast<double>(std::max<std::int64_t>(0, hold_ns_)) * 1e-9);
+    heat(last_, held_s);
+    heat({}, passed_s - held_s);
+    return std::min(passed_s, longest_step_s);
   }
 
-  void heat(double dt) noexcept {
+  void heat(const wrench& held, double dt) noexcept {
     const double a = dt / (limits_.thermal_time_s + dt);
-    force_mean_square_ += a * (glm::dot(last_.force, last_.force) - force_mean_square_);
-    torque_mean_square_ += a * (glm::dot(last_.torque, last_.torque) - torque_mean_square_);
+    force_mean_square_ += a * (glm::dot(held.force, held.force) - force_mean_square_);
+    torque_mean_square_ += a * (glm::dot(held.torque, held.torque) - torque_mean_square_);
   }
 
   gate_limits limits_;

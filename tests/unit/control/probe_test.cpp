@@ -100,7 +100,7 @@ struct stiff_scene {
     }
     tool.reset({axes == 6 ? exp_rotation({0.002, -0.001, 0.003}) : quat(1, 0, 0, 0), {0.001, -0.002, 0.003}});
   }
-  [[nodiscard]] status step() { return tool.step(1e-3, coupling, {}, {}, evaluate(contact, tool.state().T_wc, 1.0)); }
+  [[nodiscard]] status step() { return tool.step(1e-3, coupling, {}, {}, evaluate(contact, tool.state().T_wc)); }
   [[nodiscard]] double energy_j() const {
     const vec6 q = pose_difference(tool.state().T_wc, {});
     return tool.kinetic_j() + coupling.stored_j({}, tool.state().T_wc) - 0.5 * dot(q, contact.stiffness * q);
@@ -159,7 +159,7 @@ TEST(probe, closes_its_energy_book) {
     const double t = i * 1e-4;
     const pose target{exp_rotation({0.1 * std::sin(30 * t), 0.05 * std::sin(50 * t), 0}),
                       {0.01 * std::sin(20 * t), 0, -0.002 * std::sin(40 * t)}};
-    ASSERT_EQ(p.step(1e-4, coupling, target, {}, evaluate(wall, p.state().T_wc, 1.0), {{0.1, 0, 0}, vec3(0.0)}),
+    ASSERT_EQ(p.step(1e-4, coupling, target, {}, evaluate(wall, p.state().T_wc), {{0.1, 0, 0}, vec3(0.0)}),
               status::ok);
   }
   const probe_energy& e = p.energy();
