@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "asperity/control/session_record.hpp"
 #include "simulation/energy_book.hpp"
@@ -38,6 +39,8 @@ class checker {
     stop_asked_ = false;
     has_pose_ = false;
     rejected_in_a_row_ = 0;
+    lateness_ = {};
+    quiet_until_ns_ = std::numeric_limits<std::int64_t>::min();
   }
   /// A person has told the loop to stop.
   void on_stopped() noexcept { stop_asked_ = fault_ == gate_fault::none; }
@@ -51,15 +54,16 @@ class checker {
     const device_command& told = device_->command();
     const double passed_s = started_ ? 1e-9 * static_cast<double>(r.time_ns - last_time_ns_) : 0.0;
     const double slew_s = std::clamp(passed_s, 0.0, longest_slew_s);
+    expired_ = started_ && r.time_ns > last_told_.valid_until_ns;
 
     numbers(r, told, expect);
     time(r, facts, told, expect);
     limits(told, slew_s, expect);
     samples(r, expect);
     energy(r, told, passed_s, slew_s, expect);
+    lateness(r, facts, told, slew_s, expect);
     causes(r, slew_s, told, expect);
     life(r, told, expect);
-    contact_age(r, facts, expect);
 
     started_ = true;
     last_time_ns_ = r.time_ns;
@@ -148,6 +152,14 @@ class checker {
     const guard_config& g = scenario_->control.guard;
     const bool spent = book_.surplus_j() > g.cut_off_j - book_.unknown_j() - 1e-9;
     const bool overspent = book_.surplus_j() > g.cut_off_j + book_.unknown_j() + 1e-9;
+    const rate_limits& rates = scenario_->control.rates;
+    const double lapse_limit = rates.most_lapses - 1e-6;
+    const bool stood_still = lateness_.gap_ns > rates.longest_gap_ns;
+    const bool may_stall = stood_still || lateness_.gaps.level > lapse_limit;
+    const bool may_contact_stall =
+        lateness_.contact_age_ns > rates.longest_contact_age_ns || lateness_.contacts.level > lapse_limit;
+    const bool may_overload = lateness_.silent_ns > rates.longest_silence_ns;
+    const bool must_stall = stood_still && has_pose_ && device_->output_allowed();
     if (fault_ != gate_fault::none) {
       expect(r.fault == fault_, "fault: the first cause was not kept");
       force_left_n_ = std::max(0.0, force_left_n_ - force_slew_ * slew_s);
@@ -157,12 +169,15 @@ class checker {
              "fault: the torque stays");
       return;
     }
-    expect(!(given_up || refused || stop_asked_ || overspent) || r.fault != gate_fault::none,
+    expect(!(given_up || refused || stop_asked_ || overspent || must_stall) || r.fault != gate_fault::none,
            "fault: none where there is a cause");
     if (r.fault == gate_fault::none) return;
     expect((r.fault == gate_fault::bad_samples && given_up) || (r.fault == gate_fault::device_failed && refused) ||
                (r.fault == gate_fault::device_departed && device_->write_status() == status::not_ready) ||
-               (r.fault == gate_fault::energy && spent) || (r.fault == gate_fault::stopped && stop_asked_),
+               (r.fault == gate_fault::energy && spent) || (r.fault == gate_fault::stopped && stop_asked_) ||
+               (r.fault == gate_fault::stalled && may_stall) ||
+               (r.fault == gate_fault::contact_stalled && may_contact_stall) ||
+               (r.fault == gate_fault::overloaded && may_overload),
            "fault: without its cause");
     fault_ = r.fault;
     stop_asked_ = false;
@@ -179,14 +194,35 @@ class checker {
     expect(r.fault == gate_fault::none || !is_armed || !is_zero(told.on_hand), "life: armed in a fault, at rest");
   }
 
+  // A contact that is too old is not felt, nor is anything soon after a command expired. How often either happened, and
+  // for how long nothing left, is counted here anew: it is what a fault of lateness has to rest on.
   template <class Expect>
-  void contact_age(const session_record& r, const tick_facts& facts, Expect expect) const noexcept {
+  void lateness(const session_record& r, const tick_facts& facts, const device_command& told, double slew_s,
+                Expect expect) noexcept {
     const contact_ageing& a = scenario_->control.ageing;
+    const rate_limits& limits = scenario_->control.rates;
     const std::int64_t age_ns = facts.contact_given ? r.time_ns - facts.contact_pose_ns : 0;
     const bool in_use = r.probe_status != status::not_ready;
     expect(!in_use || r.contact_age_ns == age_ns, "stale contact: its age is told wrong");
-    const bool over = !in_use || !facts.contact_given || age_ns >= a.hold_ns + a.fade_ns;
-    expect(!over || is_zero(r.on_probe_w), "stale contact: still pushes");
+    expect((in_use && facts.contact_given) || is_zero(r.on_probe_w), "stale contact: pushes before there is one");
+
+    const bool too_old = in_use && facts.contact_given && age_ns >= a.hold_ns + a.fade_ns;
+    aged_n_ = too_old ? std::max(0.0, aged_n_ - force_slew_ * slew_s) : glm::length(told.on_hand.force);
+    aged_n_m_ = too_old ? std::max(0.0, aged_n_m_ - torque_slew_ * slew_s) : glm::length(told.on_hand.torque);
+    expect(glm::length(told.on_hand.force) <= aged_n_ * (1.0 + rounding) + 1e-12, "stale contact: still pushes");
+    expect(glm::length(told.on_hand.torque) <= aged_n_m_ * (1.0 + rounding) + 1e-12, "stale contact: still turns");
+
+    lateness_.gap_ns = started_ ? r.time_ns - last_time_ns_ : 0;
+    if (expired_ && in_use) quiet_until_ns_ = r.time_ns + limits.settle_ns;
+    expect(r.time_ns >= quiet_until_ns_ || is_zero(told.on_hand), "gap: output too soon after a command expired");
+
+    if (!in_use) return;
+    const double passed = static_cast<double>(lateness_.gap_ns) / static_cast<double>(limits.lapse_memory_ns);
+    lateness_.gaps.count(passed, expired_);
+    lateness_.contacts.count(passed, too_old && !was_too_old_);
+    was_too_old_ = too_old;
+    lateness_.contact_age_ns = age_ns;
+    lateness_.silent_ns = is_zero(told.on_hand) ? lateness_.silent_ns + lateness_.gap_ns : 0;
   }
 
   template <class Expect>
@@ -197,7 +233,8 @@ class checker {
     t.accepted = accepted;
     t.T_dh = device_->sample().T_dh;
     t.told = told.on_hand;
-    t.uncertain = device_->write_status() != status::ok || r.time_ns > last_told_.valid_until_ns || was_silenced();
+    t.expired = expired_;
+    t.uncertain = device_->write_status() != status::ok || was_silenced();
     t.slew_s = slew_s;
     t.step_s = std::min(passed_s, 1e-9 * static_cast<double>(scenario_->control.longest_step_ns));
     if (accepted && !has_pose_) book_.reset();
@@ -227,7 +264,7 @@ class checker {
   [[nodiscard]] static bool is_zero(const wrench& w) noexcept { return w.force == vec3(0.0) && w.torque == vec3(0.0); }
   /// What the device was putting out when the command came.
   [[nodiscard]] wrench before() const noexcept {
-    return may_put_out(last_state_) && device_->output_allowed() ? last_told_.on_hand : wrench{};
+    return may_put_out(last_state_) && device_->output_allowed() && !expired_ ? last_told_.on_hand : wrench{};
   }
 
   const scenario* scenario_;
@@ -249,6 +286,27 @@ class checker {
   pose T_dh_{};
   std::int64_t accepted_at_ns_ = 0;
   std::uint32_t rejected_in_a_row_ = 0;
+
+  // A count that forgets one in each lapse_memory_ns.
+  struct leaky_count {
+    double level = 0.0;
+    void count(double forgotten, bool one_more) noexcept {
+      level = std::max(0.0, level - forgotten) + (one_more ? 1.0 : 0.0);
+    }
+  };
+  struct late_loops {
+    std::int64_t gap_ns = 0;
+    std::int64_t contact_age_ns = 0;
+    std::int64_t silent_ns = 0;
+    leaky_count gaps{};
+    leaky_count contacts{};
+  };
+  late_loops lateness_{};
+  bool expired_ = false;  // the last command was no longer valid when this tick came
+  bool was_too_old_ = false;
+  std::int64_t quiet_until_ns_ = std::numeric_limits<std::int64_t>::min();
+  double aged_n_ = 0.0;  // what may be left of the force since the contact grew too old
+  double aged_n_m_ = 0.0;
 
   bool stop_asked_ = false;
   gate_fault fault_ = gate_fault::none;

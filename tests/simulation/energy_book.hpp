@@ -15,6 +15,7 @@ struct booked_tick {
   bool accepted = false;   ///< a pose came that could be used
   pose T_dh{};             ///< that pose
   wrench told{};           ///< what the device is told to put out from now on
+  bool expired = false;    ///< the last command had expired before this tick: the device put out nothing
   bool uncertain = false;  ///< in the time since the last tick the device did something else than it was told
   double slew_s = 0.0;     ///< time that the gate may use for a change in this tick
   double step_s = 0.0;     ///< time that the loop says has passed since the last tick
@@ -44,6 +45,7 @@ class energy_book {
   void reset() noexcept { *this = energy_book(guard_, cut_off_.slew_time_s()); }
 
   void book(const booked_tick& t) noexcept {
+    if (t.expired) told_ = {};
     gap_.widen(told_);
     gap_.widen(t.told);
     gap_.uncertain = gap_.uncertain || t.uncertain;

@@ -246,7 +246,7 @@ class device_loop {
 
   [[nodiscard]] double part_allowed(const vec6& way, double dt_s, const rate_verdict& rates) const noexcept {
     if (!rates.settling) return 1.0;
-    if (rates.contact_lapsed) return 0.0;
+    if (rates.blind) return 0.0;
     const double far_m = glm::length(way.linear);
     const double far_rad = glm::length(way.angular);
     const double most_m = rates_.limits().catch_up_m_per_s * dt_s;

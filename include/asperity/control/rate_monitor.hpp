@@ -20,7 +20,7 @@ struct rate_limits {
   std::int64_t longest_contact_age_ns = 1'000'000'000;  ///< of the contact in use; an older one: contact_stalled
 
   double fading_lost_share = 0.25;           ///< share of device periods left out from which the output fades ...
-  double silent_lost_share = 0.5;            ///< ... to nothing here
+  double silent_lost_share = 0.45;           ///< ... to nothing here
   std::int64_t share_time_ns = 500'000'000;  ///< time constant over which the share is taken
 
   std::int64_t settle_ns = 50'000'000;  ///< punctual ticks after a lapse before anything is put out again
@@ -32,7 +32,7 @@ struct rate_limits {
 
   double catch_up_m_per_s =
       1.0;  ///< after a lapse the probe returns to the hand at this speed, so that contacts follow
-  double catch_up_rad_per_s = 10.0;
+  double catch_up_rad_per_s = 2.5;
 };
 
 /// How punctual a device loop was since it was made.
@@ -52,7 +52,7 @@ struct rate_report {
 struct rate_verdict {
   double scale = 1.0;                   ///< factor on the wrench; exactly 1 where nothing was late
   bool settling = false;                ///< after a lapse: the probe returns to the hand slowly
-  bool contact_lapsed = false;          ///< the contact in use is too old: the probe does not follow the hand
+  bool blind = false;                   ///< no contact tells what is on the way to the hand: the probe stays
   gate_fault fault = gate_fault::none;  ///< what the gate should be shut with
 };
 
@@ -104,7 +104,7 @@ class rate_monitor {
 
     out.scale = scale_;
     out.settling = settling_;
-    out.contact_lapsed = contact_lapsed;
+    out.blind = expired || contact_lapsed;
     out.fault = fault(gap_ns, contact_age_ns);
     return out;
   }

@@ -159,8 +159,7 @@ TEST(probe, closes_its_energy_book) {
     const double t = i * 1e-4;
     const pose target{exp_rotation({0.1 * std::sin(30 * t), 0.05 * std::sin(50 * t), 0}),
                       {0.01 * std::sin(20 * t), 0, -0.002 * std::sin(40 * t)}};
-    ASSERT_EQ(p.step(1e-4, coupling, target, {}, evaluate(wall, p.state().T_wc), {{0.1, 0, 0}, vec3(0.0)}),
-              status::ok);
+    ASSERT_EQ(p.step(1e-4, coupling, target, {}, evaluate(wall, p.state().T_wc), {{0.1, 0, 0}, vec3(0.0)}), status::ok);
   }
   const probe_energy& e = p.energy();
   const double gained = e.by_coupling_j + e.by_contact_j + e.by_external_j - e.numerical_j;
