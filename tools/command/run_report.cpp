@@ -24,6 +24,31 @@ std::string loop_text(const loop_times& times, const time_summary& measured) {
          std::to_string(times.skipped) + " skipped; " + to_text(measured);
 }
 
+json rates_json(const rate_report& r) {
+  const auto seconds = [](std::int64_t ns) { return 1e-9 * static_cast<double>(ns); };
+  return {{"lost_periods", r.lost_periods},
+          {"worst_lost_share", r.worst_lost_share},
+          {"lapses", r.lapses},
+          {"longest_gap", seconds(r.longest_gap_ns)},
+          {"contact_lapses", r.contact_lapses},
+          {"oldest_contact", seconds(r.oldest_contact_ns)},
+          {"lowest_scale", r.lowest_scale},
+          {"silent", seconds(r.silent_ns)}};
+}
+
+std::string rates_text(const rate_report& r) {
+  const auto ms = [](std::int64_t ns) { return brief(1e-6 * static_cast<double>(ns)) + " ms"; };
+  return std::to_string(r.lost_periods) + " periods without a tick, at most " + brief(100.0 * r.worst_lost_share) +
+         " % of them; longest gap " + ms(r.longest_gap_ns) + ", oldest contact " + ms(r.oldest_contact_ns);
+}
+
+std::string late_warning(const rate_report& r) {
+  return "  warning: the loops were late: the wrench was scaled down to " + brief(100.0 * r.lowest_scale) +
+         " % at times, and was zero for " + brief(1e-9 * static_cast<double>(r.silent_ns)) + " s (" +
+         std::to_string(r.lapses) + " gaps of the device loop, " + std::to_string(r.contact_lapses) +
+         " of the contact loop)\n";
+}
+
 // The flight recorder. What was not finite is null, as JSON has no word for it.
 json fault_json(const session_outcome& ended) {
   if (ended.fault == gate_fault::none) return nullptr;
@@ -81,6 +106,7 @@ answer report(const run_command& options, const session_findings& found) {
   out.document["tick_time_is"] = clock_of(options) == "virtual" ? "cpu" : "wall";
   out.document["memory"] = {{"models", memory.models}, {"renderer", memory.renderer}};
   if (memory.gpu) out.document["gpu"] = command::to_json(*memory.gpu);
+  out.document["rates"] = rates_json(ended.rates);
   out.document["rejected_samples"] = ended.rejected_samples;
   out.document["lost_records"] = ended.lost_records;
   out.document["fault"] = to_string(ended.fault);
@@ -97,6 +123,7 @@ answer report(const run_command& options, const session_findings& found) {
              clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("contact loop", loop_text(ended.contact, contact));
   out.text += row("device loop", loop_text(ended.device, device));
+  out.text += row("rates", rates_text(ended.rates));
   out.text += row("memory", memory_text(memory.models) + " models, " + memory_text(memory.renderer) + " renderer");
   if (memory.gpu) out.text += to_text(*memory.gpu);
   if (replay) out.text += row("replay", replay_text(*replay));
@@ -106,6 +133,7 @@ answer report(const run_command& options, const session_findings& found) {
   if (!options.plot.empty()) out.text += row("plot", options.plot);
   if (!summary.touched())
     out.text += "  warning: the probe never touched anything: lower it with --press or --probe-pose\n";
+  if (ended.rates.lowest_scale < 1.0) out.text += late_warning(ended.rates);
   if (ended.lost_records > 0) {
     out.text += "  warning: " + std::to_string(ended.lost_records) + " ticks are missing from the recording\n";
   }

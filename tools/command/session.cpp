@@ -139,6 +139,7 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   static_cast<void>(dev.disarm());
   if (failed) return *failed;
 
+  out.rates = session.device().rates().report();
   out.rejected_samples = session.device().samples().rejected();
   out.contact.late = count_above(out.contact.seconds, setup.contact_period_ns);
   out.device.late = count_above(out.device.seconds, device_period_ns);
@@ -199,6 +200,7 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   keep_fault(session.device().gate(), origin_ns.value_or(0), out);
   out.contact = to_times(session.contact_timing());
   out.device = to_times(session.device_timing());
+  out.rates = session.device().rates().report();
   out.rejected_samples = session.device().samples().rejected();
   out.lost_records = queue->lost();
   return out;

@@ -54,6 +54,7 @@ struct loop_times {
 struct session_outcome {
   loop_times contact;
   loop_times device;
+  rate_report rates{};  ///< how punctual the device loop was, and what lateness did to the output
   std::uint64_t rejected_samples = 0;
   std::uint64_t lost_records = 0;  ///< device ticks that on_tick never saw, because writing them was too slow
   gate_fault fault = gate_fault::none;
