@@ -119,7 +119,8 @@ class careful_walk {
     }
     if (++links_ > most_links) return fail(there.string() + ": too many links, or a ring of them");
     const std::filesystem::path to(std::string(target, static_cast<std::size_t>(length)));
-    names_.insert(names_.begin(), to.relative_path().begin(), to.relative_path().end());
+    const std::filesystem::path names = to.relative_path();
+    names_.insert(names_.begin(), names.begin(), names.end());
     if (to.is_absolute() && !enter_root()) return -1;
     return going_on;
   }
