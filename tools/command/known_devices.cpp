@@ -151,7 +151,10 @@ result<any_device> known_devices::open(const std::string& text) const {
   }
   result<any_device> device = directory_->make(*which);
   if (!device) return device;
-  if (const result<void> opened = device->open(); !opened) return opened.error();
+  if (const result<void> opened = device->open(); !opened) {
+    if (interrupted()) return error{error_code::cancelled, "interrupted while the device was opened"};
+    return opened.error();
+  }
   return device;
 }
 
