@@ -158,8 +158,8 @@ TEST_F(devices_command, a_driver_that_breaks_in_a_session_ends_the_session_and_n
     EXPECT_LT(taken_s, 20.0);
     ASSERT_EQ(o.exit_status, 1) << o.err;
     const json d = json::parse(o.out);
-    EXPECT_NE(d["fault"], "none");
-    EXPECT_NE(d["driver_fault"].get<std::string>().find(says), std::string::npos) << d["driver_fault"];
+    EXPECT_NE(d.value("fault", "none"), "none") << o.out;
+    EXPECT_NE(d.value("driver_fault", "").find(says), std::string::npos) << o.out;
     EXPECT_NE(o.err.find(says), std::string::npos) << o.err;
     EXPECT_GT(std::filesystem::file_size(path("felt.csv")), 100U);
   }

@@ -79,6 +79,7 @@ result<void> known_devices::load_plugins(driver_choice choice, const std::string
         d.problem = driver.error().message;
         return;
       }
+      d.driver = (*driver)->name();
       const auto same =
           std::find_if(all.begin(), all.end(), [&](const auto& other) { return other->name() == (*driver)->name(); });
       if (same != all.end()) {
@@ -138,7 +139,11 @@ result<std::unique_ptr<known_devices>> known_devices::look(driver_choice choice,
 }
 
 result<any_device> known_devices::open(const std::string& text) const {
-  const result<device_listing> which = directory_->find(text);
+  // A file need not be called what the driver in it calls itself.
+  const auto file = std::find_if(in_path_.begin(), in_path_.end(), [&text](const driver_in_path& d) {
+    return !d.driver.empty() && (text == d.name || text == d.file);
+  });
+  const result<device_listing> which = directory_->find(file == in_path_.end() ? text : file->driver);
   if (!which) {
     error e = which.error();
     for (const driver_in_path& d : in_path_) {

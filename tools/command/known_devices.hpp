@@ -30,6 +30,7 @@ struct driver_in_path {
   bool enabled = false;     ///< somebody asked for it, so that its code ran
   bool in_process = false;  ///< in this process
   std::optional<std::string> problem{};
+  std::string driver{};  ///< what it calls itself, where it was loaded
 };
 
 /// The drivers of this program, what they found, and what was refused.

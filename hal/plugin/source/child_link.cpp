@@ -46,16 +46,17 @@ result<void> child_link::start() {
   stamp_ = silences_ = 0;
   state_ = ASPERITY_STATE_ABSENT;
   unanswered_ = 0;
-  list_until_ns_ = monotonic_ns() + options_.list_patience_ns;
+  list_left_ns_ = options_.list_patience_ns;
+  const std::int64_t begin_ns = monotonic_ns();
   if (call(child_call::load, hello_) != ASPERITY_OK) return error{error_code::io_failed, hello_.text};
+  list_left_ns_ -= monotonic_ns() - begin_ns;
   return {};
 }
 
 std::int64_t child_link::patience_ns(child_call what) const noexcept {
   if (what == child_call::open) return options_.open_patience_ns;
   const bool first = what == child_call::load || what == child_call::list;
-  if (first && list_until_ns_ != 0) return std::max<std::int64_t>(0, list_until_ns_ - monotonic_ns());
-  return first ? options_.list_patience_ns : options_.call_patience_ns;
+  return first ? list_left_ns_ : options_.call_patience_ns;
 }
 
 void child_link::fail(call_answer& answer, const std::string& why) const {
@@ -113,7 +114,7 @@ std::int32_t child_link::call(child_call what, call_answer& answer, const call_r
 result<std::vector<listed_item>> child_link::list() {
   call_answer answer{};
   const std::int32_t code = call(child_call::list, answer);
-  list_until_ns_ = 0;
+  list_left_ns_ = options_.list_patience_ns;
   if (code != ASPERITY_OK) return error{error_code::io_failed, answer.text};
   if (answer.count > most_listed) {
     return error{error_code::bad_format, file_->path().string() + ": the driver's process lists more than 64 devices"};

@@ -29,7 +29,7 @@ class child_link {
   [[nodiscard]] result<void> start();
   /// What the driver says of itself. @pre start() succeeded
   [[nodiscard]] const call_answer& hello() const noexcept { return hello_; }
-  /// What is plugged in, judged. For a process that was just started the time since then counts.
+  /// What is plugged in, judged. The first list() of a process has what loading left of its time.
   [[nodiscard]] result<std::vector<listed_item>> list();
 
   /// One call outside a tick. The answer's text is ended by a zero byte. @return ASPERITY_FAILED, with the reason in
@@ -69,7 +69,7 @@ class child_link {
   trouble trouble_ = trouble::none;
   child_phase silent_in_ = child_phase::idle;
   std::uint64_t calls_ = 0;
-  std::int64_t list_until_ns_ = 0;
+  std::int64_t list_left_ns_ = 0;  // of the time for loading and the first list() together
   call_answer hello_{};
   asperity_listing which_{};
   std::shared_ptr<std::string> last_words_ = std::make_shared<std::string>();
