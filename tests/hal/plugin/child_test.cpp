@@ -4,6 +4,7 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <gtest/gtest.h>
 #include <limits>
 #include <memory>
@@ -15,11 +16,14 @@
 #include <unistd.h>
 #include <vector>
 
+#include "asperity/hal/device_directory.hpp"
 #include "asperity/hal/driver_conversion.hpp"
 #include "asperity/hal/simulated/simulated_device.hpp"
 #include "asperity/plugin/child_driver.hpp"
 #include "asperity/plugin/plugin_driver.hpp"
+#include "command/patient_driver.hpp"
 #include "module_files.hpp"
+#include "support/counted_news.hpp"
 
 namespace asperity::plugin {
 namespace {
@@ -490,6 +494,69 @@ TEST(child, a_hostile_process_can_say_nothing_that_is_believed) {
   ::unsetenv("ASPERITY_HOSTILE_SEED");
   EXPECT_GT(armed, 0) << "the noise began too early to be looked at in a tick";
   std::printf("hostile: armed %d times, %d samples\n", armed, measured);
+}
+
+TEST(child, a_tick_allocates_nothing_on_this_side) {
+  for (const child_pace pace : {child_pace::paced, child_pace::lockstep}) {
+    broken_device b("crashes_later", options_for("crashes_later", pace));
+    ASSERT_TRUE(b.device);
+    device_sample in;
+    const std::size_t before = test_support::news_in_this_thread();
+    for (int tick = 0; tick < 200; ++tick) {
+      const std::int64_t now_ns = clock_ns();
+      static_cast<void>(b.device->read(now_ns, in));
+      static_cast<void>(b.device->write(now_ns, push(now_ns, {0.5, 0.0, 0.0})));
+      static_cast<void>(b.device->state());
+    }
+    static_cast<void>(b.device->disarm());
+    EXPECT_EQ(test_support::news_in_this_thread(), before) << "healthy ticks, the crash, and those in fault";
+    EXPECT_EQ(b.device->state(), device_state::fault);
+  }
+}
+
+// A driver of the build whose bus does not answer until it is told to.
+class waiting_driver final : public device_driver {
+ public:
+  explicit waiting_driver(std::shared_future<void> answer) : answer_(std::move(answer)) {}
+  [[nodiscard]] std::string_view name() const noexcept override { return "waiting"; }
+  [[nodiscard]] driver_maturity maturity() const noexcept override { return driver_maturity::simulated; }
+  [[nodiscard]] result<std::vector<device_listing>> list() override {
+    answer_.wait();
+    return std::vector<device_listing>(1);
+  }
+  [[nodiscard]] result<any_device> make(const device_listing&) override {
+    return error{error_code::unsupported, "it makes none"};
+  }
+
+ private:
+  std::shared_future<void> answer_;
+};
+
+TEST(drivers_of_the_build, one_that_hangs_is_left_behind_and_the_others_are_listed) {
+  std::promise<void> answers;
+  auto uses = std::make_shared<int>(1);
+  const std::weak_ptr<int> used = uses;
+  const auto waiting = std::make_shared<waiting_driver>(answers.get_future().share());
+  std::vector<std::unique_ptr<device_driver>> all;
+  all.push_back(std::make_unique<command::patient_driver>(waiting, std::move(uses), 50ms));
+  std::promise<void> at_once;
+  at_once.set_value();
+  all.push_back(std::make_unique<command::patient_driver>(
+      std::make_shared<waiting_driver>(at_once.get_future().share()), nullptr, 10s));
+  {
+    device_directory directory(std::move(all));
+    const std::int64_t begin_ns = clock_ns();
+    static_cast<void>(directory.refresh());
+    static_cast<void>(directory.refresh());
+    EXPECT_LT(seconds_since(begin_ns), 5.0);
+    EXPECT_EQ(directory.devices().size(), 1U);
+    ASSERT_EQ(directory.problems().size(), 1U);
+    EXPECT_NE(directory.problems()[0].why.message.find("50 ms"), std::string::npos)
+        << directory.problems()[0].why.message;
+  }
+  EXPECT_FALSE(used.expired()) << "what it uses stays until it is out of there";
+  answers.set_value();
+  EXPECT_TRUE(wait_until(10s, [&] { return used.expired(); }));
 }
 
 TEST(child, a_program_without_the_helper_is_told_what_is_missing) {
