@@ -50,6 +50,10 @@ if(TARGET asperity_command)
   install(FILES ${PROJECT_SOURCE_DIR}/tools/command/manual/asperity.bash
           DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME asperity)
 endif()
+if(TARGET asperity_driver_host)
+  # Found beside a program, in this folder below its prefix, or here; see child_process.cpp.
+  install(TARGETS asperity_driver_host RUNTIME DESTINATION ${CMAKE_INSTALL_LIBEXECDIR})
+endif()
 if(TARGET asperity_conformance)
   install(TARGETS asperity_conformance RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

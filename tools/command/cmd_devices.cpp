@@ -9,6 +9,7 @@
 #include "can_devices.hpp"
 #endif
 #include "cli.hpp"
+#include "driver_options.hpp"
 #include "gpu_devices.hpp"
 #include "known_devices.hpp"
 #include "model_report.hpp"
@@ -63,10 +64,13 @@ void add(const device_listing& d, answer& out) {
                                   (d.not_openable ? *d.not_openable : what_it_does(d.capabilities)));
 }
 
-result<answer> list_devices() {
+result<answer> list_devices(const driver_choice& choice) {
   const device_capabilities c = simulated_capabilities();
   answer out;
-  out.document = {{"devices", json::array()}, {"drivers", json::array({"simulated"})}, {"problems", json::array()}};
+  out.document = {{"devices", json::array()},
+                  {"drivers", json::array({"simulated"})},
+                  {"driver_files", json::array()},
+                  {"problems", json::array()}};
   out.document["units"] = "SI";
   add({.driver = "simulated",
        .identity = "simulated",
@@ -76,7 +80,9 @@ result<answer> list_devices() {
        .capabilities = c},
       out);
 
-  const known_devices known;
+  const result<std::unique_ptr<known_devices>> looked = known_devices::look(choice);
+  if (!looked) return looked.error();
+  const known_devices& known = **looked;
   for (const device_listing& d : known.directory().devices()) add(d, out);
   for (const std::string& driver : known.drivers()) out.document["drivers"].push_back(driver);
   const auto problem = [&out](const std::string& where, const std::string& why) {
@@ -84,7 +90,20 @@ result<answer> list_devices() {
     out.text += row(where, why);
   };
   for (const driver_problem& p : known.directory().problems()) problem("driver " + p.driver, p.why.message);
-  for (const refused_module& r : known.refused()) problem(r.file, r.why);
+  for (const driver_in_path& d : known.in_path()) {
+    out.document["driver_files"].push_back({{"name", d.name},
+                                            {"file", d.file},
+                                            {"enabled", d.enabled},
+                                            {"in_process", d.in_process},
+                                            {"problem", d.problem ? json(*d.problem) : json()}});
+    if (d.problem) {
+      problem(d.file, *d.problem);
+    } else if (!d.enabled) {
+      out.text +=
+          row(d.name,
+              d.file + ": a driver that is not enabled, nothing in it was run; asperity devices --enable " + d.name);
+    }
+  }
 #ifdef ASPERITY_HAS_CAN
   add_can_interfaces(out);
 #endif
@@ -113,13 +132,15 @@ result<answer> with_gpus(answer devices) {
 
 void add_devices(command_line& line) {
   const auto gpus = std::make_shared<bool>(false);
+  const auto choice = std::make_shared<driver_choice>();
   CLI::App& sub =
       line.add("devices", "List the devices that a session can be felt with, or the GPUs that can calculate",
-               [gpus](const common_options&) -> result<answer> {
-                 result<answer> devices = list_devices();
+               [gpus, choice](const common_options&) -> result<answer> {
+                 result<answer> devices = list_devices(*choice);
                  return *gpus && devices ? with_gpus(std::move(devices).value()) : devices;
                });
   sub.add_flag("--gpu", *gpus, "List the GPUs that --backend gl-compute and gl-occlusion can use");
+  add_driver_options(sub, *choice);
 }
 
 }  // namespace asperity::command

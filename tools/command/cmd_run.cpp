@@ -8,6 +8,7 @@
 #include "cli.hpp"
 #include "device_recorder.hpp"
 #include "device_replay.hpp"
+#include "driver_options.hpp"
 #include "gpu_report.hpp"
 #include "known_devices.hpp"
 #include "options.hpp"
@@ -59,7 +60,7 @@ result<void> check_options(const run_command& options) {
 
 // What a session is felt with. The parts behind the device outlive it.
 struct felt_device {
-  std::optional<known_devices> known;
+  std::unique_ptr<known_devices> known;
   std::optional<device_replay> replay;
   std::optional<any_device> device;
 };
@@ -71,7 +72,10 @@ result<void> open_device(const run_command& options, const scene& bodies, felt_d
     felt.device.emplace(simulated_device({.seed = options.seed, .motion = motion_of(options, bodies)}));
     return felt.device->open();
   } else {
-    felt.known.emplace(options.firmware);
+    result<std::unique_ptr<known_devices>> known =
+        known_devices::look(options.drivers, options.device, options.firmware);
+    if (!known) return known.error();
+    felt.known = std::move(known).value();
     result<any_device> opened = felt.known->open(options.device);
     if (!opened) return opened.error();
     felt.device.emplace(std::move(opened).value());
@@ -162,6 +166,7 @@ result<answer> run_session(const run_command& options, const common_options& com
                   progress);
   if (!ended) return ended.error();
   if (felt.replay) found.replay = felt.replay->outcome();
+  if (felt.known) found.driver = felt.known->what_happened();
   if (const result<void> closed = files->close(options, *ended, found.summary); !closed) return closed.error();
   found.ended = std::move(ended).value();
   return report(options, found);
@@ -187,9 +192,10 @@ void add_run(command_line& line) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub.add_option("--device", o->device,
                  "Device: simulated; the identity, path, driver or part of the name of one of `asperity devices`; or "
-                 "replay:FILE, a session on record")
+                 "replay:FILE, a session on record. A driver in the driver path is enabled by its name here")
       ->capture_default_str();
   sub.add_option("--firmware", o->firmware, "Your copy of the firmware of a Novint Falcon");
+  add_driver_options(sub, o->drivers);
   sub.add_option("--seconds", o->seconds,
                  "Length of the session, 3 by default; a replay lasts as long as its recording")
       ->check(positive_number_error, "NUMBER > 0")

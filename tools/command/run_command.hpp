@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "known_devices.hpp"
 #include "render_options.hpp"
 
 namespace asperity::command {
@@ -25,6 +26,7 @@ struct run_command {
   double contact_rate_hz = 1000.0;
   std::string clock;  // empty: what fits the device
   std::string firmware;
+  driver_choice drivers;
   std::string record;
   std::string record_device;
   std::string plot;

@@ -80,7 +80,7 @@ std::string replay_text(const replay_outcome& replay) {
 }  // namespace
 
 answer report(const run_command& options, const session_findings& found) {
-  const auto& [poses, ended, summary, memory, replay] = found;
+  const auto& [poses, ended, summary, memory, replay, driver] = found;
   const time_summary contact = summarise(ended.contact.seconds);
   const time_summary device = summarise(ended.device.seconds);
   json T_wb = json::array();
@@ -111,6 +111,7 @@ answer report(const run_command& options, const session_findings& found) {
   out.document["lost_records"] = ended.lost_records;
   out.document["fault"] = to_string(ended.fault);
   out.document["fault_record"] = fault_json(ended);
+  out.document["driver_fault"] = driver.empty() ? json() : json(driver);
   out.document["interrupted"] = ended.interrupted;
   out.document["recording"] = options.record.empty() ? json() : json(options.record);
   out.document["device_recording"] = options.record_device.empty() ? json() : json(options.record_device);
@@ -128,6 +129,7 @@ answer report(const run_command& options, const session_findings& found) {
   if (memory.gpu) out.text += to_text(*memory.gpu);
   if (replay) out.text += row("replay", replay_text(*replay));
   out.text += row("faults", to_string(ended.fault));
+  if (!driver.empty()) out.text += row("driver", driver);
   if (!options.record.empty()) out.text += row("recording", options.record);
   if (!options.record_device.empty()) out.text += row("device recording", options.record_device);
   if (!options.plot.empty()) out.text += row("plot", options.plot);
@@ -141,7 +143,8 @@ answer report(const run_command& options, const session_findings& found) {
   if (ended.fault != gate_fault::none) {
     out.exit_status = exit_failed;
     out.complaint = "the output gate shut after " + brief(ended.ended_at_s) + " s (" + to_string(ended.fault) +
-                    "): the wrench is zero; see the last rows of the recording";
+                    "): the wrench is zero; see the last rows of the recording" +
+                    (driver.empty() ? "" : "; driver " + driver);
   } else if (ended.interrupted) {
     out.exit_status = exit_interrupted;
     out.complaint = "interrupted after " + brief(ended.ended_at_s) + " s: the wrench is zero, the recording is closed";

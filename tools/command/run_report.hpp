@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "cli.hpp"
 #include "device_replay.hpp"
@@ -29,6 +30,7 @@ struct session_findings {
   session_summary summary;
   memory_use memory;
   std::optional<replay_outcome> replay;  ///< only of a replay
+  std::string driver{};                  ///< what became of the driver's process; empty where all is well
 };
 
 [[nodiscard]] answer report(const run_command& options, const session_findings& found);

@@ -7,6 +7,8 @@
 #include <system_error>
 #include <utility>
 
+#include "asperity/plugin/driver_file.hpp"
+
 namespace asperity::plugin {
 
 std::vector<std::filesystem::path> search_path() {
@@ -24,8 +26,8 @@ std::vector<std::filesystem::path> search_path() {
   return folders;
 }
 
-found_drivers load_drivers(std::span<const std::filesystem::path> folders, const log_sink& log) {
-  found_drivers out;
+std::vector<found_file> find_driver_files(std::span<const std::filesystem::path> folders) {
+  std::vector<found_file> out;
   for (const std::filesystem::path& folder : folders) {
     std::vector<std::filesystem::path> files;
     std::error_code failed;
@@ -34,21 +36,16 @@ found_drivers load_drivers(std::span<const std::filesystem::path> folders, const
     }
     std::sort(files.begin(), files.end());
     for (const std::filesystem::path& file : files) {
-      result<std::unique_ptr<plugin_driver>> driver = plugin_driver::load(file, log);
-      if (!driver) {
-        out.refused.push_back({file, driver.error()});
-        continue;
+      found_file found{.name = file.stem().string(), .file = file};
+      const auto same =
+          std::find_if(out.begin(), out.end(), [&](const found_file& other) { return other.name == found.name; });
+      if (same != out.end()) {
+        found.refused = error{error_code::invalid_argument, file.string() + ": a driver named " + found.name +
+                                                                " was already found: " + same->file.string()};
+      } else if (const result<driver_file> opened = driver_file::open(file); !opened) {
+        found.refused = opened.error();
       }
-      const auto same = std::find_if(out.drivers.begin(), out.drivers.end(),
-                                     [&](const auto& other) { return other->name() == (*driver)->name(); });
-      if (same != out.drivers.end()) {
-        out.refused.push_back(
-            {file,
-             {error_code::invalid_argument, file.string() + ": a driver named " + std::string((*driver)->name()) +
-                                                " was already loaded from " + (*same)->module().where()}});
-        continue;
-      }
-      out.drivers.push_back(std::move(driver).value());
+      out.push_back(std::move(found));
     }
   }
   return out;

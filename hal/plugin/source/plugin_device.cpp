@@ -13,9 +13,11 @@
 namespace asperity::plugin {
 namespace {
 
-// Shortened to the limit, direction kept; the certificate of the gate's function stands behind it.
+// Shortened to the limit, direction kept; the certificate of the gate's function stands behind it. What is at the limit
+// but for rounding stays as it is: a command that passes two of these, one in each process, is that of one. @pre finite
 vec3 within(const vec3& v, double limit) noexcept {
   const double l = std::min(limit, 1e6);
+  if (glm::dot(v, v) <= l * l * (1.0 + 1e-12)) return v;
   return bound_vector(v, vec3(0.0), {.limit = l, .saturation = l, .max_change = std::numeric_limits<double>::max()},
                       true)
       .value;

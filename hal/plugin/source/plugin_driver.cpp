@@ -63,8 +63,9 @@ struct gathering {
 
 }  // namespace
 
-result<std::unique_ptr<plugin_driver>> plugin_driver::load(const std::filesystem::path& file, log_sink log) {
-  result<std::shared_ptr<const driver_module>> m = driver_module::load(file, std::move(log));
+result<std::unique_ptr<plugin_driver>> plugin_driver::load(const std::filesystem::path& file, log_sink log,
+                                                           file_trust trust) {
+  result<std::shared_ptr<const driver_module>> m = driver_module::load(file, std::move(log), trust);
   if (!m) return m.error();
   return std::make_unique<plugin_driver>(std::move(m).value());
 }

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
+#include <fcntl.h>
 #include <memory>
 #include <mutex>
 #include <stdexcept>
@@ -31,6 +32,34 @@ bool is_broken(std::string_view what) {
 
 std::mutex a_lock;
 
+[[noreturn]] void hang() {
+  for (;;) ::pause();
+}
+[[noreturn]] void print_for_ever() {
+  for (;;) std::puts("and another thing"), std::fflush(stdout);
+}
+
+// One line for a test that looks from outside, with the time on CLOCK_MONOTONIC in ms.
+void tell(const char* what, double value = 0.0) noexcept {
+  const char* file = std::getenv("ASPERITY_BROKEN_LOG");
+  if (file == nullptr) return;
+  const int fd = ::open(file, O_WRONLY | O_APPEND | O_CREAT, 0600);
+  timespec t{};
+  ::clock_gettime(CLOCK_MONOTONIC, &t);
+  ::dprintf(fd, "%s %.6g %ld %d\n", what, value, t.tv_sec * 1000 + t.tv_nsec / 1'000'000, ::getpid());
+  ::close(fd);
+}
+
+// What runs before anybody has asked the driver for anything.
+__attribute__((constructor)) void when_loaded() {
+  if (is_broken("tells")) tell("loaded");
+  if (is_broken("throws_when_loaded")) throw std::runtime_error("thrown while it was loaded");
+  if (is_broken("exits_when_loaded")) ::_exit(7);
+  if (is_broken("crashes_when_loaded")) std::raise(SIGSEGV);
+  if (is_broken("hangs_when_loaded")) hang();
+  if (is_broken("prints_when_loaded")) print_for_ever();
+}
+
 class broken_handle {
  public:
   using policy_tag = device_tag;
@@ -52,6 +81,7 @@ class broken_handle {
 
   [[nodiscard]] result<void> open() {
     if (hangs_) ::sleep(3600);
+    if (crashes_in_open_) std::raise(SIGSEGV);
     if (prints_) std::puts("printed in open()");
     if (throws_in_open_) throw std::runtime_error("thrown in open()");
     result<void> done = inner_.open();
@@ -59,6 +89,7 @@ class broken_handle {
     return done;
   }
   [[nodiscard]] result<void> arm() {
+    if (hangs_in_arm_) hang();
     if (moves_limits_) limits_.peak_force_n = 3.9;
     if (arms_when_armed_ && may_put_out(inner_.state())) return {};
     return inner_.arm();
@@ -72,10 +103,15 @@ class broken_handle {
     return done;
   }
   status disarm() noexcept {
+    if (tells_) tell("disarm");
+    if (hangs_in_disarm_) hang();
     static_cast<void>(inner_.applied(last_write_ns_, left_over_));
     return inner_.disarm();
   }
   void close() noexcept {
+    if (tells_) tell("close");
+    if (hangs_in_close_) hang();
+    if (crashes_in_close_) std::raise(SIGSEGV);
     static_cast<void>(inner_.applied(last_write_ns_, left_over_));
     inner_.close();
   }
@@ -83,6 +119,9 @@ class broken_handle {
   [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
     if (crashes_) std::raise(SIGSEGV);
     if (exits_) ::_exit(0);
+    if (aborts_) std::abort();
+    if (hangs_in_read_ && reads_ == 20) hang();
+    if (crashes_later_ && reads_ == 20) std::raise(SIGSEGV);
     if (allocates_) {
       void* volatile p = std::malloc(16);
       std::free(p);
@@ -137,6 +176,10 @@ class broken_handle {
 
   [[nodiscard]] status write(std::int64_t now_ns, const device_command& out) noexcept {
     last_write_ns_ = now_ns;
+    ++writes_;
+    if (tells_) tell("write", out.on_hand.force.x);
+    if (hangs_in_write_ && writes_ == 20) hang();
+    if (crashes_in_write_ && writes_ == 20) std::raise(SIGSEGV);
     if (sleeps_) {
       const timespec t{.tv_sec = 0, .tv_nsec = 1000};
       ::nanosleep(&t, nullptr);
@@ -192,6 +235,7 @@ class broken_handle {
   bool lie_ = false;
   device_state lied_ = device_state::absent;
   std::uint64_t reads_ = 0;
+  std::uint64_t writes_ = 0;
   device_sample frozen_{};
   wrench left_over_{};
   vec3 wrapped_{0.0};
@@ -212,6 +256,17 @@ class broken_handle {
   const bool rearms_ = is_broken("rearms_after_clear_fault");
   const bool crashes_ = is_broken("crashes");
   const bool exits_ = is_broken("exits");
+  const bool aborts_ = is_broken("aborts");
+  const bool crashes_later_ = is_broken("crashes_later");
+  const bool crashes_in_open_ = is_broken("crashes_in_open");
+  const bool crashes_in_write_ = is_broken("crashes_in_write");
+  const bool crashes_in_close_ = is_broken("crashes_in_close");
+  const bool hangs_in_arm_ = is_broken("hangs_in_arm");
+  const bool hangs_in_read_ = is_broken("hangs_in_read");
+  const bool hangs_in_write_ = is_broken("hangs_in_write");
+  const bool hangs_in_disarm_ = is_broken("hangs_in_disarm");
+  const bool hangs_in_close_ = is_broken("hangs_in_close");
+  const bool tells_ = is_broken("tells");
   const bool allocates_ = is_broken("allocates_in_read");
   const bool locks_ = is_broken("locks");
   const bool reads_clock_ = is_broken("reads_clock");
@@ -252,6 +307,10 @@ struct broken_driver {
     std::vector<device_listing> out;
     if (is_broken("fails_to_list")) return error{error_code::io_failed, "the bus is on fire"};
     if (is_broken("nothing_plugged_in")) return out;
+    if (is_broken("crashes_in_list")) std::raise(SIGSEGV);
+    if (is_broken("exits_in_list")) ::_exit(0);
+    if (is_broken("hangs_in_list")) hang();
+    if (is_broken("prints_in_list")) print_for_ever();
     out.push_back({.driver = description.name,
                    .identity = "broken:1",
                    .path = "here",
@@ -274,6 +333,19 @@ std::int32_t list_without_end(void* context, std::int32_t (*found)(void*, const 
   abi::put_text(l.name, "endless");
   static_cast<void>(found(context, &l));
   return ASPERITY_OK;
+}
+std::int32_t list_without_number(void* context, std::int32_t (*found)(void*, const asperity_listing*), char*,
+                                 std::uint32_t) {
+  auto l = abi::blank<asperity_listing>();
+  abi::put_text(l.name, "one of many");
+  for (int i = 0; i < 1'000'000; ++i) {
+    abi::put_text(l.identity, std::to_string(i));
+    static_cast<void>(found(context, &l));
+  }
+  return ASPERITY_OK;
+}
+std::int32_t throwing_list(void*, std::int32_t (*)(void*, const asperity_listing*), char*, std::uint32_t) {
+  throw std::runtime_error("in list()");
 }
 std::int32_t throwing_read(asperity_device*, std::int64_t, asperity_sample*) { throw std::runtime_error("in read()"); }
 std::int32_t unknown_state(const asperity_device*) { return 77; }
@@ -304,6 +376,12 @@ const asperity_driver* table() {
   if (is_broken("no_disarm")) k.disarm = nullptr;
   if (is_broken("no_name")) k.name = "";
   if (is_broken("list_without_end")) k.list = list_without_end;
+  if (is_broken("list_without_number")) k.list = list_without_number;
+  if (is_broken("throws_in_list")) k.list = throwing_list;
+  // An address that nobody has, as from memory that was never set.
+  const auto nowhere = static_cast<std::uintptr_t>(0x10);
+  if (is_broken("garbage_table")) return reinterpret_cast<const asperity_driver*>(nowhere);
+  if (is_broken("wild_name")) k.name = reinterpret_cast<const char*>(nowhere);
   if (is_broken("throws_in_read")) k.read = throwing_read;
   if (is_broken("unknown_state")) k.state = unknown_state;
   if (is_broken("writes_beyond")) k.read = wide_read;

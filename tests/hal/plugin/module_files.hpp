@@ -20,4 +20,14 @@ class broken_way {
   ~broken_way() { ::unsetenv("ASPERITY_BROKEN"); }
 };
 
+/// A folder of the build that a driver may be loaded from, fresh for `name`; removed by the next test of that name.
+/// Not below the system's folder for temporary files, which everybody may write to.
+inline std::filesystem::path driver_folder(const std::string& name) {
+  const std::filesystem::path folder = std::filesystem::path(ASPERITY_TEST_FOLDER) / name;
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  std::filesystem::permissions(folder, std::filesystem::perms(0755));
+  return folder;
+}
+
 }  // namespace asperity::test_support

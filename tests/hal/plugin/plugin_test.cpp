@@ -12,7 +12,6 @@
 
 #include "asperity/hal/driver_conversion.hpp"
 #include "asperity/hal/simulated/simulated_device.hpp"
-#include "asperity/plugin/driver_search.hpp"
 #include "asperity/plugin/plugin_driver.hpp"
 #include "module_files.hpp"
 
@@ -24,7 +23,7 @@ using test_support::broken_way;
 constexpr std::int64_t ms = 1'000'000;
 
 std::unique_ptr<plugin_driver> load(const std::filesystem::path& file, log_sink log = {}) {
-  result<std::unique_ptr<plugin_driver>> driver = plugin_driver::load(file, std::move(log));
+  result<std::unique_ptr<plugin_driver>> driver = plugin_driver::load(file, std::move(log), file_trust::as_named);
   EXPECT_TRUE(driver) << driver.error().message;
   return driver ? std::move(driver).value() : nullptr;
 }
@@ -131,7 +130,7 @@ TEST(plugin, a_table_that_cannot_be_used_is_refused_with_its_fault) {
     SCOPED_TRACE(way);
     const broken_way chosen(way);
     load_failure failure{};
-    EXPECT_EQ(driver_module::load(test_support::broken_driver, {}, failure), nullptr);
+    EXPECT_EQ(driver_module::load(test_support::broken_driver, {}, failure, file_trust::as_named), nullptr);
     EXPECT_EQ(failure.fault, fault) << failure.why.message;
     EXPECT_NE(failure.why.message.find(test_support::broken_driver.string()), std::string::npos);
   }
@@ -139,23 +138,24 @@ TEST(plugin, a_table_that_cannot_be_used_is_refused_with_its_fault) {
 
 TEST(plugin, a_file_that_is_no_driver_is_refused) {
   load_failure failure{};
-  EXPECT_EQ(driver_module::load("/nowhere/driver.so", {}, failure), nullptr);
+  EXPECT_EQ(driver_module::load("/nowhere/driver.so", {}, failure, file_trust::as_named), nullptr);
   EXPECT_EQ(failure.fault, table_fault::not_loadable);
 
   const std::filesystem::path text = std::filesystem::path(testing::TempDir()) / "text.so";
   std::ofstream(text) << "not a shared object";
-  EXPECT_EQ(driver_module::load(text, {}, failure), nullptr);
+  EXPECT_EQ(driver_module::load(text, {}, failure, file_trust::as_named), nullptr);
   EXPECT_EQ(failure.fault, table_fault::not_loadable);
   std::filesystem::remove(text);
 
   Dl_info c_library{};
   ASSERT_NE(::dladdr(reinterpret_cast<void*>(&::getpid), &c_library), 0);
-  EXPECT_EQ(driver_module::load(c_library.dli_fname, {}, failure), nullptr);
+  EXPECT_EQ(driver_module::load(c_library.dli_fname, {}, failure, file_trust::as_named), nullptr);
   EXPECT_EQ(failure.fault, table_fault::no_entry) << failure.why.message;
 }
 
 TEST(plugin, a_driver_that_is_part_of_the_program) {
-  const result<std::shared_ptr<const driver_module>> loaded = driver_module::load(test_support::sample_driver);
+  const result<std::shared_ptr<const driver_module>> loaded =
+      driver_module::load(test_support::sample_driver, {}, file_trust::as_named);
   ASSERT_TRUE(loaded);
   const result<std::shared_ptr<const driver_module>> built_in =
       driver_module::from_table(&(*loaded)->table(), "in this program");
@@ -443,36 +443,6 @@ TEST(plugin, a_module_stays_until_its_last_device_is_gone) {
     EXPECT_EQ(device.read(ms, in), status::ok);
   }
   EXPECT_FALSE(is_loaded());
-}
-
-TEST(plugin, drivers_are_found_in_folders) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "asperity_drivers_test";
-  std::filesystem::remove_all(folder);
-  for (const char* sub : {"first", "second"}) {
-    std::filesystem::create_directories(folder / sub);
-    std::filesystem::copy(test_support::simulated_driver, folder / sub / "simulated.so");
-  }
-  std::ofstream(folder / "first" / "rubbish.so") << "rubbish";
-  std::ofstream(folder / "first" / "readme.txt") << "not looked at";
-
-  const std::string variable = "relative:" + (folder / "first").string() + "::" + (folder / "second").string();
-  ::setenv("ASPERITY_DRIVER_PATH", variable.c_str(), 1);
-  std::vector<std::filesystem::path> folders = search_path();
-  ::unsetenv("ASPERITY_DRIVER_PATH");
-  ASSERT_EQ(folders.size(), 3U);
-  EXPECT_EQ(folders[0], folder / "first");
-  EXPECT_EQ(folders[1], folder / "second");
-  EXPECT_TRUE(folders[2].is_absolute());
-  EXPECT_EQ(folders[2].filename(), "drivers");
-
-  folders[2] = folder / "not there";
-  const found_drivers found = load_drivers(folders);
-  ASSERT_EQ(found.drivers.size(), 1U);
-  EXPECT_EQ(found.drivers[0]->module().where(), (folder / "first" / "simulated.so").string());
-  ASSERT_EQ(found.refused.size(), 2U);
-  EXPECT_EQ(found.refused[0].file.filename(), "rubbish.so");
-  EXPECT_NE(found.refused[1].why.message.find("already loaded"), std::string::npos);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

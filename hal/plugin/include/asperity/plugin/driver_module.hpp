@@ -10,6 +10,7 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/hal/driver_abi.h"
+#include "asperity/plugin/driver_file.hpp"
 #include "asperity/plugin/table_check.hpp"
 
 namespace asperity::plugin {
@@ -18,26 +19,25 @@ namespace asperity::plugin {
 /// thread, several at once.
 using log_sink = std::function<void(std::uint32_t level, std::string_view driver, std::string_view line)>;
 
-/// Why a module was not loaded.
-struct load_failure {
-  table_fault fault;
-  error why;
-};
-
 /// A table that was checked, and the code behind it. Unloaded when the last driver and device that came from it are
 /// gone, so nothing ever points into code that left.
 class driver_module {
  public:
-  /// Loads and checks a shared object. Its own initialisation runs, with the rights of this process: load only what you
-  /// trust.
+  /// Loads and checks a shared object. Its code runs from here on, with the rights of this process and in the middle of
+  /// it: load only what you trust like this program itself. child_driver runs a driver in a process of its own.
   [[nodiscard]] static result<std::shared_ptr<const driver_module>> load(const std::filesystem::path& file,
-                                                                         log_sink log = {});
-  /// The same for a driver that is part of this program. @pre the table outlives the module
-  [[nodiscard]] static result<std::shared_ptr<const driver_module>> from_table(const asperity_driver* table,
-                                                                               std::string where, log_sink log = {});
+                                                                         log_sink log = {},
+                                                                         file_trust trust = file_trust::owner_only);
   /// As load(), with the kind of fault told apart.
   [[nodiscard]] static std::shared_ptr<const driver_module> load(const std::filesystem::path& file, log_sink log,
-                                                                 load_failure& failure);
+                                                                 load_failure& failure,
+                                                                 file_trust trust = file_trust::owner_only);
+  /// The same for a file that was opened and judged.
+  [[nodiscard]] static std::shared_ptr<const driver_module> load(driver_file file, log_sink log, load_failure& failure);
+  /// The same for a driver that is part of this program. @pre the table outlives the module, or `owner` keeps it
+  [[nodiscard]] static result<std::shared_ptr<const driver_module>> from_table(const asperity_driver* table,
+                                                                               std::string where, log_sink log = {},
+                                                                               std::shared_ptr<const void> owner = {});
 
   driver_module(const driver_module&) = delete;
   driver_module& operator=(const driver_module&) = delete;
@@ -51,13 +51,16 @@ class driver_module {
  private:
   using handle = std::unique_ptr<void, int (*)(void*)>;
 
-  driver_module(handle library, const asperity_driver& table, std::string where, log_sink log);
+  driver_module(handle library, const asperity_driver& table, std::string where, log_sink log,
+                std::shared_ptr<const void> owner);
   [[nodiscard]] static std::shared_ptr<const driver_module> adopt(handle library, const asperity_driver* table,
                                                                   std::string where, log_sink log,
-                                                                  load_failure& failure);
+                                                                  load_failure& failure,
+                                                                  std::shared_ptr<const void> owner = {});
   [[nodiscard]] result<void> attach();
   static void log_line(void* context, std::uint32_t level, const char* text) noexcept;
 
+  std::shared_ptr<const void> owner_;
   handle library_;
   asperity_driver table_;
   std::string where_;

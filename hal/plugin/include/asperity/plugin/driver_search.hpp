@@ -2,12 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/plugin/plugin_driver.hpp"
 
 namespace asperity::plugin {
 
@@ -15,19 +15,15 @@ namespace asperity::plugin {
 /// (lib/asperity/drivers). The variable is ignored in a program that runs with more rights than its user.
 [[nodiscard]] std::vector<std::filesystem::path> search_path();
 
-/// A file that looks like a driver and cannot be used.
-struct refused_driver {
+/// A file that looks like a driver, *.so. Nothing in it has run.
+struct found_file {
+  std::string name;  ///< the file's, without folder and .so: what a person enables it by
   std::filesystem::path file;
-  error why;
+  std::optional<error> refused{};  ///< why it cannot be loaded, as far as the file shows it
 };
 
-struct found_drivers {
-  std::vector<std::unique_ptr<plugin_driver>> drivers;
-  std::vector<refused_driver> refused;
-};
-
-/// Loads every *.so of the folders, in their order and by name within one. Where two drivers have the same name the
-/// first counts. A folder that is not there is no fault.
-[[nodiscard]] found_drivers load_drivers(std::span<const std::filesystem::path> folders, const log_sink& log = {});
+/// What lies in the folders, in their order and by name within one. Each file is judged by driver_file and closed
+/// again; none is loaded. Of two files with one name the first counts. A folder that is not there is no fault.
+[[nodiscard]] std::vector<found_file> find_driver_files(std::span<const std::filesystem::path> folders);
 
 }  // namespace asperity::plugin

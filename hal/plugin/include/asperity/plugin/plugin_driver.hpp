@@ -15,9 +15,9 @@ class plugin_driver final : public device_driver {
  public:
   explicit plugin_driver(std::shared_ptr<const driver_module> module) : module_(std::move(module)) {}
 
-  /// Loads a driver from a file.
-  [[nodiscard]] static result<std::unique_ptr<plugin_driver>> load(const std::filesystem::path& file,
-                                                                   log_sink log = {});
+  /// Loads a driver from a file into this process; see driver_module::load().
+  [[nodiscard]] static result<std::unique_ptr<plugin_driver>> load(const std::filesystem::path& file, log_sink log = {},
+                                                                   file_trust trust = file_trust::owner_only);
 
   [[nodiscard]] std::string_view name() const noexcept override { return module_->table().name; }
   [[nodiscard]] driver_maturity maturity() const noexcept override {
