@@ -93,6 +93,13 @@ check_gcc_debug() {
   fi
 }
 
+# All of what ./dev test takes a share of (tests/support/extent.hpp), and the programs that only that needs.
+check_at_length() {
+  configure release
+  build release all asperity_at_length_programs asperity_soak
+  test_preset release at-length -L '^at_length$'
+}
+
 check_header_sets() { cmake --build build/debug --target all_verify_interface_header_sets; }
 
 check_clang_release() {
@@ -177,6 +184,7 @@ run_check() {
   rm -f build/check/*.results
   check_step format check_format
   check_step no-exceptions check_no_exceptions
+  check_step at-length check_at_length
   check_step gcc-debug check_gcc_debug
   check_step header-sets check_header_sets
   check_step clang-release check_clang_release
