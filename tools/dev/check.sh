@@ -178,10 +178,13 @@ check_determinism() {
   cmp build/check/release.sha256 build/check/clang.sha256
 }
 
-run_check() {
+begin_check() {
   setup
   mkdir -p build/check
   rm -f build/check/*.results
+}
+
+check_matrix() {
   check_step format check_format
   check_step no-exceptions check_no_exceptions
   check_step at-length check_at_length
@@ -192,6 +195,11 @@ run_check() {
   check_step asan-ubsan check_asan_ubsan
   check_step tsan check_tsan
   check_step determinism check_determinism
+}
+
+run_check() {
+  begin_check
+  check_matrix
   check_table
 }
 
