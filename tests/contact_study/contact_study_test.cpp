@@ -5,7 +5,6 @@
 #include "contact_study/report.hpp"
 #include "contact_study/study.hpp"
 #include "contact_study/study_models.hpp"
-#include "support/extent.hpp"
 
 namespace asperity::contact_study {
 namespace {
@@ -29,7 +28,7 @@ class BakedPair : public testing::TestWithParam<pair_name> {
 
 TEST_P(BakedPair, SharedPotentialNeitherJumpsNorMakesWork) {
   study_options options;
-  options.poses = test_support::extent(2U, 4U);
+  options.poses = 4;
   options.with_paper = false;
   const pair_result found = study_pair(std::string(GetParam().probe), *renderers_, options);
   ASSERT_EQ(found.shared.size(), options.poses);

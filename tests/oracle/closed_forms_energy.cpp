@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "oracle/closed_forms.hpp"
-#include "support/extent.hpp"
 
 namespace asperity::oracle {
 namespace {
@@ -156,7 +155,6 @@ constexpr int control_steps = 60;
 TEST(Energy, LoopWithoutSilhouette) {
   error_table table("A3: work over a closed loop, share of the work to and fro; window inside the patch");
   for (const bool smooth : {true, false}) {
-    if (smooth && !test_support::at_length()) continue;  // the rough ones are harder
     energy_scene s = smooth ? covered_window(bumps_a(), bumps_b()) : covered_window(rough(0.05, 0.3), rough(0.05, 1.1));
     press(s, 0.15);
     const std::string kind = smooth ? ", smooth bumps" : ", rough";
