@@ -31,6 +31,7 @@ TEST_P(BakedPair, SharedPotentialNeitherJumpsNorMakesWork) {
   options.poses = 4;
   options.with_paper = false;
   const pair_result found = study_pair(std::string(GetParam().probe), *renderers_, options);
+  ASSERT_EQ(found.shared.size(), options.poses);
   for (const pose_result& p : found.shared) {
     for (const motion m : all_motions) {
       const jumps& j = p.moved[static_cast<std::size_t>(m)];

@@ -87,18 +87,19 @@ struct jumps {
   /// Measured where the two above differ by more than ratio_limit: was it a jump, or a change too quick for 1 kHz?
   std::optional<jump> at_100khz;
 
-  /// Changes that one spring explains are no jumps: measures below 1 count as 1.
-  [[nodiscard]] double force_ratio() const noexcept {
-    return std::max(at_10khz.force, 1.0) / std::max(at_1khz.force, 1.0);
-  }
-  [[nodiscard]] double torque_ratio() const noexcept {
-    return std::max(at_10khz.torque, 1.0) / std::max(at_1khz.torque, 1.0);
-  }
+  [[nodiscard]] double force_ratio() const noexcept { return ratio(at_10khz.force, at_1khz.force); }
+  [[nodiscard]] double torque_ratio() const noexcept { return ratio(at_10khz.torque, at_1khz.torque); }
   [[nodiscard]] bool over_limit() const noexcept { return std::max(force_ratio(), torque_ratio()) > ratio_limit; }
   /// Over the limit, and ten times shorter ticks still do not resolve the change. A true jump grows tenfold again.
   [[nodiscard]] bool discontinuous() const noexcept {
-    return over_limit() && (!at_100khz || at_100khz->force > ratio_limit * std::max(at_10khz.force, 1.0) ||
-                            at_100khz->torque > ratio_limit * std::max(at_10khz.torque, 1.0));
+    return over_limit() && (!at_100khz || ratio(at_100khz->force, at_10khz.force) > ratio_limit ||
+                            ratio(at_100khz->torque, at_10khz.torque) > ratio_limit);
+  }
+
+ private:
+  // A thousandth of what one spring explains is where a step's difference is the rounding of two forces.
+  [[nodiscard]] static double ratio(double quicker, double slower) noexcept {
+    return std::max(quicker, 1e-3) / std::max(slower, 1e-3);
   }
 };
 

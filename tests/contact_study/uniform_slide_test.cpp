@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "contact_study/study.hpp"
+#include "support/extent.hpp"
 
 namespace asperity::contact_study {
 namespace {
@@ -49,7 +50,8 @@ excess excess_of(const std::vector<double>& force_n) {
 constexpr double textures_limit = 1e-3, above_limit = 2e-5;
 
 TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
-  for (const std::uint32_t box_texture : {768U, 384U}) {
+  for (const std::uint32_t box_texture : {384U, 768U}) {
+    if (box_texture == 768U && !test_support::at_length()) continue;
     built_renderer made = build_renderer(uniform_slide::bodies(box_texture)).value();
     const excess more = excess_of(felt_on_slide(feel_with(made)));
     std::printf("box of %u texels: %.2g in the textures' band, %.2g above\n", box_texture, more.textures, more.above);

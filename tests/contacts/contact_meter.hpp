@@ -113,9 +113,10 @@ template <class Renderer>
 struct continuity {
   tick_change slow, fast;
 
-  /// Ten where the wrench jumps, one where it does not. A change that a spring explains is none, at either rate.
-  [[nodiscard]] double force_ratio() const { return std::max(fast.force, 1.0) / std::max(slow.force, 1.0); }
-  [[nodiscard]] double torque_ratio() const { return std::max(fast.torque, 1.0) / std::max(slow.torque, 1.0); }
+  /// Ten where the wrench jumps, one where it does not, as far as a step's difference is more than the rounding of two
+  /// forces: from a thousandth of what a spring explains on.
+  [[nodiscard]] double force_ratio() const { return std::max(fast.force, 1e-3) / std::max(slow.force, 1e-3); }
+  [[nodiscard]] double torque_ratio() const { return std::max(fast.torque, 1e-3) / std::max(slow.torque, 1e-3); }
 };
 
 inline constexpr double slow_step_m = 0.05 * mm;  ///< 50 mm/s for a millisecond

@@ -95,14 +95,14 @@ std::string test_name(const ::testing::TestParamInfo<attack>& named) {
 INSTANTIATE_TEST_SUITE_P(All, Attack, ::testing::ValuesIn(all_attacks()), test_name);
 
 // No attack, but the costliest honest document: its buffer is text, held as JSON and decoded.
-TEST(Limits, ABufferAsTextTakesAFewTimesItself) {
+TEST(Limits, ABufferAsTextTakesSixTimesItself) {
   const test_support::scratch_folder folder;
   nlohmann::json document = tetrahedron();
   document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + std::string(std::size_t{48} << 20, 'A');
   const auto file = folder.file("a.gltf", document.dump());
   const probe_outcome got = run_probe("mesh", file, {});
   EXPECT_EQ(got.said, "loaded");
-  EXPECT_LE(got.peak_bytes, 7 * fs::file_size(file));
+  EXPECT_LE(got.peak_bytes, 6 * fs::file_size(file));  // 5.9, in each of six runs
   std::printf("48 MiB of data URI: peak %.1f MB\n", 1e-6 * static_cast<double>(got.peak_bytes));
 }
 

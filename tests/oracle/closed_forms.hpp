@@ -49,6 +49,7 @@ class error_table {
   void add_typical(const std::string& name, double error, double limit) { note(name, error, limit, 2.0, true); }
 
   ~error_table() {
+    EXPECT_FALSE(lines_.empty()) << title_ << ": no case was judged";
     std::printf("%s\n  %-58s %5s  %-10s %-10s %-10s\n", title_.c_str(), "case", "count", "median", "max", "limit");
     for (line& l : lines_) {
       std::sort(l.errors.begin(), l.errors.end());

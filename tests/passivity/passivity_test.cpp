@@ -1,5 +1,6 @@
-// A thousand sessions: with the guard on, what reaches the hand stays within the stated bound, whatever the contact
-// thread does; a held force without the guard breaks it. Prints the table of docs/explanation/control-loop.md.
+// A thousand sessions at length, 288 otherwise: with the guard on, what reaches the hand stays within the stated bound,
+// whatever the contact thread does; a held force without the guard breaks it. Prints the table of
+// docs/explanation/control-loop.md.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "passivity/felt_session.hpp"
+#include "support/extent.hpp"
 
 namespace {
 
@@ -14,7 +16,8 @@ using namespace asperity;
 using namespace asperity::test_support;
 
 constexpr std::array<const char*, 3> hand_names{"soft", "firm", "tapping"};
-constexpr int sessions_per_row = 56;
+// 18 rows: a thousand sessions at length.
+const int sessions_per_row = extent(16, 56);
 constexpr int one_textured_in = 8;
 constexpr double stiff_n_per_m = 2000.0;
 
@@ -101,10 +104,10 @@ TEST(passivity, the_guard_keeps_its_bound_and_a_held_force_without_it_does_not) 
       "%d sessions, each run in three ways; with the guard at most %.0f %% of the bound; firm hand, 200 Hz, "
       "late, 2 N/mm and more: a held force without the guard breaks it in %d of %d\n",
       sessions, 100.0 * everywhere.largest_part_of_bound, stiff_late_broken, stiff_late);
-  EXPECT_GE(sessions, 1000);
+  EXPECT_GE(sessions, extent(250, 1000));
   EXPECT_LT(linearised_everywhere.acted_percent(), 1.0);  // a net, not a part of the loop
   // Negative control.
-  EXPECT_GE(stiff_late, 30);
+  EXPECT_GE(stiff_late, sessions_per_row / 2);
   EXPECT_GE(3 * stiff_late_broken, 2 * stiff_late);
 }
 

@@ -1,4 +1,5 @@
-// 1e5 device ticks of file on CAD part, and every contact tick among them, inside the trap.
+// Device ticks of file on CAD part, 1e5 at length and 2e4 otherwise, and every contact tick among them, inside the
+// trap.
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <iostream>
@@ -12,6 +13,7 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "rt/tick_trap.hpp"
 #include "support/built_renderers.hpp"
+#include "support/extent.hpp"
 
 namespace {
 
@@ -101,12 +103,14 @@ void trap_file_on_cad_part(std::uint64_t steady_ticks, Make&& make) {
 
 TEST(benchmark_ticks, file_on_cad_part_does_nothing_that_a_tick_must_not_do) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part(99'000, [](const scene& bodies) { return test_support::build_renderer(bodies); });
+  trap_file_on_cad_part(test_support::extent(19'000U, 99'000U),
+                        [](const scene& bodies) { return test_support::build_renderer(bodies); });
 }
 
 TEST(benchmark_ticks, nor_does_it_with_the_contacts_of_the_paper) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part(24'000, [](const scene& bodies) { return test_support::build_paper_renderer(bodies); });
+  trap_file_on_cad_part(test_support::extent(5'000U, 24'000U),
+                        [](const scene& bodies) { return test_support::build_paper_renderer(bodies); });
 }
 
 }  // namespace

@@ -37,11 +37,12 @@ double rms(const samples& all, Where where, F f) {
 
 // The angle theta_s for which P sin(pi/2 min(|theta| / theta_s, 1)) fits the rise best, P being its mean where it is
 // level: the closed form of the rise with this one parameter left open.
-double fitted_saturation(const samples& all) {
+template <class Rise>
+double fitted_saturation(const samples& all, const Rise& rise_m) {
   double mean = 0.0, count = 0.0;
   for (const turned_sample& s : all) {
     if (!level(s)) continue;
-    mean += s.rise_m;
+    mean += rise_m(s);
     count += 1.0;
   }
   mean /= count;
@@ -50,7 +51,7 @@ double fitted_saturation(const samples& all) {
     const double at = tried * saturation_angle_rad();
     double error = 0.0;
     for (const turned_sample& s : all) {
-      const double e = s.rise_m - mean * std::sin(0.5 * std::numbers::pi * std::min(std::abs(s.angle_rad) / at, 1.0));
+      const double e = rise_m(s) - mean * std::sin(0.5 * std::numbers::pi * std::min(std::abs(s.angle_rad) / at, 1.0));
       error += e * e;
     }
     if (error < least) {
@@ -86,16 +87,31 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
   const auto off_its_own = [&](const turned_sample& s) { return s.rise_m - rise(s.angle_rad); };
   const double rise_error = rms(all, any, missed) / ridge_height_m;
   const std::string against = "RMS error of the rise against brute force, over the height 2a";
-  // In a brief run the hand turns twice as fast: the block goes further from one contact to the next.
+  // Asked for is 1 %. In a brief run the hand turns twice as fast, so that the block goes further from one contact to
+  // the next: 1.01 %. A soft maximum counts how much lies deep; with a softness tau it rises tau ln(2 pi 2a / tau)
+  // less, 8.4 % of 2a with the default one, and measured are 7.7 to 8.3 %. The 1 % is asked of it against its own brute
+  // force, below.
   out.statements.push_back(at_most("rise_" + kind.name, against + (central ? "" : ": a soft maximum misses some") + of,
-                                   rise_error, central ? (brief ? 0.0125 : 0.01) : 0.1));
+                                   rise_error, central ? (brief ? 0.011 : 0.01) : 0.09));
   if (depth == depth_kind::soft) {
     out.statements.push_back(at_most("soft_rise_" + kind.name, "the same against brute force with a soft maximum" + of,
-                                     rms(all, any, off_its_own) / ridge_height_m, 0.015));
+                                     rms(all, any, off_its_own) / ridge_height_m, 0.01));
   }
-  // A soft maximum rounds off the crest that the rise ends on.
-  out.statements.push_back(between("saturation_" + kind.name, "saturation angle over lambda / (2 w)" + of,
-                                   fitted_saturation(all) / saturation_angle_rad(), 0.95, central ? 1.05 : 1.2));
+  // Asked for are 5 %. A soft maximum rounds off the crest that the rise ends on: with the paper's contacts the fit is
+  // 1.10 of lambda / (2 w), and within 1 % of the same fit to brute force with that soft maximum, of which the 5 % are
+  // asked. One potential levels off at 1.18. Brute force with its softness accounts for 1.08 of that and not for the
+  // rest, so that the 5 % are not kept: its bound is of what was measured.
+  const double geometry = saturation_angle_rad();
+  const double fitted = fitted_saturation(all, [](const turned_sample& s) { return s.rise_m; });
+  const double of_its_own = fitted_saturation(all, [&](const turned_sample& s) { return rise(s.angle_rad); });
+  if (depth == depth_kind::soft) {
+    out.statements.push_back(between("saturation_" + kind.name,
+                                     "saturation angle over that of brute force with a soft maximum" + of,
+                                     fitted / of_its_own, 0.95, 1.05));
+  } else {
+    out.statements.push_back(between("saturation_" + kind.name, "saturation angle over lambda / (2 w)" + of,
+                                     fitted / geometry, 0.95, central ? 1.05 : 1.2));
+  }
   out.statements.push_back(at_least("opposes_" + kind.name,
                                     "share of samples from 4 to 90 mrad whose torque opposes the turn" + of,
                                     opposing_share(all), 1.0));
@@ -107,7 +123,7 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
   out.statements.push_back(
       at_most("torque_" + kind.name,
               "RMS error of the torque against F_n a K w cos(K w theta / 2), over its RMS, 20 to 90 mrad" + of,
-              rms(all, past_step, torque_error) / rms(all, past_step, theory_n_m), central ? 0.05 : 0.1));
+              rms(all, past_step, torque_error) / rms(all, past_step, theory_n_m), 0.05));
   const double step_rad = central ? difference_rad : 0.0025;
   const auto slope_n_m = [&](const turned_sample& s) { return -s.force_n * rise.slope(s.angle_rad, step_rad); };
   const auto slope_error = [&](const turned_sample& s) { return s.torque_n_m - slope_n_m(s); };
@@ -120,8 +136,9 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
                                      0.05));
   }
   const double peak_n_m = turned_block_press_n * std::abs(torque_arm_m(1e-9));
+  // Asked for is 1 %. What levels off 10 to 18 % later is not quite level yet where this begins: 1.2 % at most.
   out.statements.push_back(at_most("level_torque_" + kind.name, "RMS torque in saturation over the largest one" + of,
-                                   rms(all, level, torque) / peak_n_m, central ? 0.01 : 0.04));
+                                   rms(all, level, torque) / peak_n_m, central ? 0.01 : 0.015));
 }
 
 table numbers(const variant& kind, const samples& all, const rise_by_brute_force& rise) {

@@ -77,6 +77,16 @@ std::vector<felt_sample> strengths(std::vector<felt_sample> samples, const std::
   return samples;
 }
 
+// The classes dealt out anew, in turn: as many samples in each, and nothing that they have in common. What is told
+// apart then is what chance gives.
+std::vector<felt_sample> dealt_out(std::vector<felt_sample> samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].is = i % texture_classes().size();
+    samples[i].group = i;
+  }
+  return samples;
+}
+
 // Mean spectra of the classes of one side.
 command::plot_panel spectra_panel(const std::vector<std::vector<double>>& mean_n, bool regular) {
   command::plot_panel panel;
@@ -173,11 +183,14 @@ result<findings> run_patterns(workbench& bench) {
                found.regular, 0.95),
       between("irregular_recognised",
               "share of strokes over scattered and random plates that are recognised: more than by chance, and not all",
-              found.irregular, 0.2, 0.85),
+              found.irregular, 0.3, 0.9),
       at_least("regular_recognised_more", "how much larger that share is over regular plates than over irregular ones",
                found.regular - found.irregular, 0.1),
+      // A brief run has half of the strokes, 36: two that are taken for another sort make 0.944.
       at_least("regularity_felt", "share of strokes that are taken for one of their own sort, regular or irregular",
-               side_right(taken), 0.9),
+               side_right(taken), bench.brief() ? 0.94 : 0.95),
+      at_most("recognised_by_chance", "share recognised where the names are dealt out in turn (negative control)",
+              recognised_shares(confusion(dealt_out(samples), classes)).all, 0.3),
       at_least("spectrum_tells_more_than_strength",
                "how much larger the share of regular plates recognised is by the spectrum than by its strength alone",
                found.regular - recognised_shares(confusion(strengths(samples, *felt), classes)).regular, 0.1)};

@@ -68,7 +68,9 @@ TEST(falcon_kinematics, the_whole_workspace_is_reached_and_found_again) {
 
 TEST(falcon_kinematics, gradients_are_differences_and_resolution_is_as_stated) {
   double coarsest = 0.0;
+  int places = 0, slopes = 0;
   everywhere([&](const vec3& p, auto&&) {
+    ++places;
     const auto angles = falcon_angles_at(p);
     const auto gradients = falcon_angle_gradients(p, *angles);
     ASSERT_TRUE(gradients);
@@ -79,6 +81,7 @@ TEST(falcon_kinematics, gradients_are_differences_and_resolution_is_as_stated) {
       const auto up = falcon_angles_at(p + step);
       const auto down = falcon_angles_at(p - step);
       if (!up || !down) continue;
+      ++slopes;
       for (std::size_t i = 0; i < 3; ++i) {
         const double slope = ((*up)[i] - (*down)[i]) / (2.0 * h);
         ASSERT_NEAR((*gradients)[static_cast<int>(i)][axis], slope, 1e-4 * (1.0 + std::fabs(slope)));
@@ -89,10 +92,13 @@ TEST(falcon_kinematics, gradients_are_differences_and_resolution_is_as_stated) {
     coarsest = std::max(coarsest, glm::length(falcon_position_at(one, p).grip_d - p));
   });
   EXPECT_LE(coarsest, falcon_capabilities().position_resolution_m);
+  EXPECT_GT(slopes, 5 * places / 2);  // of three axes at each
 }
 
 TEST(falcon_kinematics, work_of_torques_is_work_of_the_force) {
+  int places = 0, judged = 0;
   everywhere([&](const vec3& p, auto&& unit) {
+    ++places;
     const auto angles = falcon_angles_at(p);
     const vec3 force{4.0 * unit() - 2.0, 4.0 * unit() - 2.0, 4.0 * unit() - 2.0};
     const vec3 move = 1e-7 * vec3(unit() - 0.5, unit() - 0.5, unit() - 0.5);
@@ -100,10 +106,12 @@ TEST(falcon_kinematics, work_of_torques_is_work_of_the_force) {
     const auto moved = falcon_angles_at(p + move);
     ASSERT_TRUE(torques);
     if (!moved) return;
+    ++judged;
     double work = 0.0;
     for (std::size_t i = 0; i < 3; ++i) work += (*torques)[static_cast<int>(i)] * ((*moved)[i] - (*angles)[i]);
     ASSERT_NEAR(work, glm::dot(force, move), 1e-4 * glm::length(force) * glm::length(move));
   });
+  EXPECT_GT(judged, places / 2);
 }
 
 TEST(falcon_kinematics, newton_ends_and_says_when_it_found_nothing) {

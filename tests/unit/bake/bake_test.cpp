@@ -163,6 +163,7 @@ TEST(Bake, GivesTheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(Bake, KeepsWhatAFileKeeps) {
+  EXPECT_FALSE(baked_torus().mesh.positions.empty() || baked_torus().mesh.triangles.empty());
   for (const vec3& p : baked_torus().mesh.positions) EXPECT_EQ(p, to_float32(p));
   for (const coarse_triangle& t : baked_torus().mesh.triangles)
     for (const vec2& uv : t.uv) {

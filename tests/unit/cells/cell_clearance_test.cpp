@@ -193,6 +193,7 @@ TEST(Clearance, NothingIsLeftAtTheBorderOfAMapAndNoStepIsSteep) {
        {test::box_mesh({0.01, 0.004, 0.007}), corner_block(0.01, 0.005),
         test::prism_mesh(test::regular_polygon(40, 0.01), 0.004), test::torus_mesh(0.01, 0.004, 24, 12)}) {
     const surface_cells body = cut(mesh, 2e-4);
+    EXPECT_FALSE(body.cells.empty());
     for (const surface_cell& c : body.cells) {
       const auto node = [&](std::uint32_t i, std::uint32_t j) {
         return body.nodes[c.first + std::size_t{j} * c.columns + i].clearance_m;

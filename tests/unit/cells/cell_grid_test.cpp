@@ -123,7 +123,9 @@ TEST(CellGrid, DistanceToNothingIsFar) {
   const surface_cell cell = sheet(12, 9, 1e-6);
   const cell_grid grid{&cell};
   for (const double far : {0.5, 1e9}) {
-    for (const float d : grid.distance_to(std::vector<char>(grid.size(), 0), far)) {
+    const std::vector<float> distance = grid.distance_to(std::vector<char>(grid.size(), 0), far);
+    ASSERT_EQ(distance.size(), 12U * 9U);
+    for (const float d : distance) {
       ASSERT_EQ(d, static_cast<float>(far));
     }
   }

@@ -72,7 +72,9 @@ TEST(SharpEdges, ReachOnWhereTheChainTurnsALittle) {
 }
 
 TEST(SharpEdges, EndWhereTheChainTurnsSharply) {
-  for (const sharp_edge& e : edges_of(cut_model(test::prism_mesh(test::regular_polygon(6, 0.01), 0.01)))) {
+  const std::vector<sharp_edge> edges = edges_of(cut_model(test::prism_mesh(test::regular_polygon(6, 0.01), 0.01)));
+  EXPECT_EQ(edges.size(), 18U);
+  for (const sharp_edge& e : edges) {
     EXPECT_EQ(e.extension_m[0], 0.0);
     EXPECT_EQ(e.extension_m[1], 0.0);
   }

@@ -49,6 +49,7 @@ TEST(normal_cone, is_whole_for_real_directions_and_gone_for_ghosts) {
   const model_ptr box = test::make_piece_model(test::box_mesh(vec3(1.0), 3), test::cut_into::triangles);
   const mesh_features features = make_mesh_features(box->mesh);
   constexpr double slack = 0.1;
+  int inside = 0;
   for (const convex_piece& p : box->pieces) {
     const convex_shape s = make_convex_shape(box->mesh, features, p);
     const vec3 n = s.faces[0].normal;
@@ -60,12 +61,14 @@ TEST(normal_cone, is_whole_for_real_directions_and_gone_for_ghosts) {
       inner = inner && v.x + v.y + v.z < 1.7;  // no corner or edge of the box
     }
     if (!inner) continue;
+    ++inside;
     const vec3 side = any_orthogonal(n);
     EXPECT_DOUBLE_EQ(normal_cone_share(s, std::cos(0.2) * n + std::sin(0.2) * side, slack), 0.0);
     const double partial = normal_cone_share(s, std::cos(0.05) * n + std::sin(0.05) * side, slack);
     EXPECT_GT(partial, 0.3);
     EXPECT_LT(partial, 0.7);
   }
+  EXPECT_GE(inside, 6);  // one of each face at least
 }
 
 TEST(normal_cone, a_box_edge_and_a_corner_open_theirs) {
@@ -80,11 +83,15 @@ TEST(normal_cone, a_concave_edge_opens_none) {
   coarse_mesh l = test::prism_mesh({{2, -1}, {2, 0.5}, {0.5, 0.5}, {0.5, 2}, {-1, 2}, {-1, -1}}, 1.0);
   const model_ptr m = test::make_piece_model(l, test::cut_into::triangles);
   const mesh_features features = make_mesh_features(m->mesh);
+  int inner_walls = 0;
+  std::size_t other_edges = 0;
   for (const convex_piece& p : m->pieces) {
     const convex_shape s = make_convex_shape(m->mesh, features, p);
     const vec3 n = s.faces[0].normal;
     const bool inner_wall = (n.x > 0.9 && s.box.high.x < 1.0) || (n.y > 0.9 && s.box.high.y < 1.0);
     if (!inner_wall) continue;
+    ++inner_walls;
+    other_edges += s.edges.size();
     // The far ends of the walls are convex; only the shared corner edge must not count.
     EXPECT_DOUBLE_EQ(normal_cone_share(s, n, 0.1), 1.0);
     for (const shape_edge& e : s.edges) {
@@ -92,6 +99,8 @@ TEST(normal_cone, a_concave_edge_opens_none) {
                    std::fabs(e.direction.z) > 0.9);
     }
   }
+  EXPECT_EQ(inner_walls, 4);  // two walls of two triangles
+  EXPECT_GT(other_edges, 0U);
 }
 
 TEST(pair, a_flat_piece_pushes_out_along_its_outward_side_only) {

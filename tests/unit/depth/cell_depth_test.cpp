@@ -205,11 +205,13 @@ TEST(CellDepth, SlopesAreTheDerivativesThroughAllFades) {
 TEST(CellDepth, SlopeProductIsASpreadOfSlopes) {
   const bench b;
   test::uniform_source random(2);
+  int readings = 0;
   for (int n = 0; n < 20; ++n) {
     const pose T = b.pair.touching(random, 3e-4, 0.3);
     const near_cells near = b.near(T);
     for (const cell_reading& r : b.read(T, near)) {
       if (r.samples == 0) continue;
+      ++readings;
       mat6 spread = (1.0 / r.mass) * r.slope_product;
       add_outer(spread, -1.0 / (r.mass * r.mass), r.slope_sum);
       double trace = 0.0;
@@ -223,6 +225,7 @@ TEST(CellDepth, SlopeProductIsASpreadOfSlopes) {
       }
     }
   }
+  EXPECT_GE(readings, 20);
 }
 
 }  // namespace

@@ -95,6 +95,7 @@ TEST(ExactDepth, NoGridIsDeeperAndFinerGridsComeNearer) {
 // below.
 TEST(ExactDepth, DenseSamplesAboutTheWitnessReachTheBracketFromBelow) {
   dice d(32);
+  int judged = 0;
   for (const bool charts : {false, true}) {
     const scene s = bumpy_scene(charts);
     for (const parallax_mode mode : modes) {
@@ -105,6 +106,7 @@ TEST(ExactDepth, DenseSamplesAboutTheWitnessReachTheBracketFromBelow) {
         const contact_window window = window_downwards(2.5e-3);
         const penetration p = measure(exact, place(s, window, T));
         if (has(p.flags, depth_flag::window_too_small)) continue;  // samples beyond the window's border may be deeper
+        ++judged;
         contact_window close = window;
         close.half_size_m = 2.5e-5;
         close.centre_w = p.witness_w;
@@ -116,6 +118,7 @@ TEST(ExactDepth, DenseSamplesAboutTheWitnessReachTheBracketFromBelow) {
       }
     }
   }
+  EXPECT_GE(judged, 6);
 }
 
 TEST(ExactDepth, ASmallerEpsilonNarrowsTheBracketAndEveryBracketHolds) {
@@ -188,6 +191,7 @@ TEST(ExactDepth, TheGradientIsThatOfTheMaximum) {
   const scene s{make_plate(a), {make_plate(b)}};
   const double slope_jump = 2.0 * 9e-5 * 3700.0 * 3700.0 * 4.3e-6;
   dice d(35);
+  int judged = 0;
   for (const parallax_mode mode : modes) {
     exact_depth backend(s, {.parallax = mode, .epsilon_m = 1e-12});
     const contact_window window = window_downwards(8e-4);
@@ -196,6 +200,7 @@ TEST(ExactDepth, TheGradientIsThatOfTheMaximum) {
       T.position *= 0.1;
       const penetration p = measure_whole(backend, s, window, T);
       if (has(p.flags, depth_flag::window_too_small)) continue;
+      ++judged;
       EXPECT_NEAR(glm::dot(p.gradient.linear, window.n_ab_w), 1.0, 1e-12);
       EXPECT_EQ(largest_entry({.curvature = p.curvature}), 0.0);
       const vec3 centre = centre_of_mass_w(s, T);
@@ -209,6 +214,7 @@ TEST(ExactDepth, TheGradientIsThatOfTheMaximum) {
       }
     }
   }
+  EXPECT_GE(judged, 2);
 }
 
 TEST(ExactDepth, AHoleIsLeftOutAndTold) {

@@ -46,20 +46,26 @@ TEST(device_state, every_state_times_every_event) {
 }
 
 TEST(device_state, arming_is_the_only_way_to_output_and_ready_its_only_beginning) {
-  for_every_cell([](S s, E e) {
+  int ways = 0;
+  for_every_cell([&](S s, E e) {
     const auto next = next_state(s, e);
     if (!next || !may_put_out(*next) || may_put_out(s)) return;
+    ++ways;
     EXPECT_EQ(e, E::armed);
     EXPECT_EQ(s, S::ready);
   });
+  EXPECT_EQ(ways, 1);
 }
 
 TEST(device_state, only_cleared_leaves_a_fault) {
-  for_every_cell([](S s, E e) {
+  int ways = 0;
+  for_every_cell([&](S s, E e) {
     if (s == S::fault && next_state(s, e)) {
       EXPECT_EQ(e, E::cleared);
+      ++ways;
     }
   });
+  EXPECT_EQ(ways, 1);
 }
 
 // From any state, any sequence of events without `armed` never reaches output: a walk over the whole graph.
@@ -130,14 +136,19 @@ TEST(device_state, no_way_from_a_fault_to_output_leaves_one_of_them_out) {
 
 // Whoever becomes ready has lost what arming there was: every entry into ready is followed by `armed` before output.
 TEST(device_state, every_ready_needs_an_arming_of_its_own) {
-  for_every_cell([](S s, E e) {
+  int entries = 0, ways = 0;
+  for_every_cell([&](S s, E e) {
     if (next_state(s, e) == S::ready) {
+      ++entries;
       for (int f = 0; f < device_event_count; ++f) {
         const auto after = next_state(S::ready, static_cast<E>(f));
         EXPECT_TRUE(!after || !may_put_out(*after) || static_cast<E>(f) == E::armed);
+        ways += after && may_put_out(*after) ? 1 : 0;
       }
     }
   });
+  EXPECT_EQ(entries, 4);  // from open, ready, armed and active
+  EXPECT_EQ(ways, entries);
 }
 
 // The operations of a device instead of events of a table: every sequence of five of them, on the device itself.

@@ -89,6 +89,7 @@ TEST_F(Schema, TheWriterKeepsIt) { EXPECT_EQ(breach(extension_, schema_, schema_
 
 TEST_F(Schema, EveryKeyOfTheWriterIsDescribedAndRequired) {
   const json flat = extension_.flatten();
+  EXPECT_GE(flat.size(), 20U);
   for (const auto& item : flat.items()) {
     json damaged = extension_;
     const json::json_pointer place(item.key());

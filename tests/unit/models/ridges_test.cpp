@@ -102,8 +102,10 @@ TEST(ridges, of_two_blocks_and_of_block_and_gear_interlock) {
 }
 
 TEST(ridges, do_not_vary_along_x_but_for_the_faded_ends) {
+  int on_gear = 0, on_block = 0;
   for (const vec3& p : make_full(benchmark::gear).positions)
     if (std::abs(p.x) <= 0.5 * gear_length_m - ridge_fade_m + 1e-9) {
+      ++on_gear;
       const double s = gear_radius_m * std::atan2(p.y, p.z);
       ASSERT_NEAR(std::hypot(p.y, p.z) - gear_radius_m, ridge_amplitude_m * std::cos(two_pi * s / ridge_wavelength_m),
                   1e-7);
@@ -112,10 +114,13 @@ TEST(ridges, do_not_vary_along_x_but_for_the_faded_ends) {
     if (std::abs(p.z) < 0.5 * block_size_m[2] - 1.01 * ridge_amplitude_m) continue;
     const bool side = std::abs(p.y) > 0.5 * block_size_m[1] - 1e-6;
     if (side || std::abs(p.x) > 0.5 * block_size_m[0] - ridge_fade_m + 1e-9) continue;
+    ++on_block;
     const double h = std::abs(p.z) - 0.5 * block_size_m[2];
     const double sign = p.z > 0.0 ? 1.0 : -1.0;
     ASSERT_NEAR(h, sign * ridge_amplitude_m * std::cos(two_pi * p.y / ridge_wavelength_m), 1e-7);
   }
+  EXPECT_GT(on_gear, 1000);
+  EXPECT_GT(on_block, 1000);
 }
 
 class partner : public ::testing::TestWithParam<benchmark> {};

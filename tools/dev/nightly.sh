@@ -1,0 +1,67 @@
+# shellcheck shell=bash
+# What is too long for every change and runs once a day: ./dev nightly. Sourced by ./dev, after check.sh.
+
+# The DISABLED_ cases of every GoogleTest program, with the seed of the day. One that the sources have and no program ran
+# is a failure.
+nightly_disabled() {
+  local name status=0
+  build release
+  GTEST_ALSO_RUN_DISABLED_TESTS=1 GTEST_FILTER='*DISABLED_*' ASPERITY_SEED=$night_seed \
+    test_preset release disabled -L '^gtest$' --timeout 14400 || status=1
+  while read -r name; do
+    grep -q "[.]$name\\b" build/check/disabled.results && continue
+    say "$name is in tests/, and no program ran it"
+    status=1
+  done < <(disabled_names tests)
+  return "$status"
+}
+
+# disabled_names FOLDER: names of the DISABLED_ cases in its sources.
+disabled_names() {
+  grep -rhoE 'TEST(_F|_P)?\([A-Za-z0-9_]+, *DISABLED_[A-Za-z0-9_]+' "$1" --include='*.cpp' --include='*.hpp' |
+    sed 's/.*, *//' | sort -u
+}
+
+# Fifty times as many bakes of damaged meshes.
+nightly_fuzz() {
+  build release hostile_bakes
+  ASPERITY_FUZZ_TIMES=50 test_preset release fuzz -R '^hostile_bakes$' --timeout 14400
+}
+
+# The paper's experiments in full, each of their statements.
+nightly_experiments() {
+  build release bin/asperity
+  build/release/bin/asperity experiment all -o out/nightly
+}
+
+# Six hours of virtual time in one session.
+nightly_soak() {
+  build release asperity_soak
+  build/release/bin/asperity_soak --hours 6
+}
+
+# ./dev nightly [STEP...]: all of it, or some of: disabled fuzz experiments soak matrix.
+run_nightly() {
+  local steps=("$@") step
+  [[ $# -gt 0 ]] || steps=(disabled fuzz experiments soak matrix)
+  for step in "${steps[@]}"; do
+    [[ $step == matrix ]] || declare -F "nightly_$step" > /dev/null || die "nightly has no step \"$step\"; it has: disabled fuzz experiments soak matrix"
+  done
+  night_seed=${ASPERITY_SEED:-$(date -u +%Y%m%d)}
+  say "seed of this night: $night_seed (ASPERITY_SEED=$night_seed ./dev nightly repeats it)"
+  unset ASPERITY_SEED  # to the ordinary tests it means one session alone
+  begin_check
+  configure release
+  for step in "${steps[@]}"; do
+    if [[ $step == matrix ]]; then
+      export ASPERITY_WHOLE_MATRIX=1
+      check_matrix
+    else
+      check_step "$step" "nightly_$step"
+    fi
+  done
+  local status=0
+  check_table || status=1
+  closing_lines build/check/*.results || status=1
+  return "$status"
+}
