@@ -31,6 +31,9 @@ struct session_findings {
   std::optional<replay_outcome> replay;  ///< only of a replay
 };
 
+/// What a session in real time asked the system for and got, in one line.
+[[nodiscard]] std::string to_text(const real_time_grants& got);
+
 [[nodiscard]] answer report(const run_command& options, const session_findings& found);
 
 }  // namespace asperity::command
