@@ -64,12 +64,12 @@ result<void> check_options(const run_command& options) {
 
 // What a session is felt with. The parts behind the device outlive it, and the watch outlives both.
 struct felt_device {
-  driver_watch watch;
+  driver_watch& watch;
   std::optional<known_devices> known;
   std::optional<device_replay> replay;
   std::optional<any_device> device;
 
-  felt_device() = default;
+  explicit felt_device(driver_watch& calls) : watch(calls) {}
   felt_device(const felt_device&) = delete;
   felt_device& operator=(const felt_device&) = delete;
   ~felt_device() {
@@ -139,7 +139,11 @@ result<answer> run_session(const run_command& options, const common_options& com
   result<session_files> files = session_files::open(options);
   if (!files) return files.error();
   session_rescue rescue;
-  felt_device felt;
+  driver_watch watch;
+  // These see the device's end, too.
+  std::optional<device_hold> hold;
+  std::optional<driver_guard> guard;
+  felt_device felt(watch);
   if (is_replay(options)) {
     result<device_replay> opened = device_replay::open(replayed_file(options));
     if (!opened) return opened.error();
@@ -152,11 +156,9 @@ result<answer> run_session(const run_command& options, const common_options& com
   const mass_properties shape = bodies->probe->mass;
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   // A search for the exact maximum cannot be hurried, and no hand waits for its end.
-  std::optional<device_hold> hold;
   if (options.render.backend != "exact") hold.emplace();
-  std::optional<driver_guard> guard;
   if (!is_simulated(options) && !is_replay(options)) {
-    guard.emplace(felt.watch, [&](const std::string& what) { abandon(rescue, *files, what, common.json); });
+    guard.emplace(watch, [&](const std::string& what) { abandon(rescue, *files, what, common.json); });
   }
   if (const result<void> opened = open_device(options, *bodies, felt); !opened) return opened.error();
   result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), options.render);

@@ -20,8 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 error cannot_write(const fs::path& file, int reason) {
-  return {error_code::io_failed, "cannot write " + file.string() + ": " + std::generic_category().message(reason) +
-                                     "; give a path in an existing, writable folder with free space"};
+  const char* const mend =
+      reason == EPIPE ? "nobody reads it any more" : "give a path in an existing, writable folder with free space";
+  return {error_code::io_failed,
+          "cannot write " + file.string() + ": " + std::generic_category().message(reason) + "; " + mend};
 }
 
 // How long a pipe may take nothing once this program was asked to stop.

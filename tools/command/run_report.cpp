@@ -44,6 +44,7 @@ json replay_json(const std::optional<replay_outcome>& replay) {
   if (!replay) return nullptr;
   return {{"device", replay->device},
           {"ticks", replay->ticks},
+          {"cut", replay->cut},
           {"differences", replay->differences},
           {"first_difference", replay->first_difference_s ? json(*replay->first_difference_s) : json()}};
 }
@@ -89,7 +90,8 @@ std::string thread_text(const thread_grants& t) {
 }
 
 std::string replay_text(const replay_outcome& replay) {
-  const std::string what = replay.device + ", " + std::to_string(replay.ticks) + " ticks on record; ";
+  const std::string what = replay.device + ", " + std::to_string(replay.ticks) + " ticks on record" +
+                           (replay.cut ? ", cut off before its end; " : "; ");
   if (!replay.first_difference_s) return what + "every call and every command as it was then";
   return what + "from " + brief(*replay.first_difference_s) + " s on the commands are others than then";
 }

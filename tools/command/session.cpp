@@ -145,7 +145,6 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   constexpr int longest_wind_down = 200;
   for (int i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
   static_cast<void>(dev.disarm());
-  out.armed_at_end = may_put_out(dev.state());
   if (failed) return after_session(*failed, out);
 
   out.rejected_samples = session.device().samples().rejected();

@@ -84,7 +84,7 @@ struct session_outcome {
   std::vector<flight_entry> last_ticks;  ///< up to and including the one in which the gate shut; empty without a fault
   double ended_at_s = 0.0;               ///< when the session ended, by its own clock
   bool interrupted = false;
-  bool armed_at_end = false;                  ///< the device did not take its disarm
+  bool armed_at_end = false;                  ///< the device did not take its disarm; real clock only
   std::optional<real_time_grants> real_time;  ///< real clock only
 };
 
