@@ -261,19 +261,6 @@ TEST_F(ending, of_a_driver_that_blocks_is_that_of_its_process) {
   }
 }
 
-// No call takes a second, and yet the wind-down of hundreds of ticks would take minutes.
-TEST_F(ending, of_a_driver_that_crawls_has_its_limit) {
-  process_options options = noted();
-  options.environment.emplace_back("NOTING_SLOW_MS", "400");
-  running_command felt(session(), options);
-  ASSERT_TRUE(felt.wait_until([&] { return notes("arm\n"); })) << felt.finish().err;
-  std::this_thread::sleep_for(std::chrono::milliseconds(600));
-  felt.send(SIGTERM);
-  const outcome o = felt.finish(20.0);
-  EXPECT_TRUE(o.exit_status == 1 || o.exit_status == 128 + SIGTERM) << o.err;
-  EXPECT_NE(o.err.find(notes("disarm after") ? "asperity: " : "NOT disarmed"), std::string::npos) << o.err;
-}
-
 TEST_F(ending, of_a_killed_session_leaves_recordings_that_can_be_read) {
   running_command felt(session(), noted());
   ASSERT_TRUE(felt.wait_until([&] {

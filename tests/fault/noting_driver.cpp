@@ -9,7 +9,6 @@
 #include <fcntl.h>
 #include <memory>
 #include <string>
-#include <time.h>
 #include <unistd.h>
 #include <vector>
 
@@ -84,11 +83,6 @@ class device {
   }
   [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
     block_.pass("read");
-    const char* const slow = std::getenv("NOTING_SLOW_MS");
-    if (slow != nullptr && may_put_out(handle_.state())) {
-      const timespec t{.tv_sec = std::atoi(slow) / 1000, .tv_nsec = std::atoi(slow) % 1000 * 1'000'000L};
-      nanosleep(&t, nullptr);
-    }
     return handle_.read(now_ns, in);
   }
   [[nodiscard]] status write(std::int64_t now_ns, const device_command& out) noexcept {

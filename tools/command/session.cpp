@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -116,6 +117,7 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
                           setup.control, schedule, keep_last{&last});
   std::optional<error> failed;
+  std::exception_ptr thrown;
   const auto step = [&] {
     const double begin = cpu_seconds();
     if (const std::optional<std::int64_t> at_ns = times.at(session.device_ticks())) session.next_device_at(*at_ns);
@@ -125,7 +127,12 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
     if (out.device.seconds.size() < device_ticks) out.device.seconds.push_back(taken);
     if (failed) return;
     last.time_ns -= times.origin_ns();
-    if (const result<void> seen = setup.on_tick(last); !seen) failed = seen.error();
+    try {
+      if (const result<void> seen = setup.on_tick(last); !seen) failed = seen.error();
+    } catch (...) {  // thrown on when the device is at rest
+      thrown = std::current_exception();
+      failed = error{error_code::limit_exceeded, "an exception"};
+    }
   };
 
   while (session.device_ticks() < device_ticks && !failed && !interrupted() &&
@@ -145,6 +152,7 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   constexpr int longest_wind_down = 200;
   for (int i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
   static_cast<void>(dev.disarm());
+  if (thrown) std::rethrow_exception(thrown);
   if (failed) return after_session(*failed, out);
 
   out.rejected_samples = session.device().samples().rejected();
