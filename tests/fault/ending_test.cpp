@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <fcntl.h>
+#include <fstream>
 #include <memory>
 #include <sys/stat.h>
 #include <thread>
@@ -143,6 +144,47 @@ TEST_F(ending, before_the_session_begins_arms_nothing) {
     EXPECT_TRUE(!notes("\narm\n") || notes("disarm")) << read("notes");
     EXPECT_EQ(partial_of("felt.csv") + partial_of("felt.dev"), "");
   }
+}
+
+TEST_F(ending, during_a_homing_arms_nothing) {
+  process_options options = noted();
+  options.environment.emplace_back("NOTING_OPEN_MS", "300");
+  running_command felt(session(), options);
+  ASSERT_TRUE(felt.wait_until([&] { return notes("open"); })) << felt.finish(0.0).err;
+  felt.send(SIGTERM);
+  const outcome o = felt.finish();
+  EXPECT_EQ(o.exit_status, 128 + SIGTERM) << o.err;
+  EXPECT_TRUE(last_line(o.err).starts_with("asperity: interrupted by SIGTERM before the session began")) << o.err;
+  EXPECT_FALSE(notes("\narm\n")) << read("notes");
+  EXPECT_TRUE(notes("close")) << read("notes");
+  EXPECT_EQ(files(), std::set<std::string>{"notes"});
+}
+
+// What is told of the scheduling class, held against what the kernel says of the threads.
+TEST_F(ending, of_a_session_in_real_time_tells_what_it_was_given) {
+  running_command felt(session("0.5"), noted());
+  std::set<std::string> priorities;  // of the threads with SCHED_FIFO
+  ASSERT_TRUE(felt.wait_until([&] { return notes("pushes"); })) << felt.finish(0.0).err;
+  const std::filesystem::path threads = "/proc/" + std::to_string(felt.process()) + "/task";
+  for (const auto& thread : std::filesystem::directory_iterator(threads)) {
+    std::ifstream about(thread.path() / "stat");
+    std::vector<std::string> fields;
+    for (std::string word; about >> word;) fields.push_back(word);
+    if (fields.size() > 40 && fields[40] == "1") priorities.insert(fields[39]);  // proc(5): policy, rt_priority
+  }
+  const outcome o = felt.finish();
+  ASSERT_EQ(o.exit_status, 0) << o.err;
+  EXPECT_TRUE(o.err.starts_with("asperity: note: real time: device loop ")) << o.err;
+  const json d = json::parse(o.out)["real_time"];
+  for (const auto& [thread, wish] : {std::pair{"device_thread", "40"}, std::pair{"contact_thread", "20"}}) {
+    const bool granted = d[thread]["scheduling"] == "granted";
+    ASSERT_EQ(granted, d[thread]["priority"].is_number()) << d;
+    const std::string told = granted ? std::to_string(d[thread]["priority"].get<int>()) : wish;
+    EXPECT_EQ(granted, priorities.contains(told)) << d;
+  }
+  arguments quiet = session("0.1");
+  quiet.emplace_back("--quiet");
+  EXPECT_EQ(run(quiet, noted()).err, "");
 }
 
 TEST_F(ending, of_nohup_waits_for_the_time_to_be_over) {

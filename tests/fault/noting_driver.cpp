@@ -1,14 +1,15 @@
 // The sample's spring handle as a witness: it writes every call that matters into a file, and blocks in the call that
 // a test names, whatever signals come.
 //   NOTING_FILE=FILE           open, arm, the first write that pushes, disarm (with the last force), close: a line each
-//   NOTING_BLOCK=CALL[:N]      block in the Nth such call (1 where it does not say): open, arm, read, write, disarm,
-//   close NOTING_SLOW_MS=MS          every read takes that long once the device is armed
+//   NOTING_BLOCK=CALL[:N]      block in the Nth such call, the first by default: open, arm, read, write, disarm, close
+//   NOTING_OPEN_MS=MS          open takes that long, under a second
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <memory>
 #include <string>
+#include <time.h>
 #include <unistd.h>
 #include <vector>
 
@@ -61,6 +62,11 @@ class device {
   [[nodiscard]] result<void> open() {
     note("open");
     block_.pass("open");
+    // A homing: signals do not shorten it.
+    const char* const homing = std::getenv("NOTING_OPEN_MS");
+    timespec left{.tv_sec = 0, .tv_nsec = homing == nullptr ? 0 : std::atoi(homing) * 1'000'000L};
+    while (nanosleep(&left, &left) != 0) {
+    }
     return handle_.open();
   }
   [[nodiscard]] result<void> arm() {
