@@ -97,6 +97,44 @@ outcome run(const arguments& args, const process_options& options) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(out), contents(err)};
 }
 
+running_command::running_command(const arguments& args, const process_options& options) : folder_(make_folder()) {
+  process_ = fork();
+  if (process_ == 0) become_command(args, options, folder_ / "out", folder_ / "err");
+}
+
+running_command::~running_command() {
+  if (!reaped_) {
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+  }
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);
+}
+
+bool running_command::ended() const { return reaped_ || fault::ended(process_); }
+
+bool running_command::wait_until(const std::function<bool()>& holds) const {
+  for (int i = 0; i < 15000; ++i) {
+    if (holds()) return true;
+    if (ended()) return holds();
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return false;
+}
+
+outcome running_command::finish(double longest_s) {
+  const auto begin = std::chrono::steady_clock::now();
+  while (!ended() && std::chrono::steady_clock::now() - begin < std::chrono::duration<double>(longest_s)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  if (!ended()) kill(process_, SIGKILL);
+  int status = 0;
+  waitpid(process_, &status, 0);
+  reaped_ = true;
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contents(folder_ / "out"),
+          contents(folder_ / "err")};
+}
+
 command_test::command_test() : folder_(make_folder()) {}
 
 command_test::~command_test() {

@@ -1,12 +1,15 @@
 // Runs the built command as a user does: a process, its streams, its exit status, its files.
 #pragma once
 
+#include <csignal>
 #include <filesystem>
+#include <functional>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <string>
+#include <sys/types.h>
 #include <utility>
 #include <vector>
 
@@ -30,6 +33,29 @@ struct process_options {
 
 /// Runs `asperity ARGS...` to its end.
 [[nodiscard]] outcome run(const arguments& args, const process_options& options = {});
+
+/// `asperity ARGS...` while it runs. What still runs when this goes is killed.
+class running_command {
+ public:
+  explicit running_command(const arguments& args, const process_options& options = {});
+  running_command(const running_command&) = delete;
+  running_command& operator=(const running_command&) = delete;
+  ~running_command();
+
+  [[nodiscard]] pid_t process() const noexcept { return process_; }
+  [[nodiscard]] bool ended() const;
+  void send(int signal_number) const { kill(process_, signal_number); }
+  /// Waits until something holds, looking every few milliseconds. @return false where the command ended before, or 30 s
+  /// went by
+  [[nodiscard]] bool wait_until(const std::function<bool()>& holds) const;
+  /// Waits for the end, and kills what has not ended after that time: exit status 137.
+  [[nodiscard]] outcome finish(double longest_s = 30.0);
+
+ private:
+  std::filesystem::path folder_;
+  pid_t process_ = -1;
+  bool reaped_ = false;
+};
 
 /// A folder of its own for every test, removed afterwards.
 class command_test : public testing::Test {

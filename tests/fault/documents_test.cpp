@@ -320,7 +320,8 @@ TEST_F(documents, run) {
                   "energy",       "contact_loop",     "device_loop",  "tick_time_is",
                   "memory",       "rejected_samples", "lost_records", "fault",
                   "fault_record", "interrupted",      "recording",    "plot",
-                  "units",        "device_recording", "replay"});
+                  "units",        "device_recording", "replay",       "real_time",
+                  "signal"});
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
   EXPECT_EQ(d["interrupted"], false);

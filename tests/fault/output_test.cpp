@@ -1,4 +1,7 @@
 // Outputs that cannot be written: found early, one sentence, nothing left behind.
+#include <cstdio>
+#include <cstdlib>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <utility>
 
@@ -142,6 +145,131 @@ TEST_F(output, picture_that_would_replace_what_is_read) {
   expect_failure({"bake", path("mesh.ply"), "-o", path("new.glb"), "--picture", path("new.png")}, 1,
                  "invalid_argument");
   EXPECT_EQ(read("model.glb"), before);
+}
+
+TEST_F(output, of_a_session_that_would_replace_what_it_reads) {
+  std::filesystem::copy_file(block("block.glb"), path("model.glb"));
+  std::filesystem::create_symlink(path("model.glb"), path("link"));
+  std::filesystem::create_symlink(path("link"), path("link-to-a-link"));
+  std::filesystem::create_hard_link(path("model.glb"), path("second-name"));
+  std::filesystem::create_symlink("link", path("plot.svg"));
+  const std::string before = read("model.glb");
+  const auto felt = [&](const std::string& option, const std::string& out) {
+    return arguments{"run",  "--probe", path("model.glb"), "--fixed", block("block.glb"), "--seconds", "0.05",
+                     option, out};
+  };
+  for (const char* name : {"model.glb", "./model.glb", "link", "link-to-a-link", "second-name"}) {
+    for (const char* option : {"--record", "--record-device"}) {
+      const std::string message = expect_failure(felt(option, path(name)), 1, "invalid_argument");
+      EXPECT_NE(message.find(option), std::string::npos) << message;
+      EXPECT_NE(message.find("--probe"), std::string::npos) << message;
+    }
+  }
+  expect_failure(felt("--plot", path("plot.svg")), 1, "invalid_argument");
+  arguments fixed = felt("--record", path("link"));
+  std::swap(fixed[2], fixed[4]);
+  EXPECT_NE(expect_failure(fixed, 1, "invalid_argument").find("--fixed"), std::string::npos);
+  EXPECT_EQ(read("model.glb"), before);
+}
+
+TEST_F(output, two_that_are_one_file) {
+  write("old.csv", "an older table");
+  std::filesystem::create_symlink("old.csv", path("old.svg"));
+  std::filesystem::create_symlink("not-there-yet", path("new.svg"));
+  std::filesystem::create_directory(path("folder"));
+  const auto felt = [&](const std::string& record, const std::string& more, const std::string& to) {
+    return arguments{"run",       "--probe", block("block.glb"), "--fixed",    block("block.glb"),
+                     "--seconds", "0.05",    "--record",         path(record), more,
+                     path(to)};
+  };
+  expect_failure(felt("old.csv", "--plot", "old.svg"), 1, "invalid_argument");
+  expect_failure(felt("not-there-yet", "--plot", "new.svg"), 1, "invalid_argument");
+  expect_failure(felt("new.csv", "--record-device", "folder/../new.csv"), 1, "invalid_argument");
+  EXPECT_EQ(read("old.csv"), "an older table");
+  EXPECT_EQ(run({"run", "--probe", block("block.glb"), "--fixed", block("block.glb"), "--seconds", "0.05", "--record",
+                 "/dev/null", "--record-device", "/dev/null"})
+                .exit_status,
+            0);
+}
+
+TEST_F(output, image_of_a_gltf_asset_is_not_painted_over) {
+  write("wall.gltf", R"({"asset": {"version": "2.0"}, "images": [{"uri": "wall%20map.png"}]})");
+  write("wall map.png", "an image");
+  const std::string message = expect_failure(
+      {"bake", path("wall.gltf"), "-o", path("wall.glb"), "--picture", path("wall map.png")}, 1, "invalid_argument");
+  EXPECT_NE(message.find("wall map.png"), std::string::npos) << message;
+  expect_failure({"inspect", block("block.glb"), "--original", path("wall.gltf"), "--picture", path("wall map.png")}, 1,
+                 "invalid_argument");
+  EXPECT_EQ(read("wall map.png"), "an image");
+}
+
+TEST_F(output, page_that_is_a_link_to_a_model) {
+  std::filesystem::create_directories(path("out"));
+  std::filesystem::create_directories(path("models"));
+  write("models/block.glb", "a model");
+  std::filesystem::create_symlink("../models/block.glb", path("out/index.html"));
+  expect_failure({"experiment", "fig7", "-o", path("out"), "--models", path("models")}, 1, "invalid_argument");
+  EXPECT_EQ(read("models/block.glb"), "a model");
+}
+
+// Who may read a result is decided by whoever made the file, not by the program that replaces it.
+TEST_F(output, keeps_mode_owner_and_links) {
+  using std::filesystem::perms;
+  const auto mode = [&](const std::string& name) {
+    struct stat about {};
+    EXPECT_EQ(stat(path(name).c_str(), &about), 0) << name;
+    return about.st_mode & 07777U;
+  };
+  for (const char* name : {"felt.csv", "felt.dev", "plot.svg", "model.glb", "model.png"}) {
+    write(name, "old");
+    ASSERT_EQ(chmod(path(name).c_str(), 0600), 0);
+    std::filesystem::create_symlink(name, path("link-" + std::string(name)));
+  }
+  ASSERT_EQ(chmod(path("felt.dev").c_str(), 0664), 0);
+  const bool root = geteuid() == 0;
+  ASSERT_TRUE(!root || chown(path("felt.csv").c_str(), 12345, 23456) == 0);
+  for (const std::string through : {"link-", ""}) {
+    EXPECT_EQ(run({"run", "--probe", block("block.glb"), "--fixed", block("block.glb"), "--seconds", "0.05", "--record",
+                   path(through + "felt.csv"), "--record-device", path(through + "felt.dev"), "--plot",
+                   path(through + "plot.svg")})
+                  .exit_status,
+              0);
+    EXPECT_EQ(run(bake_to(path(through + "model.glb"))).exit_status, 0);
+    EXPECT_EQ(run(draw_to(path(through + "model.png"))).exit_status, 0);
+    for (const char* name : {"felt.csv", "plot.svg", "model.glb", "model.png"}) {
+      EXPECT_EQ(mode(name), 0600U) << name;
+      EXPECT_TRUE(std::filesystem::is_symlink(path("link-" + std::string(name))));
+      EXPECT_NE(read(name), "old");
+      write(name, "old");
+    }
+    EXPECT_EQ(mode("felt.dev"), 0664U);
+    struct stat about {};
+    ASSERT_EQ(stat(path("felt.csv").c_str(), &about), 0);
+    EXPECT_TRUE(!root || (about.st_uid == 12345 && about.st_gid == 23456)) << about.st_uid << ' ' << about.st_gid;
+  }
+  // A new file has the mode of the session's user.
+  const mode_t old_mask = umask(027);
+  EXPECT_EQ(run(run_with("--record", path("new.csv"))).exit_status, 0);
+  umask(old_mask);
+  EXPECT_EQ(mode("new.csv"), 0640U);
+}
+
+// What dead runs left under every number that this process could have.
+TEST_F(output, leftovers_of_dead_runs_are_in_nobodys_way) {
+  for (int i = 0; i < 100; ++i) write("model.glb.part" + std::to_string(i), "left");
+  write("felt.csv.partial-1", "left");
+  const outcome baked = run(bake_to(path("model.glb")));
+  EXPECT_EQ(baked.exit_status, 0) << baked.err;
+  // As in a container, where every run has the same process number: in a new namespace of its own, where permitted.
+  const std::string again = std::string("exec unshare --pid --fork --mount-proc ") + ASPERITY_COMMAND +
+                            " run --probe " + block("block.glb") + " --fixed " + block("block.glb") +
+                            " --seconds 0.05 --record " + path("felt.csv") + " > " + path("report") + " 2>&1";
+  if (std::system("unshare --pid --fork --mount-proc true > /dev/null 2>&1") == 0) {
+    EXPECT_EQ(std::system(again.c_str()), 0) << read("report");
+    EXPECT_EQ(read("felt.csv.partial-1"), "left");
+  } else {
+    std::puts("[  NOTE    ] no process namespace may be made here: the same process number was not tried");
+  }
 }
 
 TEST_F(output, failed_picture_keeps_the_old_one) {

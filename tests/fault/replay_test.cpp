@@ -72,7 +72,7 @@ TEST_F(replay, gives_a_session_of_the_virtual_clock_byte_for_byte) {
   EXPECT_TRUE(read("then.dev") == read("now.dev"));
   EXPECT_EQ(d["clock"], "virtual");
   EXPECT_EQ(d["device_recording"], path("now.dev"));
-  EXPECT_EQ(d["replay"], json::parse(R"({"device": "simulated", "ticks": 350, "differences": 0,
+  EXPECT_EQ(d["replay"], json::parse(R"({"device": "simulated", "ticks": 350, "cut": false, "differences": 0,
                                          "first_difference": null})"));
   EXPECT_EQ(files(), (std::set<std::string>{"now.csv", "now.dev", "then.csv", "then.dev"}));
 }

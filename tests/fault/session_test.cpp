@@ -86,7 +86,7 @@ TEST_F(session, interrupted_on_the_real_clock) {
   options.interrupt_after_s = 1.0;
   const outcome stopped = run(session_to("session.csv", {"--seconds", "600", "--clock", "real", "--json"}), options);
   EXPECT_EQ(stopped.exit_status, 130);
-  EXPECT_EQ(stopped.err.rfind("asperity: interrupted", 0), 0U) << stopped.err;
+  EXPECT_NE(stopped.err.find("\nasperity: interrupted by SIGINT after "), std::string::npos) << stopped.err;
   const json document = json::parse(stopped.out, nullptr, false);
   ASSERT_TRUE(document.is_object()) << stopped.out;
   EXPECT_EQ(document["schema"], "asperity.run/1");

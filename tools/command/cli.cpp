@@ -1,10 +1,13 @@
 #include "cli.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <poll.h>
 #include <string_view>
+#include <unistd.h>
 
 #include "interrupt.hpp"
 #include "text.hpp"
@@ -12,14 +15,22 @@
 namespace asperity::command {
 namespace {
 
-// False where stdout did not take everything, for example a full disk behind a redirection.
-bool print(std::string_view text) {
-  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+// Writes everything, however often signals come. @return false where the stream takes no more
+bool write_all(int descriptor, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t n = ::write(descriptor, text.data(), text.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return true;
 }
 
-void complain(std::string_view message) {
-  const std::string line = "asperity: " + one_line(message) + '\n';
-  std::fwrite(line.data(), 1, line.size(), stderr);
+// Not to wait for a stream that nobody reads, or a terminal that is held.
+bool has_room(int descriptor) {
+  constexpr int patience_ms = 500;
+  pollfd room{.fd = descriptor, .events = POLLOUT, .revents = 0};
+  return poll(&room, 1, patience_ms) > 0 && (room.revents & POLLOUT) != 0;
 }
 
 std::string serialise(const json& document) {
@@ -27,15 +38,31 @@ std::string serialise(const json& document) {
   return document.dump(2, ' ', false, json::error_handler_t::replace) + '\n';
 }
 
+std::string error_document(std::string_view code, std::string_view message) {
+  return serialise({{"schema", "asperity.error/1"}, {"error", {{"code", code}, {"message", one_line(message)}}}});
+}
+
 int fail(std::string_view code, std::string_view message, bool as_json, int exit_status) {
   complain(message);
-  if (as_json) {
-    print(serialise({{"schema", "asperity.error/1"}, {"error", {{"code", code}, {"message", one_line(message)}}}}));
-  }
+  if (as_json) write_all(STDOUT_FILENO, error_document(code, message));
   return exit_status;
 }
 
+const char* why_stdout_failed() {
+  return errno == EPIPE ? "stdout could not be written: nobody reads it any more"
+                        : "stdout could not be written: free space or redirect it elsewhere";
+}
+
 }  // namespace
+
+int exit_interrupted() noexcept { return 128 + stop_signal(); }
+
+void complain(std::string_view message) { write_all(STDERR_FILENO, "asperity: " + one_line(message) + '\n'); }
+
+void tell_error(std::string_view code, std::string_view message, bool as_json) {
+  if (has_room(STDERR_FILENO)) complain(message);
+  if (as_json && has_room(STDOUT_FILENO)) write_all(STDOUT_FILENO, error_document(code, message));
+}
 
 command_line::command_line() : app_("Haptic rendering of contact between textured objects", "asperity") {
   app_.require_subcommand(1);
@@ -85,7 +112,7 @@ int command_line::run(int argc, const char* const* argv) {
     if (!done) {
       const bool cancelled = done.error().code == error_code::cancelled && interrupted();
       return fail(to_string(done.error().code), done.error().message, common_.json,
-                  cancelled ? exit_interrupted : exit_failed);
+                  cancelled ? exit_interrupted() : exit_failed);
     }
     std::string out;
     if (common_.json) {
@@ -95,14 +122,18 @@ int command_line::run(int argc, const char* const* argv) {
     } else if (!common_.quiet) {
       out = done->text;
     }
-    if (!print(out)) {
-      complain("stdout could not be written: free space or redirect it elsewhere");
+    if (!write_all(STDOUT_FILENO, out)) {
+      complain(why_stdout_failed());
       return exit_failed;
     }
     if (!done->complaint.empty()) complain(done->complaint);
     return done->exit_status;
   } catch (const std::bad_alloc&) {
     return fail("limit_exceeded", "out of memory: use smaller models or free memory", common_.json, exit_failed);
+  } catch (const std::exception& e) {
+    // Caught so that everything on the way is destroyed: a device is disarmed by the end of its session.
+    return fail("internal", std::string("a fault in asperity, please report it: ") + e.what(), common_.json,
+                exit_failed);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "asperity/core/status.hpp"
 
@@ -16,10 +17,19 @@ using json = nlohmann::ordered_json;  // a document's keys come out in the order
 /// Exit statuses of the command.
 enum : int {
   exit_ok = 0,
-  exit_failed = 1,         ///< one line on stderr says what and how to mend it
-  exit_usage = 2,          ///< the command line itself is wrong
-  exit_interrupted = 130,  ///< SIGINT or SIGTERM, by the shell's convention for SIGINT
+  exit_failed = 1,  ///< one line on stderr says what and how to mend it
+  exit_usage = 2,   ///< the command line itself is wrong
 };
+
+/// Exit status after a signal that asked to stop, by the shell's convention: 128 and its number, 130 for SIGINT.
+[[nodiscard]] int exit_interrupted() noexcept;
+
+/// One line on stderr.
+void complain(std::string_view message);
+
+/// Error line, and with --json the error document, for a process that ends at once: waits for half a
+/// second at the most for somebody who reads.
+void tell_error(std::string_view code, std::string_view message, bool as_json);
 
 /// Switches that every subcommand has.
 struct common_options {

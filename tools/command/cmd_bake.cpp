@@ -11,6 +11,7 @@
 #include "asperity/io/textured_model_file.hpp"
 #include "bake_document.hpp"
 #include "cli.hpp"
+#include "file_names.hpp"
 #include "interrupt.hpp"
 #include "mesh_units.hpp"
 #include "model_drawing.hpp"
@@ -42,23 +43,12 @@ struct bake_command {
 };
 
 result<void> check_paths(const bake_command& options) {
-  std::error_code ignored;
-  std::vector<std::string> inputs = options.relief->inputs();
-  inputs.insert(inputs.end(), {options.full, options.coarse});
-  for (const std::string& input : inputs) {
-    if (!input.empty() && fs::equivalent(input, options.out, ignored)) {
-      return error{error_code::invalid_argument,
-                   "-o " + options.out + " would replace a file that is being baked: give another name"};
-    }
-    if (!input.empty() && !options.picture.empty() && fs::equivalent(input, options.picture, ignored)) {
-      return error{error_code::invalid_argument,
-                   "--picture " + options.picture + " would replace the mesh that is being baked: give another name"};
-    }
-  }
-  if (!options.picture.empty() &&
-      fs::weakly_canonical(options.picture, ignored) == fs::weakly_canonical(options.out, ignored)) {
-    return error{error_code::invalid_argument, "--picture and -o name the same file: give two names"};
-  }
+  std::vector<named_file> inputs = mesh_files(options.full, "the bake");
+  const std::vector<named_file> coarse = mesh_files(options.coarse, "--coarse");
+  inputs.insert(inputs.end(), coarse.begin(), coarse.end());
+  for (const std::string& image : options.relief->inputs()) inputs.push_back({"the relief", image});
+  const std::vector<named_file> outputs{{"-o", options.out}, {"--picture", options.picture}};
+  if (const result<void> ok = check_outputs(inputs, outputs); !ok) return ok;
   return check_writable(options.out);
 }
 

@@ -7,6 +7,7 @@
 
 #include "cli.hpp"
 #include "experiment.hpp"
+#include "file_names.hpp"
 #include "interrupt.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
@@ -73,12 +74,24 @@ std::string missing(std::span<const experiment::experiment* const> not_done, con
   return "Missing: " + names + ". The run ended before: " + why.message + ".";
 }
 
+// The page may be a link, and a model is hours of work.
+result<void> check_page(const fs::path& page, const fs::path& models) {
+  std::error_code ended;
+  std::vector<named_file> inputs;
+  for (fs::directory_iterator it(models, ended), end; !ended && it != end; it.increment(ended)) {
+    inputs.push_back({"--models", it->path()});
+  }
+  const named_file output{"-o", page};
+  return check_outputs(inputs, {&output, 1});
+}
+
 result<answer> run_experiments(const experiment_command& options, const common_options& common) {
   const fs::path out_folder(options.folder);
   const fs::path models_folder = options.models.empty() ? out_folder / "models" : fs::path(options.models);
   for (const fs::path& folder : {out_folder, models_folder}) {
     if (const result<void> made = make_folder(folder); !made) return made.error();
   }
+  if (const result<void> apart = check_page(out_folder / "index.html", models_folder); !apart) return apart.error();
   if (const result<void> ready = check_writable(out_folder / "index.html"); !ready) return ready.error();
 
   progress_line progress(common.quiet);

@@ -3,10 +3,12 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "cli.hpp"
+#include "file_names.hpp"
 #include "interrupt.hpp"
 #include "mesh_units.hpp"
 #include "model_drawing.hpp"
@@ -31,13 +33,10 @@ struct inspect_command {
 };
 
 result<output_file> open_picture(const inspect_command& options) {
-  std::error_code ignored;
-  for (const std::string& input : {options.file, options.original}) {
-    if (!input.empty() && fs::equivalent(input, options.picture, ignored)) {
-      return error{error_code::invalid_argument,
-                   "--picture " + options.picture + " would replace what is being read: give another name"};
-    }
-  }
+  std::vector<named_file> inputs = mesh_files(options.original, "--original");
+  inputs.push_back({"inspect", options.file});
+  const named_file picture{"--picture", options.picture};
+  if (const result<void> ok = check_outputs(inputs, {&picture, 1}); !ok) return ok.error();
   return output_file::create(options.picture);
 }
 

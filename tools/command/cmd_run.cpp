@@ -1,18 +1,23 @@
 // asperity run: a session of the two-rate loop with a device.
 #include <cmath>
-#include <filesystem>
+#include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "asperity/hal/simulated/simulated_device.hpp"
 #include "cli.hpp"
 #include "device_recorder.hpp"
 #include "device_replay.hpp"
+#include "driver_guard.hpp"
 #include "driver_options.hpp"
+#include "file_names.hpp"
 #include "gpu_report.hpp"
+#include "interrupt.hpp"
 #include "known_devices.hpp"
 #include "options.hpp"
 #include "poses.hpp"
+#include "run_abandon.hpp"
 #include "run_command.hpp"
 #include "run_files.hpp"
 #include "run_report.hpp"
@@ -50,19 +55,29 @@ result<void> check_options(const run_command& options) {
                                                    " s at the most, more calls are in no recording: use --seconds " +
                                                    brief(longest_recorded_s)};
   }
-  std::error_code ignored;
-  if (is_replay(options) && std::filesystem::equivalent(replayed_file(options), options.record_device, ignored)) {
-    return error{error_code::invalid_argument, "--record-device would replace the recording that is replayed, '" +
-                                                   options.record_device + "': give another name"};
-  }
-  return {};
+  std::vector<named_file> inputs{{"--probe", options.probe}, {"--firmware", options.firmware}};
+  for (const std::string& body : options.fixed) inputs.push_back({"--fixed", body});
+  if (is_replay(options)) inputs.push_back({"--device", replayed_file(options)});
+  const std::vector<named_file> outputs{
+      {"--record", options.record}, {"--record-device", options.record_device}, {"--plot", options.plot}};
+  return check_outputs(inputs, outputs);
 }
 
-// What a session is felt with. The parts behind the device outlive it.
+// What a session is felt with. The parts behind the device outlive it, and the watch outlives both.
 struct felt_device {
+  driver_watch& watch;
   std::unique_ptr<known_devices> known;
   std::optional<device_replay> replay;
   std::optional<any_device> device;
+
+  explicit felt_device(driver_watch& calls) : watch(calls) {}
+  felt_device(const felt_device&) = delete;
+  felt_device& operator=(const felt_device&) = delete;
+  ~felt_device() {
+    device.reset();
+    const driver_watch::call closing(watch, driver_call::close);
+    known.reset();
+  }
 };
 
 result<void> open_device(const run_command& options, const scene& bodies, felt_device& felt) {
@@ -72,15 +87,27 @@ result<void> open_device(const run_command& options, const scene& bodies, felt_d
     felt.device.emplace(simulated_device({.seed = options.seed, .motion = motion_of(options, bodies)}));
     return felt.device->open();
   } else {
-    result<std::unique_ptr<known_devices>> known =
-        known_devices::look(options.drivers, options.device, options.firmware);
-    if (!known) return known.error();
-    felt.known = std::move(known).value();
+    {
+      const driver_watch::call finding(felt.watch, driver_call::find);
+      result<std::unique_ptr<known_devices>> known =
+          known_devices::look(options.drivers, options.device, options.firmware);
+      if (!known) return known.error();
+      felt.known = std::move(known).value();
+    }
+    const driver_watch::call opening(felt.watch, driver_call::open);
     result<any_device> opened = felt.known->open(options.device);
     if (!opened) return opened.error();
-    felt.device.emplace(std::move(opened).value());
+    felt.device.emplace(watched_device(std::move(opened).value(), felt.watch));
   }
   return {};
+}
+
+// Asked between the steps of the start, which may take long: nothing is opened or armed for a session that nobody wants
+// any more.
+result<void> still_wanted() {
+  if (!interrupted()) return {};
+  return error{error_code::cancelled, "interrupted by " + signal_name(stop_signal()) +
+                                          " before the session began: nothing was felt, nothing was written"};
 }
 
 // Where the handle is at the start; nothing for the simulated device, which moves where it is put.
@@ -115,7 +142,12 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (!poses) return poses.error();
   result<session_files> files = session_files::open(options);
   if (!files) return files.error();
-  felt_device felt;
+  session_rescue rescue;
+  driver_watch watch;
+  // These see the device's end, too.
+  std::optional<device_hold> hold;
+  std::optional<driver_guard> guard;
+  felt_device felt(watch);
   if (is_replay(options)) {
     result<device_replay> opened = device_replay::open(replayed_file(options));
     if (!opened) return opened.error();
@@ -126,10 +158,17 @@ result<answer> run_session(const run_command& options, const common_options& com
   result<scene> bodies = load_scene(options.probe, options.fixed, options.render.allow_scale_mismatch);
   if (!bodies) return bodies.error();
   const mass_properties shape = bodies->probe->mass;
+  if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
+  // A search for the exact maximum cannot be hurried, and no hand waits for its end.
+  if (options.render.backend != "exact") hold.emplace();
+  if (!is_simulated(options) && !is_replay(options)) {
+    guard.emplace(watch, [&](const std::string& what) { abandon(rescue, *files, what, common.json); });
+  }
   if (const result<void> opened = open_device(options, *bodies, felt); !opened) return opened.error();
   result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!feel) return feel.error();
   const std::shared_ptr<gpu_use> gpu = feel->gpu();
+  if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   if (gpu && !common.quiet) warn(*gpu);
   if (!poses->T_wa) {
     const result<pose> start = start_above(options, *feel, poses->T_wb);
@@ -149,6 +188,7 @@ result<answer> run_session(const run_command& options, const common_options& com
   control_config control;
   control.map = *T_dh ? map_of(*poses->T_wa, shape.centre_of_mass, **T_dh) : map_of(*poses->T_wa, shape.centre_of_mass);
   control.probe = solid_probe(shape);
+  if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   result<session_outcome> ended =
       run_session({.feel = std::move(feel).value(),
                    .placement = {poses->T_wb, shape.centre_of_mass},
@@ -162,12 +202,21 @@ result<answer> run_session(const run_command& options, const common_options& com
                      found.summary.add(tick);
                      if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
                      return files->add(tick);
-                   }},
+                   },
+                   .on_start =
+                       [&](const real_time_grants& got) {
+                         if (!common.quiet) complain("note: real time: " + to_text(got));
+                       },
+                   .guard = guard ? &*guard : nullptr,
+                   .rescue = &rescue},
                   progress);
   if (!ended) return ended.error();
   if (felt.replay) found.replay = felt.replay->outcome();
   if (felt.known) found.driver = felt.known->what_happened();
-  if (const result<void> closed = files->close(options, *ended, found.summary); !closed) return closed.error();
+  {
+    const std::lock_guard lock(rescue.writing);
+    if (const result<void> closed = files->close(options, *ended, found.summary); !closed) return closed.error();
+  }
   found.ended = std::move(ended).value();
   return report(options, found);
 }

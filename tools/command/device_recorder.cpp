@@ -16,9 +16,10 @@ any_device device_recorder::around(any_device& device) {
 }
 
 result<void> device_recorder::drain() {
-  constexpr std::size_t block_size = std::size_t{1} << 16;
   for (call_record call; ring_.pop(call);) pending_ += encoder_.call(call);
-  if (pending_.size() < block_size) return {};
+  // A whole block goes out at once: what a killed process leaves can be read up to it.
+  if (encoder_.blocks() == written_blocks_) return {};
+  written_blocks_ = encoder_.blocks();
   return file_.write(std::exchange(pending_, {}));
 }
 

@@ -46,6 +46,7 @@ class device_recorder {
   call_ring ring_;
   recording_encoder encoder_;
   std::string pending_;
+  std::uint64_t written_blocks_ = 0;
 };
 
 }  // namespace asperity::command

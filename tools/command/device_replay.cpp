@@ -184,6 +184,7 @@ result<device_replay> device_replay::open(const std::filesystem::path& file) {
     if (calls[i].call == device_call::read || calls[i].call == device_call::write) next_ns = calls[i].now_ns;
     out.call_times_ns_[i] = next_ns;
   }
+  out.cut_ = loaded->cut;
   std::vector<call_record> prelude(calls.begin(), armed);
   out.on_record_ = std::make_shared<replay_device>(std::move(loaded).value());
   for (const call_record& c : prelude) make(*out.on_record_, c);
@@ -202,7 +203,10 @@ replay_outcome device_replay::outcome() const {
   replay_outcome out{.device = std::string(on_record_->capabilities().name),
                      .ticks = ticks_.of_session,
                      .differences = on_record_->differences(),
-                     .first_difference_s = {}};
+                     .first_difference_s = {},
+                     .cut = cut_};
+  // The ticks that take the wrench to zero are on no recording that was cut.
+  if (cut_ && out.differences > 0 && on_record_->first_difference() == call_times_ns_.size()) out.differences = 0;
   if (out.differences == 0) return out;
   const std::size_t at = std::min(on_record_->first_difference(), call_times_ns_.size() - 1);
   const std::int64_t since_ns = std::max(call_times_ns_[at], ticks_.times_ns.front()) - ticks_.times_ns.front();

@@ -21,6 +21,7 @@ struct replay_outcome {
   std::size_t ticks = 0;                     ///< on record until that session was told to end
   std::uint64_t differences = 0;             ///< calls and commands that were not those on record
   std::optional<double> first_difference_s;  ///< when; nothing without differences
+  bool cut = false;                          ///< the recording ended before its session did
 };
 
 /// The first armed session of a recording: its device, the pose in which it was taken up, and the times of its ticks.
@@ -51,6 +52,7 @@ class device_replay {
   std::vector<std::int64_t> call_times_ns_;  // of every call, or of the next one that has a time
   std::optional<pose> T_dh_start_;
   given_ticks ticks_;
+  bool cut_ = false;
 };
 
 }  // namespace asperity::command

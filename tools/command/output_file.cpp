@@ -1,11 +1,18 @@
 #include "output_file.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <fcntl.h>
+#include <optional>
+#include <poll.h>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <unistd.h>
 #include <utility>
+
+#include "interrupt.hpp"
+#include "io/new_file.hpp"
 
 namespace asperity::command {
 namespace {
@@ -13,15 +20,31 @@ namespace {
 namespace fs = std::filesystem;
 
 error cannot_write(const fs::path& file, int reason) {
-  return {error_code::io_failed, "cannot write " + file.string() + ": " + std::generic_category().message(reason) +
-                                     "; give a path in an existing, writable folder with free space"};
+  const char* const mend =
+      reason == EPIPE ? "nobody reads it any more" : "give a path in an existing, writable folder with free space";
+  return {error_code::io_failed,
+          "cannot write " + file.string() + ": " + std::generic_category().message(reason) + "; " + mend};
 }
 
-// A symbolic link keeps pointing where it points: the file behind it is replaced, not the link.
-fs::path behind_links(const fs::path& file) {
-  std::error_code ignored;
-  const fs::path target = fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored) : file;
-  return target.empty() ? file : target;
+// How long a pipe may take nothing once this program was asked to stop.
+constexpr std::chrono::milliseconds patience(1000);
+constexpr std::chrono::milliseconds look_again(20);
+
+error stopped_waiting(const fs::path& file, const char* who) {
+  return {error_code::cancelled, "interrupted while " + file.string() + " had no " + who + ": it is not whole"};
+}
+
+// A pipe without a reader is waited for, as a shell does, but not beyond a wish to stop.
+result<int> open_in_place(const fs::path& file) {
+  while (true) {
+    const int descriptor = open(file.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor >= 0) return descriptor;
+    std::error_code ignored;
+    const bool waits = errno == ENXIO && fs::is_fifo(file, ignored);
+    if (!waits && errno != EINTR) return cannot_write(file, errno);
+    if (interrupted()) return stopped_waiting(file, "reader");
+    std::this_thread::sleep_for(look_again);
+  }
 }
 
 }  // namespace
@@ -40,26 +63,35 @@ output_file::~output_file() {
 }
 
 result<output_file> output_file::create(const fs::path& destination) {
-  const fs::path target = behind_links(destination);
   std::error_code ignored;
-  const fs::file_status existing = fs::status(target, ignored);
+  const fs::file_status existing = fs::status(destination, ignored);
   if (fs::is_directory(existing)) return cannot_write(destination, EISDIR);
-  const bool direct = fs::exists(existing) && !fs::is_regular_file(existing);
-
-  fs::path opened = target;
-  if (!direct) opened += ".partial-" + std::to_string(getpid());
-  const int flags = O_WRONLY | O_CLOEXEC | (direct ? 0 : O_CREAT | O_EXCL);
-  const int descriptor = open(opened.c_str(), flags, 0666);
-  if (descriptor < 0) return cannot_write(destination, errno);
-  return output_file(descriptor, target, direct ? fs::path() : opened);
+  if (fs::exists(existing) && !fs::is_regular_file(existing)) {
+    const result<int> opened = open_in_place(destination);
+    if (!opened) return opened.error();
+    return output_file(*opened, destination, {});
+  }
+  const fs::path target = io::behind_links(destination);  // a link keeps pointing where it points
+  const io::new_file made = io::create_beside(target);
+  if (made.descriptor < 0) return cannot_write(destination, errno);
+  return output_file(made.descriptor, target, made.name);
 }
 
 result<void> output_file::write(std::string_view bytes) {
+  std::optional<std::chrono::steady_clock::time_point> asked_to_stop;
   while (!bytes.empty()) {
     const ssize_t n = ::write(descriptor_, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) return cannot_write(destination_, errno);
-    bytes.remove_prefix(static_cast<std::size_t>(n));
+    if (n >= 0) {
+      bytes.remove_prefix(static_cast<std::size_t>(n));
+    } else if (errno == EAGAIN) {  // a pipe that is full
+      const auto now = std::chrono::steady_clock::now();
+      if (interrupted() && !asked_to_stop) asked_to_stop = now;
+      if (asked_to_stop && now - *asked_to_stop > patience) return stopped_waiting(destination_, "room for a second");
+      pollfd room{.fd = descriptor_, .events = POLLOUT, .revents = 0};
+      poll(&room, 1, static_cast<int>(look_again.count()));
+    } else if (errno != EINTR) {
+      return cannot_write(destination_, errno);
+    }
   }
   return {};
 }

@@ -9,18 +9,21 @@
 namespace asperity::command {
 
 /// A file that is written under a temporary name beside its destination and moved there by commit(); without a commit
-/// nothing remains. A destination that is a device or a pipe is written directly, for it cannot be replaced.
+/// nothing remains, unless the process is killed. The temporary name is io::create_beside()'s, and what is there
+/// already keeps its mode, its owner where that is permitted, and the links to it. A destination that is a device or a
+/// pipe is written directly, for it cannot be replaced. A pipe is waited for, for its reader and for room; once a
+/// signal asked to stop, for a second at the most.
 class output_file {
  public:
   /// Opens it now, so that an unwritable destination is found before the work and not after it.
-  /// @return io_failed with the path and the reason
+  /// @return io_failed with the path and the reason | cancelled where a signal ended the wait for a pipe's reader
   [[nodiscard]] static result<output_file> create(const std::filesystem::path& destination);
 
   output_file(output_file&& other) noexcept;
   output_file& operator=(output_file&&) = delete;
   ~output_file();
 
-  /// @return io_failed, for example where the disk is full
+  /// @return io_failed, for example where the disk is full | cancelled
   [[nodiscard]] result<void> write(std::string_view bytes);
 
   /// Makes the file appear under its name. @return io_failed

@@ -56,6 +56,7 @@ result<session_files> session_files::open(const run_command& options) {
 }
 
 result<void> session_files::add(const session_record& tick) {
+  begun_ = true;
   if (curves_) curves_->add(tick);
   if (recorder_) {
     if (const result<void> written = recorder_->drain(); !written) return written;
@@ -65,6 +66,7 @@ result<void> session_files::add(const session_record& tick) {
 
 result<void> session_files::close(const run_command& options, const session_outcome& ended,
                                   const session_summary& summary) {
+  closed_ = true;
   if (plot_) {
     const bool svg = extension_error(options.plot, {".svg"}).empty();
     const plot_page page = curves_->page(plot_title(options, summary), plot_caption(options));
@@ -81,6 +83,24 @@ result<void> session_files::close(const run_command& options, const session_outc
     if (const result<void> closed = recorder_->commit(); !closed) return closed;
   }
   return plot_ ? plot_->commit() : result<void>();
+}
+
+std::string session_files::rescue() {
+  plot_.reset();
+  if (closed_) return "its recordings were closed before";
+  if (!begun_ || (!record_ && !recorder_)) {
+    record_.reset();
+    recorder_.reset();
+    return {};
+  }
+  closed_ = true;
+  bool kept = true;
+  if (recorder_) {
+    const result<void> ended = recorder_->finish(recorded_end::not_told, 0);
+    kept = ended && recorder_->commit();
+  }
+  if (record_) kept = record_->close() && kept;
+  return kept ? "its recordings hold what came before" : "its recordings could not all be closed";
 }
 
 }  // namespace asperity::command

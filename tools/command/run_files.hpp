@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "device_recorder.hpp"
 #include "recording.hpp"
@@ -28,11 +29,17 @@ class session_files {
   [[nodiscard]] result<void> close(const run_command& options, const session_outcome& ended,
                                    const session_summary& summary);
 
+  /// Closes the recordings of a session that will not come to its end, as far as they go; a plot is left out. Nothing
+  /// where they are closed already, or where the session had not begun. @return one clause on what became of them
+  [[nodiscard]] std::string rescue();
+
  private:
   std::unique_ptr<device_recorder> recorder_;
   std::optional<recording> record_;
   std::optional<output_file> plot_;
   std::optional<session_curves> curves_;
+  bool begun_ = false;
+  bool closed_ = false;
 };
 
 }  // namespace asperity::command

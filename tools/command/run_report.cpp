@@ -1,8 +1,10 @@
 #include "run_report.hpp"
 
 #include <string>
+#include <system_error>
 
 #include "gpu_report.hpp"
+#include "interrupt.hpp"
 #include "model_report.hpp"
 #include "statistics.hpp"
 #include "text.hpp"
@@ -67,17 +69,66 @@ json replay_json(const std::optional<replay_outcome>& replay) {
   if (!replay) return nullptr;
   return {{"device", replay->device},
           {"ticks", replay->ticks},
+          {"cut", replay->cut},
           {"differences", replay->differences},
           {"first_difference", replay->first_difference_s ? json(*replay->first_difference_s) : json()}};
 }
 
+const char* to_string(grant g) {
+  switch (g) {
+    case grant::not_asked:
+      return "not_asked";
+    case grant::granted:
+      return "granted";
+    case grant::refused:
+      return "refused";
+    case grant::unsupported:
+      return "unsupported";
+  }
+  return "unknown";
+}
+
+json thread_json(const thread_grants& t) {
+  return {{"scheduling", to_string(t.scheduling)},
+          {"priority", t.scheduling == grant::granted ? json(t.priority) : json()},
+          {"affinity", to_string(t.affinity)},
+          {"processor", t.affinity == grant::granted ? json(t.processor) : json()}};
+}
+
+json real_time_json(const std::optional<real_time_grants>& got) {
+  if (!got) return nullptr;
+  return {{"device_thread", thread_json(got->device)},
+          {"contact_thread", thread_json(got->contact)},
+          {"memory_lock", to_string(got->memory)},
+          {"later_memory", got->later_memory}};
+}
+
+std::string refusal_text(int error) { return "refused (" + std::generic_category().message(error) + ")"; }
+
+std::string thread_text(const thread_grants& t) {
+  std::string out = t.scheduling == grant::granted   ? "SCHED_FIFO " + std::to_string(t.priority)
+                    : t.scheduling == grant::refused ? "SCHED_FIFO " + refusal_text(t.scheduling_error)
+                                                     : "ordinary class";
+  if (t.affinity == grant::granted) out += " on processor " + std::to_string(t.processor);
+  if (t.affinity == grant::refused) out += ", processor of its own " + refusal_text(t.affinity_error);
+  return out;
+}
+
 std::string replay_text(const replay_outcome& replay) {
-  const std::string what = replay.device + ", " + std::to_string(replay.ticks) + " ticks on record; ";
+  const std::string what = replay.device + ", " + std::to_string(replay.ticks) + " ticks on record" +
+                           (replay.cut ? ", cut off before its end; " : "; ");
   if (!replay.first_difference_s) return what + "every call and every command as it was then";
   return what + "from " + brief(*replay.first_difference_s) + " s on the commands are others than then";
 }
 
 }  // namespace
+
+std::string to_text(const real_time_grants& got) {
+  return "device loop " + thread_text(got.device) + "; contact loop " + thread_text(got.contact) + "; memory " +
+         (got.memory == grant::granted   ? got.later_memory ? "locked" : "locked as it was at the start"
+          : got.memory == grant::refused ? "lock " + refusal_text(got.memory_error)
+                                         : "not locked");
+}
 
 answer report(const run_command& options, const session_findings& found) {
   const auto& [poses, ended, summary, memory, replay, driver] = found;
@@ -113,6 +164,8 @@ answer report(const run_command& options, const session_findings& found) {
   out.document["fault_record"] = fault_json(ended);
   out.document["driver_fault"] = driver.empty() ? json() : json(driver);
   out.document["interrupted"] = ended.interrupted;
+  out.document["signal"] = ended.interrupted ? json(signal_name(stop_signal())) : json();
+  out.document["real_time"] = real_time_json(ended.real_time);
   out.document["recording"] = options.record.empty() ? json() : json(options.record);
   out.document["device_recording"] = options.record_device.empty() ? json() : json(options.record_device);
   out.document["replay"] = replay_json(replay);
@@ -125,6 +178,7 @@ answer report(const run_command& options, const session_findings& found) {
   out.text += row("contact loop", loop_text(ended.contact, contact));
   out.text += row("device loop", loop_text(ended.device, device));
   out.text += row("rates", rates_text(ended.rates));
+  if (ended.real_time) out.text += row("real time", to_text(*ended.real_time));
   out.text += row("memory", memory_text(memory.models) + " models, " + memory_text(memory.renderer) + " renderer");
   if (memory.gpu) out.text += to_text(*memory.gpu);
   if (replay) out.text += row("replay", replay_text(*replay));
@@ -146,8 +200,13 @@ answer report(const run_command& options, const session_findings& found) {
                     "): the wrench is zero; see the last rows of the recording" +
                     (driver.empty() ? "" : "; driver " + driver);
   } else if (ended.interrupted) {
-    out.exit_status = exit_interrupted;
-    out.complaint = "interrupted after " + brief(ended.ended_at_s) + " s: the wrench is zero, the recording is closed";
+    out.exit_status = exit_interrupted();
+    out.complaint = "interrupted by " + signal_name(stop_signal()) + " after " + brief(ended.ended_at_s) +
+                    " s: the wrench is zero, the device is disarmed, the recordings are closed";
+  }
+  if (ended.armed_at_end) {
+    out.exit_status = exit_failed;
+    out.complaint = "the device did NOT take its disarm at the end of the session: switch it off";
   }
   return out;
 }

@@ -33,6 +33,9 @@ struct session_findings {
   std::string driver{};                  ///< what became of the driver's process; empty where all is well
 };
 
+/// What a session in real time asked the system for and got, in one line.
+[[nodiscard]] std::string to_text(const real_time_grants& got);
+
 [[nodiscard]] answer report(const run_command& options, const session_findings& found);
 
 }  // namespace asperity::command

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "approach.hpp"
+#include "interrupt.hpp"
 #include "poses.hpp"
 
 namespace asperity::command {
@@ -62,11 +63,13 @@ workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, const
 
 result<pose> first_pose(any_device& device) {
   device_sample sample;
-  for (int ms = 0; ms < 1000; ++ms) {
-    const std::int64_t now_ns = steady_ns();
+  constexpr std::int64_t longest_ns = 1'000'000'000;
+  const std::int64_t begin_ns = steady_ns();
+  for (std::int64_t now_ns = begin_ns; now_ns - begin_ns < longest_ns && !interrupted(); now_ns = steady_ns()) {
     if (device.read(now_ns, sample) == status::ok && has_all(sample.valid, sample_field::position)) return sample.T_dh;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
+  if (interrupted()) return error{error_code::cancelled, "interrupted before the device measured anything"};
   return error{error_code::io_failed,
                std::string(device.capabilities().name) +
                    " is open and measured nothing for a second: unplug it, plug it in again, and "

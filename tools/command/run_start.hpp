@@ -33,7 +33,8 @@ struct given_poses {
 /// the handle.
 [[nodiscard]] workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, const pose& T_dh_start);
 
-/// Where the handle is: a device needs a moment for its first measurement. @return io_failed after a second
+/// Where the handle is: a device needs a moment for its first measurement. @return io_failed after a second |
+/// cancelled
 [[nodiscard]] result<pose> first_pose(any_device& device);
 
 /// What the simulated hand means to do with these bodies.

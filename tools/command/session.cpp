@@ -1,9 +1,11 @@
 #include "session.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -54,6 +56,13 @@ std::uint64_t count_above(const std::vector<double>& seconds, std::int64_t perio
 
 // Of this program on the real clock, where it beats every few milliseconds; a disk may keep it for a while.
 constexpr std::int64_t longest_silence_ns = 1'000'000'000;
+
+// An error that ended a session: whoever reads it wants to know what became of the hand.
+error after_session(error why, const session_outcome& out) {
+  why.message += out.armed_at_end ? " (the session was ended, and the device did NOT take its disarm: switch it off)"
+                                  : " (the session was ended: the wrench is zero, the device is disarmed)";
+  return why;
+}
 
 // What the gate saw last, where it shut by itself.
 void keep_fault(const output_gate& gate, std::int64_t origin_ns, session_outcome& out) {
@@ -108,6 +117,7 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
                           setup.control, schedule, keep_last{&last});
   std::optional<error> failed;
+  std::exception_ptr thrown;
   const auto step = [&] {
     const double begin = cpu_seconds();
     if (const std::optional<std::int64_t> at_ns = times.at(session.device_ticks())) session.next_device_at(*at_ns);
@@ -117,7 +127,12 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
     if (out.device.seconds.size() < device_ticks) out.device.seconds.push_back(taken);
     if (failed) return;
     last.time_ns -= times.origin_ns();
-    if (const result<void> seen = setup.on_tick(last); !seen) failed = seen.error();
+    try {
+      if (const result<void> seen = setup.on_tick(last); !seen) failed = seen.error();
+    } catch (...) {  // thrown on when the device is at rest
+      thrown = std::current_exception();
+      failed = error{error_code::limit_exceeded, "an exception"};
+    }
   };
 
   while (session.device_ticks() < device_ticks && !failed && !interrupted() &&
@@ -137,7 +152,8 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   constexpr int longest_wind_down = 200;
   for (int i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
   static_cast<void>(dev.disarm());
-  if (failed) return *failed;
+  if (thrown) std::rethrow_exception(thrown);
+  if (failed) return after_session(*failed, out);
 
   out.rates = session.device().rates().report();
   out.rejected_samples = session.device().samples().rejected();
@@ -152,6 +168,39 @@ loop_times to_times(const tick_timing& t) {
   return out;
 }
 
+std::atomic<int> threads_set_up{0};
+
+void set_up_and_count(session_thread which) {
+  set_up_real_time_thread(which);
+  ++threads_set_up;
+}
+
+real_time_grants grants_of(const memory_lock& locked) {
+  return {.device = latest_grants(session_thread::device),
+          .contact = latest_grants(session_thread::contact),
+          .memory = locked.outcome(),
+          .memory_error = locked.refusal(),
+          .later_memory = locked.keeps_later_memory()};
+}
+
+// The way to a session's records, open while it runs.
+class rescue_line {
+ public:
+  rescue_line(session_rescue& rescue, std::function<void()> take_records) : rescue_(rescue) {
+    const std::lock_guard lock(rescue_.writing);
+    rescue_.take_records = std::move(take_records);
+  }
+  rescue_line(const rescue_line&) = delete;
+  rescue_line& operator=(const rescue_line&) = delete;
+  ~rescue_line() {
+    const std::lock_guard lock(rescue_.writing);
+    rescue_.take_records = nullptr;
+  }
+
+ private:
+  session_rescue& rescue_;
+};
+
 result<session_outcome> run_real(session_setup setup, any_device& dev, progress_line& progress) {
   session_outcome out;
   // Times of an hour at 1 kHz; what comes later is counted, not timed.
@@ -160,7 +209,8 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   const double wanted = 1.1 * setup.seconds * 1e9 / static_cast<double>(shortest) + 1000.0;
   const real_schedule schedule{.device_period_ns = device_period_ns,
                                .contact_period_ns = setup.contact_period_ns,
-                               .timed_ticks = static_cast<std::size_t>(std::min(wanted, most_timed))};
+                               .timed_ticks = static_cast<std::size_t>(std::min(wanted, most_timed)),
+                               .set_up_thread = set_up_and_count};
   setup.control.watchdog_ns = longest_silence_ns;
   const auto queue = std::make_unique<record_queue>();
   real_session session(std::move(setup.feel), setup.placement, dev, setup.control, schedule,
@@ -169,7 +219,9 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   std::optional<std::int64_t> origin_ns;
   std::optional<error> failed;
   bool shut = false;
-  const auto drain = [&] {
+  session_rescue unshared;
+  session_rescue& rescue = setup.rescue != nullptr ? *setup.rescue : unshared;
+  const auto take_records = [&] {
     session_record record;
     while (!failed && queue->pop(record)) {
       if (!origin_ns) origin_ns = record.time_ns;
@@ -179,19 +231,36 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
       if (const result<void> seen = setup.on_tick(record); !seen) failed = seen.error();
     }
   };
+  const auto drain = [&] {
+    const std::lock_guard lock(rescue.writing);
+    take_records();
+  };
+  const rescue_line line(rescue, take_records);
+  const memory_lock locked;
   const auto begin = std::chrono::steady_clock::now();
+  bool told = !setup.on_start;
+  threads_set_up = 0;
   session.start();
   for (double elapsed = 0.0; elapsed < setup.seconds && !failed && !shut && !interrupted();) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     drain();
     session.beat();
+    if (!told && threads_set_up == 2) {
+      setup.on_start(grants_of(locked));
+      told = true;
+    }
     elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     progress.show("session", std::min(1.0, elapsed / setup.seconds));
   }
   out.interrupted = interrupted();
-  session.stop(out.interrupted ? gate_fault::interrupted : gate_fault::stopped);
+  {
+    const driver_guard::ending ending(setup.guard);
+    session.stop(out.interrupted ? gate_fault::interrupted : gate_fault::stopped);
+  }
   drain();
-  if (failed) return *failed;
+  out.armed_at_end = may_put_out(dev.state());
+  if (failed) return after_session(*failed, out);
+  out.real_time = grants_of(locked);
 
   const gate_fault fault = session.device().gate().fault();
   // Stopping is how every session ends.

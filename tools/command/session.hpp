@@ -3,13 +3,16 @@
 
 #include <cstdint>
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <vector>
 
 #include "asperity/control/contact_loop.hpp"
 #include "asperity/control/device_loop.hpp"
+#include "asperity/control/real_time_thread.hpp"
 #include "asperity/hal/any_device.hpp"
 #include "chosen_renderer.hpp"
+#include "driver_guard.hpp"
 #include "progress.hpp"
 
 namespace asperity::command {
@@ -26,6 +29,22 @@ struct given_ticks {
   gate_fault end = gate_fault::stopped;  ///< what it was told
 };
 
+/// What the system gave to a session on the real clock.
+struct real_time_grants {
+  thread_grants device;
+  thread_grants contact;
+  grant memory = grant::not_asked;
+  int memory_error = 0;       ///< errno of a refusal
+  bool later_memory = false;  ///< whether memory that was taken later was kept as well
+};
+
+/// What is shared with whoever has to close a session's recordings where its main thread cannot.
+struct session_rescue {
+  std::timed_mutex writing;  ///< held by whoever calls on_tick, or writes the session's files
+  /// Hands every record that there is to on_tick; empty while no session runs. @pre `writing` is held
+  std::function<void()> take_records;
+};
+
 struct session_setup {
   chosen_renderer feel;
   scene_placement placement{};
@@ -39,6 +58,11 @@ struct session_setup {
   std::optional<given_ticks> ticks{};  ///< virtual clock only; without them one every device_period_ns
   /// Told of every device tick, outside it and in order. An error ends the session.
   std::function<result<void>(const session_record&)> on_tick;
+  /// Real clock only, and may be empty: told once, when both threads run, what the system gave them.
+  std::function<void(const real_time_grants&)> on_start{};
+  /// Real clock only, and may be null: who looks after the driver, and what it may rescue.
+  driver_guard* guard = nullptr;
+  session_rescue* rescue = nullptr;
 };
 
 inline constexpr std::int64_t device_period_ns = 1'000'000;
@@ -61,6 +85,8 @@ struct session_outcome {
   std::vector<flight_entry> last_ticks;  ///< up to and including the one in which the gate shut; empty without a fault
   double ended_at_s = 0.0;               ///< when the session ended, by its own clock
   bool interrupted = false;
+  bool armed_at_end = false;                  ///< the device did not take its disarm; real clock only
+  std::optional<real_time_grants> real_time;  ///< real clock only
 };
 
 /// Arms the device, runs the session, takes the wrench to zero and disarms, whatever ended it.

@@ -10,6 +10,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include "new_file.hpp"
+
 namespace asperity::io {
 namespace {
 
@@ -78,26 +80,6 @@ result<std::string> read_open(const descriptor& in, const fs::path& file, std::u
   return bytes;
 }
 
-/// The path that a chain of links ends in, whether a file is there or not.
-fs::path behind_links(fs::path path) {
-  std::error_code ec;
-  for (int link = 0; link < 40 && fs::is_symlink(fs::symlink_status(path, ec)); ++link) {
-    path = path.parent_path() / fs::read_symlink(path, ec);  // an absolute one replaces the parent
-  }
-  return path;
-}
-
-/// A new file beside the target, so that renaming it stays within one file system.
-file_handle create_beside(const fs::path& target, fs::path& name) {
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    name = target;
-    name += ".part" + std::to_string(attempt);
-    file_handle file(std::fopen(name.c_str(), "wbx"));  // x: never somebody else's file
-    if (file || errno != EEXIST) return file;
-  }
-  return nullptr;
-}
-
 }  // namespace
 
 error fault(error_code code, const fs::path& file, std::string_view what) {
@@ -160,8 +142,8 @@ result<void> write_file(const fs::path& file, std::initializer_list<std::string_
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     return fault(error_code::io_failed, file, "cannot be written: it is not a regular file; name another");
   }
-  fs::path part;
-  file_handle out = create_beside(target, part);
+  const new_file part = create_beside(target);
+  file_handle out(part.descriptor < 0 ? nullptr : ::fdopen(part.descriptor, "wb"));
   if (!out) {
     return fault(error_code::io_failed, file,
                  "cannot be written: " + reason() + "; check that its folder exists and is writable");
@@ -172,10 +154,10 @@ result<void> write_file(const fs::path& file, std::initializer_list<std::string_
   }
   whole = std::fclose(out.release()) == 0 && whole;
   const std::string why = whole ? std::string() : reason();
-  if (whole) fs::rename(part, target, ec);
+  if (whole) fs::rename(part.name, target, ec);
   if (!whole || ec) {
     std::error_code ignored;
-    fs::remove(part, ignored);
+    fs::remove(part.name, ignored);
     return fault(
         error_code::io_failed, file,
         "cannot be written: " + (whole ? ec.message() : why) + "; check the space and the permissions of its folder");

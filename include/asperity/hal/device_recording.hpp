@@ -18,7 +18,10 @@ namespace asperity {
 
 namespace recording_detail {
 
-inline constexpr char magic[] = {'A', 'S', 'P', 'D', 'E', 'V', 'R', '1'};
+inline constexpr char magic[] = {'A', 'S', 'P', 'D', 'E', 'V', 'R', '2'};
+inline constexpr char magic_without_blocks[] = {'A', 'S', 'P', 'D', 'E', 'V', 'R', '1'};
+inline constexpr std::uint64_t block_calls = 256;  // a quarter of a second and less at 1 kHz
+inline constexpr std::uint8_t block_mark = 0xfe;
 inline constexpr std::size_t longest_name = 256;
 inline constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 30;
 inline constexpr std::size_t most_calls = std::size_t{1} << 23;  // an hour and more at 1 kHz
@@ -59,6 +62,7 @@ class byte_reader {
     if (bytes_->size() - at_ < sizeof(T)) {
       at_ = bytes_->size();
       ok_ = false;
+      ended_ = true;
       return T{};
     }
     std::uint64_t bits = 0;
@@ -84,18 +88,38 @@ class byte_reader {
   [[nodiscard]] std::string text(std::size_t n) {
     if (bytes_->size() - at_ < n) {
       ok_ = false;
+      ended_ = true;
       return {};
     }
     at_ += n;
     return bytes_->substr(at_ - n, n);
   }
   [[nodiscard]] bool ok() const noexcept { return ok_; }
+  /// Whether more was asked for than there is.
+  [[nodiscard]] bool ended() const noexcept { return ended_; }
   [[nodiscard]] std::size_t at() const noexcept { return at_; }
 
  private:
   const std::string* bytes_;
   std::size_t at_ = 0;
   bool ok_ = true;
+  bool ended_ = false;
+};
+
+/// The check sum of a recording's first bytes, as far as somebody asked.
+class running_sum {
+ public:
+  explicit running_sum(const std::string& bytes) : bytes_(&bytes) {}
+  /// @param at not before that of the last call
+  [[nodiscard]] std::uint64_t up_to(std::size_t at) noexcept {
+    for (; at_ < at; ++at_) sum_ = add_to_sum(sum_, (*bytes_)[at_]);
+    return sum_;
+  }
+
+ private:
+  const std::string* bytes_;
+  std::size_t at_ = 0;
+  std::uint64_t sum_ = first_sum;
 };
 
 inline constexpr std::array capability_numbers{
@@ -184,6 +208,8 @@ inline device_command read_command(byte_reader& r) noexcept {
 }  // namespace recording_detail
 
 /// Turns calls into the bytes of a recording, piece by piece: begin, then every call in order, then end.
+/// After every 256 calls comes a mark with a check sum: bytes that were written up to a mark can be read again,
+/// whatever became of the rest.
 class recording_encoder {
  public:
   [[nodiscard]] std::string begin(const device_capabilities& c, device_state before) {
@@ -216,8 +242,13 @@ class recording_encoder {
     if (c.call == device_call::write) write(w, c.command);
     if (c.call == device_call::read) last_seen_ = std::move(seen);
     ++calls_;
-    return counted(w.take());
+    std::string out = counted(w.take());
+    if (calls_ % block_calls == 0) out += mark();
+    return out;
   }
+
+  /// Whole blocks so far.
+  [[nodiscard]] std::uint64_t blocks() const noexcept { return calls_ / recording_detail::block_calls; }
 
   /// @param writes_before_end see device_recording
   [[nodiscard]] std::string end(recorded_end why = recorded_end::not_told, std::uint64_t writes_before_end = 0) {
@@ -233,6 +264,15 @@ class recording_encoder {
   }
 
  private:
+  std::string mark() {
+    recording_detail::byte_writer w;
+    w.number(recording_detail::block_mark);
+    w.number(calls_);
+    std::string out = counted(w.take());
+    recording_detail::byte_writer s;
+    s.number(sum_);
+    return out + counted(s.take());
+  }
   std::string counted(std::string bytes) {
     for (const char b : bytes) sum_ = recording_detail::add_to_sum(sum_, b);
     return bytes;
@@ -254,17 +294,21 @@ class recording_encoder {
 }
 
 /// The recording in `bytes`, of at most 8,388,608 calls. Memory grows with the calls that are there, whatever their
-/// number is said to be.
-/// @return bad_format for anything that encode() does not write | limit_exceeded
+/// number is said to be. Bytes that end before the recording does, as those of a program that was killed, give the
+/// calls up to the last whole block, and `cut` says so.
+/// @return bad_format for anything that encode() does not write, and for a cut before the first whole block's end |
+/// limit_exceeded
 [[nodiscard]] inline result<device_recording> decode(const std::string& bytes) {
   using namespace recording_detail;
   const auto bad = [](const std::string& what) {
     return error{error_code::bad_format, "the device recording " + what + ": record the session again"};
   };
   byte_reader r(bytes);
-  if (r.text(sizeof magic) != std::string(magic, sizeof magic)) {
+  const std::string first_bytes = r.text(sizeof magic);
+  const bool in_blocks = first_bytes == std::string(magic, sizeof magic);
+  if (!in_blocks && first_bytes != std::string(magic_without_blocks, sizeof magic)) {
     return error{error_code::bad_format,
-                 "it is no device recording, for it does not begin with ASPDEVR1: give a file of `asperity run "
+                 "it is no device recording, for it does not begin with ASPDEVR2: give a file of `asperity run "
                  "--record-device`"};
   }
   device_recording out;
@@ -275,14 +319,35 @@ class recording_encoder {
   out.before = r.choice<device_state>(device_state_count);
   if (!r.ok()) return bad("is cut off, or wrong, in its header");
 
+  running_sum sum(bytes);
+  std::size_t whole = 0;  // calls up to the last mark
+  // What to do where the bytes cannot be understood: they may just have ended.
+  const auto broken = [&](const std::string& what) -> result<device_recording> {
+    if (!r.ended() || whole == 0) return bad(what);
+    out.calls.resize(whole);
+    out.cut = true;
+    return std::move(out);
+  };
   device_sample last;
   bool seen = false;
   std::uint64_t writes = 0;
   while (true) {
     const std::size_t at = r.at();
     const auto first = r.number<std::uint8_t>();
-    if (!r.ok()) return bad("is cut off after call " + std::to_string(out.calls.size()));
+    if (!r.ok()) return broken("is cut off after call " + std::to_string(out.calls.size()));
     if (first == end_mark) break;
+    if (in_blocks && first == block_mark) {
+      const bool counted = r.number<std::uint64_t>() == out.calls.size() && out.calls.size() == whole + block_calls;
+      const std::uint64_t told = r.ok() ? sum.up_to(r.at()) : 0;
+      const bool matches = r.number<std::uint64_t>() == told;
+      if (!r.ok()) return broken("is cut off after call " + std::to_string(out.calls.size()));
+      if (!counted || !matches) return bad("does not match the check sum at byte " + std::to_string(at));
+      whole = out.calls.size();
+      continue;
+    }
+    if (in_blocks && out.calls.size() == whole + block_calls) {
+      return bad("lacks the check sum at byte " + std::to_string(at));
+    }
     if (out.calls.size() == most_calls) {
       return error{error_code::limit_exceeded,
                    "the device recording holds more than 8,388,608 calls: record a shorter session"};
@@ -307,18 +372,24 @@ class recording_encoder {
       c.command = read_command(r);
       ++writes;
     }
-    if (!r.ok()) return bad("is cut off, or wrong, in call " + std::to_string(out.calls.size()));
+    if (!r.ok()) return broken("is cut off, or wrong, in call " + std::to_string(out.calls.size()));
     out.calls.push_back(c);
   }
-  if (r.number<std::uint64_t>() != out.calls.size()) return bad("holds another number of calls than it says");
+  const bool counted = r.number<std::uint64_t>() == out.calls.size();
   out.end = r.choice<recorded_end>(recorded_end_count);
   out.writes_before_end = r.number<std::uint64_t>();
-  if (!r.ok() || out.writes_before_end > (out.end == recorded_end::not_told ? 0 : writes)) {
-    return bad("is cut off, or wrong, where it tells its end");
+  const std::uint64_t told = r.ok() ? sum.up_to(r.at()) : 0;
+  const bool matches = r.number<std::uint64_t>() == told;
+  if (r.ended() && whole > 0) {
+    out.end = recorded_end::not_told;
+    out.writes_before_end = 0;
   }
-  std::uint64_t sum = first_sum;
-  for (std::size_t i = 0; i < r.at(); ++i) sum = add_to_sum(sum, bytes[i]);
-  if (r.number<std::uint64_t>() != sum || !r.ok()) return bad("does not match its check sum");
+  if (r.ended()) return broken("is cut off where it tells its end");
+  if (!counted) return bad("holds another number of calls than it says");
+  if (!r.ok() || out.writes_before_end > (out.end == recorded_end::not_told ? 0 : writes)) {
+    return bad("is wrong where it tells its end");
+  }
+  if (!matches) return bad("does not match its check sum");
   if (r.at() != bytes.size()) return bad("goes on after its end");
   return out;
 }

@@ -29,6 +29,7 @@ struct device_recording {
   recorded_end end = recorded_end::not_told;
   /// Writes until then; those after it take the wrench to zero. 0 where nobody told.
   std::uint64_t writes_before_end = 0;
+  bool cut = false;  ///< its bytes ended before it did: these are the calls up to its last whole block
 };
 
 /// Whether two commands are the same to the bit.

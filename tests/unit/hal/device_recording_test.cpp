@@ -127,6 +127,91 @@ TEST(device_recording, refuses_every_cut_and_every_flipped_byte) {
   EXPECT_FALSE(decode(bytes + '\0'));
 }
 
+std::string with_sum(std::string bytes) {
+  std::uint64_t sum = recording_detail::first_sum;
+  for (const char b : bytes) sum = recording_detail::add_to_sum(sum, b);
+  recording_detail::byte_writer w;
+  w.number(sum);
+  return bytes + w.take();
+}
+
+// As after a kill: the bytes end anywhere. The calls up to the last whole block are there, and no others.
+TEST(device_recording, cut_anywhere_gives_its_whole_blocks) {
+  device_recording whole = record();
+  ASSERT_GT(whole.calls.size(), 900U);
+  whole.calls.resize(900);
+  recording_encoder e;
+  device_capabilities c = whole.capabilities;
+  c.name = whole.name;
+  std::string bytes = e.begin(c, whole.before);
+  std::vector<std::size_t> ends;  // of the first blocks of 256 calls
+  for (std::size_t i = 0; i < whole.calls.size(); ++i) {
+    bytes += e.call(whole.calls[i]);
+    if ((i + 1) % 256 == 0) ends.push_back(bytes.size());
+  }
+  bytes += e.end(recorded_end::interrupted, 100);
+
+  std::vector<std::size_t> cuts;
+  for (const std::size_t end : ends) {
+    for (std::size_t n = end - 20; n < end + 3; ++n) cuts.push_back(n);
+  }
+  for (std::size_t n = bytes.size() - 30; n < bytes.size(); ++n) cuts.push_back(n);
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 60; ++i) cuts.push_back(random() % bytes.size());
+  for (const std::size_t n : cuts) {
+    const auto blocks =
+        static_cast<std::size_t>(std::count_if(ends.begin(), ends.end(), [n](std::size_t end) { return end <= n; }));
+    const result<device_recording> read = decode(bytes.substr(0, n));
+    ASSERT_EQ(static_cast<bool>(read), blocks > 0) << n;
+    if (!read) continue;
+    EXPECT_TRUE(read->cut);
+    EXPECT_EQ(read->end, recorded_end::not_told);
+    EXPECT_EQ(read->writes_before_end, 0U);
+    ASSERT_EQ(read->calls.size(), 256 * blocks) << n;
+    const std::string again = encode(*read);  // the same calls, and an end of their own
+    EXPECT_TRUE(again.compare(0, ends[blocks - 1], bytes, 0, ends[blocks - 1]) == 0) << n;
+  }
+  const result<device_recording> all = decode(bytes);
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_FALSE(all->cut);
+  EXPECT_EQ(all->calls.size(), whole.calls.size());
+
+  // A wrong byte in a whole block is no cut.
+  for (int i = 0; i < 60; ++i) {
+    std::string wrong = bytes.substr(0, ends[2] + random() % 200);
+    const std::size_t at = random() % ends[2];
+    wrong[at] = static_cast<char>(wrong[at] ^ (1 << random() % 8));
+    ASSERT_FALSE(decode(wrong)) << at;
+  }
+}
+
+TEST(device_recording, reads_the_first_format_too) {
+  device_recording shorter = record();
+  shorter.calls.resize(600);
+  const std::string bytes = encode(shorter);
+  // The same without the marks, which the first format did not have.
+  std::string first;
+  recording_encoder e;
+  device_capabilities c = shorter.capabilities;
+  c.name = shorter.name;
+  first += e.begin(c, shorter.before);
+  first[7] = '1';
+  for (std::size_t i = 0; i < shorter.calls.size(); ++i) {
+    std::string call = e.call(shorter.calls[i]);
+    if ((i + 1) % 256 == 0) call.resize(call.size() - 17);
+    first += call;
+  }
+  std::string end = e.end();
+  end.resize(end.size() - 8);
+  const result<device_recording> read = decode(with_sum(first + end));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(encode(*read) == bytes);
+  EXPECT_FALSE(decode(first));
+  std::string mixed = bytes;
+  mixed[7] = '1';
+  EXPECT_FALSE(decode(mixed));
+}
+
 TEST(device_recording, tells_where_the_session_was_told_to_end) {
   device_recording told = record();
   told.calls.resize(40);
