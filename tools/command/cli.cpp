@@ -18,7 +18,7 @@ bool print(std::string_view text) {
 }
 
 void complain(std::string_view message) {
-  const std::string line = "asperity: " + one_line(message) + '\n';
+  const std::string line = "asperity: " + printable(message) + '\n';
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 
@@ -30,7 +30,7 @@ std::string serialise(const json& document) {
 int fail(std::string_view code, std::string_view message, bool as_json, int exit_status) {
   complain(message);
   if (as_json) {
-    print(serialise({{"schema", "asperity.error/1"}, {"error", {{"code", code}, {"message", one_line(message)}}}}));
+    print(serialise({{"schema", "asperity.error/1"}, {"error", {{"code", code}, {"message", printable(message)}}}}));
   }
   return exit_status;
 }
@@ -93,7 +93,8 @@ int command_line::run(int argc, const char* const* argv) {
       document.update(done->document);
       out = serialise(document);
     } else if (!common_.quiet) {
-      out = done->text;
+      // Each part has escaped the names in it already; what one has forgotten can break a line and nothing else.
+      out = printable(done->text, '\n');
     }
     if (!print(out)) {
       complain("stdout could not be written: free space or redirect it elsewhere");

@@ -10,4 +10,7 @@ void catch_interrupts();
 /// True after SIGINT or SIGTERM.
 [[nodiscard]] bool interrupted() noexcept;
 
+/// The opposite, for what asks whether to go on.
+[[nodiscard]] inline bool not_interrupted() noexcept { return !interrupted(); }
+
 }  // namespace asperity::command
