@@ -12,7 +12,7 @@
 
 namespace asperity::io {
 
-/// As many cells as corners.
+/// As many cells as corners, about as wide as high.
 class corner_grid {
  public:
   /// @param corners numbers of points. @pre the points outlive the grid
@@ -23,10 +23,13 @@ class corner_grid {
       low_ = glm::min(low_, points[c]);
       high_ = glm::max(high_, points[c]);
     }
-    side_ = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(static_cast<double>(corners.size()))));
     const vec2 size = high_ - low_;
-    for (int i = 0; i < 2; ++i) per_m_[i] = size[i] > 0.0 ? static_cast<double>(side_) / size[i] : 0.0;
-    first_.assign(side_ * side_ + 1, 0);
+    const auto n = static_cast<double>(corners.size());
+    const double columns = size.y > 0.0 ? std::sqrt(n * std::clamp(size.x / size.y, 1.0 / n, n)) : n;
+    cells_[0] = std::max<std::size_t>(1, static_cast<std::size_t>(columns));
+    cells_[1] = std::max<std::size_t>(1, corners.size() / cells_[0]);
+    for (int i = 0; i < 2; ++i) per_m_[i] = size[i] > 0.0 ? static_cast<double>(cells_[i]) / size[i] : 0.0;
+    first_.assign(cells_[0] * cells_[1] + 1, 0);
     for (const std::uint32_t c : corners) ++first_[cell_of(points[c]) + 1];
     for (std::size_t k = 1; k < first_.size(); ++k) first_[k] += first_[k - 1];
     sorted_.resize(corners.size());
@@ -42,8 +45,8 @@ class corner_grid {
     for (std::size_t j = row_of(std::min({a.y, b.y, c.y})); j <= top; ++j) {
       const auto [from, to] = columns(a, b, c, j);
       work += 1 + to - from;
-      const std::size_t begin = first_[j * side_ + from];
-      const std::size_t end = first_[j * side_ + to + 1];
+      const std::size_t begin = first_[j * cells_[0] + from];
+      const std::size_t end = first_[j * cells_[0] + to + 1];
       work += end - begin;
       if (std::any_of(sorted_.begin() + static_cast<std::ptrdiff_t>(begin),
                       sorted_.begin() + static_cast<std::ptrdiff_t>(end), visit)) {
@@ -56,10 +59,10 @@ class corner_grid {
  private:
   [[nodiscard]] std::size_t place(double x, int axis) const noexcept {
     const double cells = (x - low_[axis]) * per_m_[axis];
-    return cells > 0.0 ? std::min(static_cast<std::size_t>(std::min(cells, 1e9)), side_ - 1) : 0;
+    return cells > 0.0 ? std::min(static_cast<std::size_t>(std::min(cells, 1e9)), cells_[axis] - 1) : 0;
   }
   [[nodiscard]] std::size_t row_of(double y) const noexcept { return place(y, 1); }
-  [[nodiscard]] std::size_t cell_of(const vec2& p) const noexcept { return row_of(p.y) * side_ + place(p.x, 0); }
+  [[nodiscard]] std::size_t cell_of(const vec2& p) const noexcept { return row_of(p.y) * cells_[0] + place(p.x, 0); }
 
   /// Columns that the triangle touches in row j, a little more rather than less: its sides within the row's height.
   [[nodiscard]] std::pair<std::size_t, std::size_t> columns(const vec2& a, const vec2& b, const vec2& c,
@@ -93,7 +96,7 @@ class corner_grid {
 
   const std::vector<vec2>* points_ = nullptr;
   vec2 low_{0.0}, high_{0.0}, per_m_{0.0};
-  std::size_t side_ = 1;
+  std::size_t cells_[2] = {1, 1};      // columns and rows
   std::vector<std::uint32_t> first_;   // per cell, the first of its corners in sorted_
   std::vector<std::uint32_t> sorted_;  // corners by cell
 };

@@ -6,6 +6,7 @@
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
+#include <ImfPartType.h>
 #include <ImfTileDescription.h>
 #include <ImfVersion.h>
 #include <array>
@@ -84,6 +85,8 @@ std::string unknown_in(const Imf::Header& header) {
       return "is compressed with a loss or by a scheme that is not known; export it uncompressed, or with ZIP, PIZ or "
              "RLE";
   }
+  if (header.hasType() && !Imf::isImage(header.type()))
+    return "holds deep pixels, several depths in each; export it flat";
   constexpr std::uint64_t most_tile_pixels = std::uint64_t{1} << 22;  // a row of tiles is decoded at once
   if (header.hasTileDescription()) {
     const Imf::TileDescription& tile = header.tileDescription();

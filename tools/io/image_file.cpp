@@ -41,7 +41,8 @@ void reserve_row(map_image& image, std::size_t samples) {
   const std::size_t needed = image.samples.size() + samples;
   if (needed <= image.samples.capacity()) return;
   const std::size_t whole = std::size_t{image.width} * image.height * image.channels;
-  image.samples.reserve(std::max(needed, std::min(whole, 2 * needed)));
+  // From a quarter on at once: a last step from nearly all to all would hold the image twice.
+  image.samples.reserve(std::max(needed, 4 * needed >= whole ? whole : 2 * needed));
 }
 
 result<map_image> finite_image(map_image&& image, const std::filesystem::path& file) {

@@ -229,8 +229,6 @@ result<void> add_fixed(const robot& r, const std::string& link, const pose& T, c
   while (!open.empty()) {
     const hung_link at = open.back();
     open.pop_back();
-    // A link has one parent: only the first can be met twice.
-    if (seen++ > 0 && at.name == link) return wrong(r.links.at(link), "link " + shown(link) + " hangs on itself");
     const result<link_mass> own = mass_of(r.links.at(at.name));
     if (!own) return own.error();
     if (at.moved_by == nullptr) {
@@ -240,6 +238,8 @@ result<void> add_fixed(const robot& r, const std::string& link, const pose& T, c
                                              " moves a mass beside the chain, which the arm could not hold: fix it, or "
                                              "take another handle_link");
     }
+    // A link has one parent: only the first can be met twice.
+    if (seen++ > 0 && at.name == link) return wrong(r.links.at(link), "link " + shown(link) + " hangs on itself");
     for (const joint_entry& j : r.joints) {
       if (j.parent != at.name || j.child == next_in_chain) continue;
       const joint_entry* moved_by = at.moved_by != nullptr || j.type == "fixed" ? at.moved_by : &j;

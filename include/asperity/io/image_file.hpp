@@ -20,7 +20,7 @@ inline constexpr std::size_t max_image_samples = std::size_t{1} << 26;
 /// - OpenEXR: one flat part in scan lines or tiles, half or float, uncompressed, RLE, ZIP, ZIPS or PIZ;
 /// - JPEG: grey or colour of 8 bits, baseline or progressive.
 /// An alpha channel is left out; samples are taken as they stand, without any colour management.
-/// Takes time in proportion to the file and the pixels that it holds, and memory for four times the file and 640 MiB at
+/// Takes time in proportion to the file and the pixels that it holds, and memory for four times the file and 512 MiB at
 /// the most.
 /// @param keep_going asked at least ten times a second, on this thread; false ends the reading
 /// @return io_failed | bad_format (truncated, damaged, not finite) | unsupported | limit_exceeded | cancelled, with the
