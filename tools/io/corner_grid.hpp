@@ -12,7 +12,7 @@
 
 namespace asperity::io {
 
-/// As many cells as corners, about as wide as high.
+/// As many cells as corners, as many columns as rows: a triangle across all of them meets few, however long it is.
 class corner_grid {
  public:
   /// @param corners numbers of points. @pre the points outlive the grid
@@ -24,10 +24,7 @@ class corner_grid {
       high_ = glm::max(high_, points[c]);
     }
     const vec2 size = high_ - low_;
-    const auto n = static_cast<double>(corners.size());
-    const double columns = size.y > 0.0 ? std::sqrt(n * std::clamp(size.x / size.y, 1.0 / n, n)) : n;
-    cells_[0] = std::max<std::size_t>(1, static_cast<std::size_t>(columns));
-    cells_[1] = std::max<std::size_t>(1, corners.size() / cells_[0]);
+    cells_[0] = cells_[1] = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(corners.size())));
     for (int i = 0; i < 2; ++i) per_m_[i] = size[i] > 0.0 ? static_cast<double>(cells_[i]) / size[i] : 0.0;
     first_.assign(cells_[0] * cells_[1] + 1, 0);
     for (const std::uint32_t c : corners) ++first_[cell_of(points[c]) + 1];

@@ -57,7 +57,8 @@ bool polygon_splitter::is_convex() const noexcept {
   return true;
 }
 
-/// Goes round the polygon and cuts every second ear that it meets, so that triangles stay compact and few rounds do.
+/// Looks at every second corner first, so that triangles stay compact, and again at the neighbours of each ear that is
+/// cut: no other corner has become one by it, but for polygons that touch or cross themselves.
 bool polygon_splitter::cut_ears(reading_watch& watch) {
   const auto n = static_cast<std::uint32_t>(flat_.size());
   next_.resize(n);
@@ -69,39 +70,51 @@ bool polygon_splitter::cut_ears(reading_watch& watch) {
   left_ = n;
   in_grid_ = 0;
   work_ = 0;
-  std::size_t missed = 0;
+  to_look_at_.clear();
+  for (std::uint32_t i = 0; i < n; i += 2) to_look_at_.push_back(i);
+  for (std::uint32_t i = 1; i < n; i += 2) to_look_at_.push_back(i);
+  std::size_t cut_since_all = 1;
   std::uint32_t at = 0;
-  while (left_ > 3) {
+  for (std::size_t k = 0; left_ > 3;) {
     watch.step();
     if (n > few_corners) {
       if (work_ > most_steps_per_corner * n) return false;
       if (in_grid_ == 0 || 2 * left_ < in_grid_) use_grid(at);
     }
-    // A polygon that crosses itself may have no ear: then any corner is cut.
-    if (missed < left_ && !is_ear(at)) {
-      ++missed;
-      at = next_[at];
-      continue;
+    bool any = false;
+    if (k == to_look_at_.size()) {
+      any = cut_since_all == 0;  // a polygon that crosses itself may have no ear: then any corner is cut
+      k = 0;
+      to_look_at_ = ring(at);
+      work_ += left_;
+      cut_since_all = 0;
     }
-    missed = 0;
-    triangles_.push_back({previous_[at], at, next_[at]});
-    next_[previous_[at]] = next_[at];
-    previous_[next_[at]] = previous_[at];
-    const std::uint32_t beside = next_[at];
-    next_[at] = at;  // no longer in the ring
+    const std::uint32_t corner = to_look_at_[k++];
+    if (next_[corner] == corner || !(any || is_ear(corner))) continue;
+    ++cut_since_all;
+    const std::uint32_t before = previous_[corner];
+    at = next_[corner];
+    triangles_.push_back({before, corner, at});
+    next_[before] = at;
+    previous_[at] = before;
+    next_[corner] = corner;  // no longer in the ring
     --left_;
-    at = next_[beside];
+    to_look_at_.insert(to_look_at_.end(), {at, before});
   }
   const std::uint32_t first = std::min({previous_[at], at, next_[at]});
   triangles_.push_back({first, next_[first], previous_[first]});
   return true;
 }
 
+std::vector<std::uint32_t> polygon_splitter::ring(std::uint32_t any_corner) const {
+  std::vector<std::uint32_t> out;
+  out.reserve(left_);
+  for (std::uint32_t c = any_corner; out.size() < left_; c = next_[c]) out.push_back(c);
+  return out;
+}
+
 void polygon_splitter::use_grid(std::uint32_t any_corner) {
-  std::vector<std::uint32_t> rest;
-  rest.reserve(left_);
-  for (std::uint32_t c = any_corner; rest.size() < left_; c = next_[c]) rest.push_back(c);
-  grid_.fill(flat_, rest);
+  grid_.fill(flat_, ring(any_corner));
   in_grid_ = left_;
 }
 

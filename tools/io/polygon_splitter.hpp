@@ -32,11 +32,13 @@ class polygon_splitter {
   [[nodiscard]] bool cut_ears(reading_watch& watch);
   [[nodiscard]] bool is_ear(std::uint32_t corner);
   void use_grid(std::uint32_t any_corner);
+  [[nodiscard]] std::vector<std::uint32_t> ring(std::uint32_t any_corner) const;
 
   const std::vector<vec3>& positions_;
   std::vector<vec2> flat_;                      // of the polygon, in its plane, counter-clockwise
   std::vector<std::uint32_t> next_, previous_;  // of the corners that are left, round the polygon
   std::size_t left_ = 0;
+  std::vector<std::uint32_t> to_look_at_;
   corner_grid grid_;  // of corners, those that were left when it was made
   std::size_t in_grid_ = 0;
   std::size_t work_ = 0;
