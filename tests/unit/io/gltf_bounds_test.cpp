@@ -1,5 +1,6 @@
 // Every bound of a .glb, met exactly and missed by one in either direction: what just fits is read, to the bit, and
 // one byte, one element or one step more is refused.
+#include <algorithm>
 #include <cstring>
 #include <functional>
 #include <gtest/gtest.h>
@@ -133,6 +134,11 @@ TEST(GltfBounds, OneMoreThanThereIsIsRefused) {
       {"bufferViews", 1, "byteLength", 1, "bufferViews[1] lies outside its buffer"},
       {"bufferViews", 1, "byteLength", -1, "accessors[1] (count 12) lies outside its bufferView"},
       {"bufferViews", 1, "byteOffset", 1, "bufferViews[1] lies outside its buffer"},
+      {"bufferViews", 1, "byteOffset", 48, "bufferViews[1] lies outside its buffer"},
+      {"bufferViews", 1, "byteOffset", 49, "bufferViews[1] lies outside its buffer"},
+      {"bufferViews", 1, "byteLength", -48, "bufferViews[1] lies outside its buffer"},
+      {"accessors", 1, "byteOffset", 45, "accessors[1] (count 12) lies outside its bufferView"},
+      {"accessors", 0, "count", -4, "accessors[0] (count 0) lies outside its bufferView"},
       {"bufferViews", 0, "byteOffset", 49, "bufferViews[0] lies outside its buffer"},
       {"bufferViews", 0, "byteStride", 4, "accessors[0] (count 4) lies outside its bufferView"},
       {"bufferViews", 0, "byteStride", 1, "byteStride is not a multiple of 4"},
@@ -160,6 +166,58 @@ TEST(GltfBounds, LengthsOfTheContainerAreExact) {
     expect_refused([&](tight_glb& f) { f.total_off_by = by; }, "byte 8 announces", "total length");
     expect_refused([&](tight_glb& f) { f.json_off_by = by; }, "byte ", "JSON chunk");
     expect_refused([&](tight_glb& f) { f.bin_off_by = by; }, "byte ", "BIN chunk");
+  }
+}
+
+/// The file with positions this far apart, and nothing between the last one and the view's end.
+void set_stride(tight_glb& f, std::size_t stride) {
+  std::string spaced = f.bin.substr(0, before_bytes + inner_bytes);
+  for (std::size_t i = 0; i < 4; ++i) {
+    spaced += f.bin.substr(before_bytes + inner_bytes + i * stride_bytes, 12);
+    if (i < 3) spaced += std::string(stride - 12, '\x7f');
+  }
+  const std::size_t view_bytes = inner_bytes + 3 * stride + 12;
+  f.bin = spaced + f.bin.substr(f.bin.size() - sizeof order);
+  f.document["buffers"][0]["byteLength"] = f.bin.size();
+  f.document["bufferViews"][0]["byteLength"] = view_bytes;
+  f.document["bufferViews"][0]["byteStride"] = stride;
+  f.document["bufferViews"][1]["byteOffset"] = before_bytes + view_bytes;
+}
+
+TEST(GltfBounds, StridesFromOneElementToTheLargest) {
+  expect_whole([](tight_glb& f) { set_stride(f, 12); }, "stride 12");
+  expect_whole([](tight_glb& f) { set_stride(f, 252); }, "stride 252");
+  expect_refused([](tight_glb& f) { set_stride(f, 256); }, "is not a multiple of 4 up to 252", "stride 256");
+  expect_whole(
+      [](tight_glb& f) {
+        set_stride(f, 12);
+        f.document["bufferViews"][0].erase("byteStride");
+      },
+      "packed");
+}
+
+TEST(GltfBounds, OneElementThatFillsItsViewIsRead) {
+  const auto one = read([](tight_glb& f) {
+    f.move("accessors", 0, "byteOffset", 3 * stride_bytes);
+    f.move("accessors", 0, "count", -3);
+    f.move("accessors", 1, "count", -9);
+    std::fill(f.bin.end() - sizeof order, f.bin.end(), '\0');
+  });
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->positions, (std::vector<vec3>{corners[3]}));
+}
+
+TEST(GltfBounds, AFileOfAHeaderAloneIsTooShort) {
+  const scratch_folder folder;
+  for (std::size_t size = 4; size < 28; ++size) {
+    std::string bytes = tight_glb().bytes().substr(0, size);
+    const auto length = static_cast<std::uint32_t>(size);
+    if (size >= 12) std::memcpy(&bytes[8], &length, 4);
+    const auto mesh = io::load_mesh(folder.file("t.glb", bytes));
+    ASSERT_FALSE(mesh) << size;
+    EXPECT_NE(mesh.error().message.find(size < 20 ? "fewer than the header" : "byte 12 begins no JSON chunk"),
+              std::string::npos)
+        << size << ": " << mesh.error().message;
   }
 }
 
