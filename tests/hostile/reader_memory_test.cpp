@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "asperity/hal/device_recording.hpp"
 #include "attacks.hpp"
 #include "probe_process.hpp"
 #include "support/image_writers.hpp"
@@ -112,6 +113,24 @@ TEST(ReaderMemory, ASmallFileOfALargeImage) {
     expect_bounded({"flat.png", "image", png, side > 8192 ? "more than the limit of 16384 a side" : "loaded"});
   }
   expect_bounded({"tall.png", "image", test_support::flat_png_bytes(2048, 2048, true), "loaded"});
+}
+
+/// A recording of nothing but calls of open(), three bytes each, as the encoder writes it.
+std::string opened_again_and_again(std::size_t calls) {
+  recording_encoder e;
+  std::string out = e.begin({}, device_state::present);
+  for (std::size_t i = 0; i < calls; ++i) out += e.call({.call = device_call::open});
+  return out + e.end();
+}
+
+TEST(ReaderMemory, DISABLED_ARecordingOfShortCallsIsRefusedBeforeItFillsTheMemory) {
+  const test_support::scratch_folder folder;
+  const std::string bytes = opened_again_and_again(8'000'000);
+  const probe_outcome got = run_probe("recording", folder.file("o.dev", bytes), {.cpu_s = 60});
+  std::printf("recording of 8 million calls: file %zu B, peak %.1f MB, %s\n", bytes.size(),
+              1e-6 * static_cast<double>(got.peak_bytes), got.said.c_str());
+  EXPECT_NE(got.said.find("so many calls in so few bytes"), std::string::npos) << got.said;
+  EXPECT_LE(got.peak_bytes, times_the_file * bytes.size() + plus_bytes + refusal_bytes);
 }
 
 // The largest of every kind: minutes and gigabytes, for a nightly run.

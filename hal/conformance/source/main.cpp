@@ -47,7 +47,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "%s\nRun with --help for more information.\n", asperity::printable(e.what()).c_str());
+    return 2;
   }
   if (!device.empty()) options.device = device;
 
