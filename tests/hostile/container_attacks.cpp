@@ -116,7 +116,7 @@ std::vector<attack> container_attacks() {
                    write(f / "a.glb",
                          glb(R"({"asset":{"version":"2.0"},"nodes":[)" + repeated("{}", 99'000) + "]}", ""));
                  }});
-  out.push_back({"sparse_300_MiB", "a.glb", "holds 314572800 bytes of JSON, more than the limit of 268435456; ",
+  out.push_back({"sparse_300_MiB", "a.glb", "holds 314572800 bytes of JSON, more than the limit of 134217728; ",
                  "has 314572800 bytes, more than the limit of 268435456; reduce it first", [](const fs::path& f) {
                    write(f / "a.glb", "");
                    fs::resize_file(f / "a.glb", 300U << 20);

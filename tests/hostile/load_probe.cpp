@@ -1,6 +1,6 @@
-// load_probe mesh|model|image|material|bare|bake FILE: loads one file in a process of its own and prints how far its
-// memory went (peak resident bytes beyond the start), then "loaded" or the error's message. `bare` takes tinygltf
-// without the guard, `bake` bakes the mesh too, with a small texture.
+// load_probe mesh|model|image|material|recording|bare|bake FILE: loads one file in a process of its own and prints how
+// far its memory went (peak resident bytes beyond the start), then "loaded" or the error's message. `bare` takes
+// tinygltf without the guard, `bake` bakes the mesh too, with a small texture.
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "asperity/bake/bake.hpp"
+#include "asperity/hal/device_recording.hpp"
 #include "asperity/io/image_file.hpp"
 #include "asperity/io/material_file.hpp"
 #include "asperity/io/mesh_file.hpp"
@@ -60,6 +61,11 @@ std::string load_material(const char* file) {
   return texture ? "loaded" : texture.error().message;
 }
 
+std::string load_recording(const char* file) {
+  const auto recording = asperity::load_device_recording(file);
+  return recording ? "loaded" : recording.error().message;
+}
+
 std::string load_bare(const char* file) {
   tinygltf::TinyGLTF parser;
   tinygltf::Model model;
@@ -76,12 +82,13 @@ int main(int argc, char** argv) {
   if (argc != 3) return 2;
   const std::string_view how = argv[1];
   const unsigned long before = status_kb("VmHWM");
-  const std::string said = how == "bare"       ? load_bare(argv[2])
-                           : how == "mesh"     ? load_mesh(argv[2])
-                           : how == "bake"     ? load_and_bake(argv[2])
-                           : how == "image"    ? load_image(argv[2])
-                           : how == "material" ? load_material(argv[2])
-                                               : load_model(argv[2]);
+  const std::string said = how == "bare"        ? load_bare(argv[2])
+                           : how == "mesh"      ? load_mesh(argv[2])
+                           : how == "bake"      ? load_and_bake(argv[2])
+                           : how == "image"     ? load_image(argv[2])
+                           : how == "material"  ? load_material(argv[2])
+                           : how == "recording" ? load_recording(argv[2])
+                                                : load_model(argv[2]);
   std::printf("%lu\n%s\n", 1024 * (status_kb("VmHWM") - before), said.c_str());
   return 0;
 }

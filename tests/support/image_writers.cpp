@@ -92,6 +92,30 @@ std::string compressed_png_bytes(std::uint32_t width, std::uint32_t height, bool
   return out;
 }
 
+std::string flat_png_bytes(std::uint32_t width, std::uint32_t height, bool deep, bool interlaced) {
+  std::string out;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_set_write_fn(
+      png, &out,
+      [](png_structp p, png_bytep from, png_size_t n) {
+        static_cast<std::string*>(png_get_io_ptr(p))->append(reinterpret_cast<const char*>(from), n);
+      },
+      [](png_structp) {});
+  png_set_IHDR(png, info, width, height, deep ? 16 : 8, PNG_COLOR_TYPE_GRAY,
+               interlaced ? PNG_INTERLACE_ADAM7 : PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_set_filter(png, 0, PNG_FILTER_NONE);
+  png_write_info(png, info);
+  std::vector<unsigned char> row(std::size_t{width} * (deep ? 2 : 1), 0x40);
+  for (int pass = png_set_interlace_handling(png); pass > 0; --pass) {
+    for (std::uint32_t j = 0; j < height; ++j) png_write_row(png, row.data());
+  }
+  png_write_end(png, nullptr);
+  png_destroy_write_struct(&png, &info);
+  return out;
+}
+
 std::string tiff_bytes(const tiff_layout& l) {
   growing_file file;
   TIFF* const tiff = TIFFClientOpen("image", l.big_endian ? "wb" : "wl", &file, tiff_read, tiff_write, tiff_seek,

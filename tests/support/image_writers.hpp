@@ -10,6 +10,9 @@ namespace asperity::test_support {
 /// A grey PNG, compressed, of 8 or 16 bits: a bumpy surface.
 [[nodiscard]] std::string compressed_png_bytes(std::uint32_t width, std::uint32_t height, bool deep);
 
+/// A PNG in one grey of 8 or 16 bits: a thousandth of its pixels in bytes.
+[[nodiscard]] std::string flat_png_bytes(std::uint32_t width, std::uint32_t height, bool deep, bool interlaced = false);
+
 /// How a TIFF keeps its samples; heights of a bumpy surface.
 struct tiff_layout {
   std::uint32_t width = 40, height = 24;

@@ -61,14 +61,16 @@ std::string too_coarse_remark(const relief& heights, double texel_m, std::uint32
   return text.str();
 }
 
-triangle_mesh raise(const added_relief& added, double texel_m) {
-  const refined_mesh fine = refine(added.original, reference_edge_texels * texel_m, most_reference_triangles);
+triangle_mesh raise(const added_relief& added, double texel_m, stage_monitor& monitor) {
+  const refined_mesh fine =
+      refine(added.original, reference_edge_texels * texel_m, most_reference_triangles, [&] { return monitor.ask(); });
   triangle_mesh raised;
   raised.triangles.reserve(fine.triangles.size());
   // A vertex stands once for each triangle of the original that it belongs to; the parts of one follow one another.
   std::vector<std::uint32_t> number(fine.positions.size(), no_halfedge);
   std::vector<std::uint32_t> number_is_of(fine.positions.size(), no_halfedge);
   for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
+    if (t % 4096 == 0 && !monitor.ask()) return {};
     const std::uint32_t source = fine.source[t];
     const vec3 n = unit_normal(corners(added.original.positions, added.original.triangles[source]));
     index_triangle corner_numbers{};

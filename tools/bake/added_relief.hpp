@@ -7,6 +7,7 @@
 #include "asperity/bake/relief.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/triangle_mesh.hpp"
+#include "bake/stage_monitor.hpp"
 
 namespace asperity::bake {
 
@@ -28,6 +29,6 @@ struct added_relief {
 
 /// The original with its relief as triangles, about one per texel. Each of its triangles is raised along its own
 /// normal.
-[[nodiscard]] triangle_mesh raise(const added_relief& added, double texel_m);
+[[nodiscard]] triangle_mesh raise(const added_relief& added, double texel_m, stage_monitor& monitor);
 
 }  // namespace asperity::bake

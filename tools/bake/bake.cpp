@@ -136,9 +136,11 @@ result<textured_model> bake(triangle_mesh full_mesh, const bake_options& options
   auto coarse = coarse_of(*full, options, threads, monitor);
   if (!coarse) return coarse.error();
   // Only now: simplifying is what takes the most memory.
-  const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles, threads);
+  const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles, threads, &monitor);
+  if (monitor.cancelled()) return cancelled();
   if (!options.coarse && coarse->mesh.triangles.size() < full->mesh.triangles.size())
-    fit_to_relief(coarse->mesh, full_tree, widest_cage_in_diagonals * diagonal, threads);
+    fit_to_relief(coarse->mesh, full_tree, widest_cage_in_diagonals * diagonal, threads, &monitor);
+  if (monitor.cancelled()) return cancelled();
   if (!monitor.begin("compare")) return cancelled();
   const auto crossings = find_self_crossings(full->mesh, full_tree, threads, monitor);
   if (!crossings) return cancelled();
@@ -175,9 +177,11 @@ result<textured_model> bake(triangle_mesh full_mesh, const bake_options& options
   if (!fit) return cancelled();
 
   // What the textured surface should be: the mesh, or the mesh with its relief.
-  const triangle_mesh raised = options.relief ? raise(added, charts->texel_m) : triangle_mesh{};
+  const triangle_mesh raised = options.relief ? raise(added, charts->texel_m, monitor) : triangle_mesh{};
+  if (monitor.cancelled()) return cancelled();
   std::optional<triangle_bvh> raised_tree;
-  if (options.relief) raised_tree.emplace(raised.positions, raised.triangles, threads);
+  if (options.relief) raised_tree.emplace(raised.positions, raised.triangles, threads, &monitor);
+  if (monitor.cancelled()) return cancelled();
   const triangle_mesh& original = options.relief ? raised : full->mesh;
   const triangle_bvh& original_tree = raised_tree ? *raised_tree : full_tree;
 
@@ -185,7 +189,8 @@ result<textured_model> bake(triangle_mesh full_mesh, const bake_options& options
   out.name = options.name;
   out.mesh = with_uvs(coarse->mesh, *charts);
   out.texture = std::move(projected->texture);
-  stitch(out.mesh, original_tree, widest_gap_texels * charts->texel_m, out.texture, threads);
+  stitch(out.mesh, original_tree, widest_gap_texels * charts->texel_m, out.texture, threads, &monitor);
+  if (monitor.cancelled()) return cancelled();
   out.pieces = std::move(*pieces);
   out.mass = compute_mass_properties(out.mesh);
   out.box = bounds_of(out.mesh.positions);

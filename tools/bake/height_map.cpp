@@ -32,7 +32,7 @@ double mean_texel_m(const triangle_mesh& mesh, std::uint32_t width, std::uint32_
   return image > 0.0 ? std::sqrt(surface / image) : 0.0;
 }
 
-result<relief> height_map_relief(const triangle_mesh& mesh, const map_image& map, const height_map_settings& settings) {
+result<relief> height_map_relief(const triangle_mesh& mesh, map_image map, const height_map_settings& settings) {
   if (mesh.uvs.size() != mesh.triangles.size() || mesh.triangles.empty())
     return error{error_code::bad_mesh,
                  "the mesh has no texture coordinates, so a map cannot be laid on it; export it with its UVs (OBJ, "
@@ -43,24 +43,27 @@ result<relief> height_map_relief(const triangle_mesh& mesh, const map_image& map
   if (!std::isfinite(settings.offset_m) || !std::isfinite(settings.scale_m))
     return error{error_code::invalid_argument, "the heights of black and white have to be finite numbers of metres"};
 
-  map_lookup<double> heights_m{map.width, map.height, settings.wrap_u, settings.wrap_v, std::vector<double>(pixels)};
+  const auto height_m = [offset_m = settings.offset_m, scale_m = settings.scale_m](float sample) {
+    return offset_m + scale_m * static_cast<double>(sample);
+  };
   for (std::size_t i = 0; i < pixels; ++i) {
+    if (i % 65536 == 0 && settings.keep_going && !settings.keep_going()) return cancelled_map();
     const float* at = &map.samples[i * map.channels];
-    const std::string place = std::to_string(i % map.width) + ", row " + std::to_string(i / map.width);
+    const auto place = [&] { return std::to_string(i % map.width) + ", row " + std::to_string(i / map.width); };
     if (map.channels == 3 && (std::fabs(at[0] - at[1]) > grey_tolerance || std::fabs(at[1] - at[2]) > grey_tolerance))
-      return bad_height_map("has colours, at column " + place +
+      return bad_height_map("has colours, at column " + place() +
                             ": a height map is grey; for a normal map use --normal-map");
-    const double h = settings.offset_m + settings.scale_m * static_cast<double>(at[0]);
-    if (!std::isfinite(h))
-      return bad_height_map("has a height that is not finite, at column " + place + "; export it again");
-    heights_m.pixels[i] = h;
+    if (!std::isfinite(height_m(at[0])))
+      return bad_height_map("has a height that is not finite, at column " + place() + "; export it again");
+    map.samples[i] = at[0];  // of three channels one is kept, in place
   }
+  map.samples.resize(pixels);
+  map_lookup<float> grey{map.width, map.height, settings.wrap_u, settings.wrap_v, std::move(map.samples)};
   relief out;
   out.finest_m = mean_texel_m(mesh, map.width, map.height);
   out.reads_uvs = true;
-  out.height_m = [shared = std::make_shared<const map_lookup<double>>(std::move(heights_m))](const relief_point& p) {
-    return (*shared)(p.uv);
-  };
+  out.height_m = [shared = std::make_shared<const map_lookup<float>>(std::move(grey)),
+                  height_m](const relief_point& p) { return shared->read(p.uv, height_m); };
   return out;
 }
 

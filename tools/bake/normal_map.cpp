@@ -39,6 +39,7 @@ result<map_lookup<vec2>> slopes_of(const map_image& map, const normal_map_settin
       map.bits == 0 && std::any_of(map.samples.begin(), map.samples.end(), [](float x) { return x < 0.0F; });
   std::size_t backward = 0;
   for (std::size_t i = 0; i < pixels; ++i) {
+    if (i % 65536 == 0 && settings.keep_going && !settings.keep_going()) return cancelled_map();
     const float* at = &map.samples[3 * i];
     vec3 n{centred(at[0], map.bits), centred(at[1], map.bits), 2.0 * static_cast<double>(at[2]) - 1.0};
     if (vectors) n = {at[0], at[1], at[2]};
@@ -133,7 +134,7 @@ result<normal_map_relief> integrate_normal_map(const triangle_mesh& given, const
   }
   out.fit.unmapped_area = unmapped / area;
 
-  const refined_mesh fine = refine(mesh, out.fit.texel_m, most_triangles_solved);
+  const refined_mesh fine = refine(mesh, out.fit.texel_m, most_triangles_solved, settings.keep_going);
   out.fit.step_m = fine.longest_edge_m;
   const vec2 size{map.width, map.height};
   const auto rise = [&](std::size_t t, std::size_t k) {
@@ -154,7 +155,8 @@ result<normal_map_relief> integrate_normal_map(const triangle_mesh& given, const
     const vec3 way = fine.positions[v[(k + 1) % 3]] - fine.positions[v[k]];
     return mean.x * glm::dot(frame.along_u, way) + mean.y * glm::dot(frame.up, way);
   };
-  slope_solution solved = solve_slopes(fine, mesh.positions.size(), rise);
+  slope_solution solved = solve_slopes(fine, mesh.positions.size(), rise, settings.keep_going);
+  if (settings.keep_going && !settings.keep_going()) return cancelled_map();
   if (!solved.converged)
     return error{error_code::bad_mesh,
                  "the heights of the normal map could not be solved for on this mesh; remesh it "

@@ -22,10 +22,13 @@ class refinement_round {
   refinement_round(refined_mesh& mesh, double edge_m) : mesh_(mesh), edge2_(edge_m * edge_m) {}
 
   // @return false where no edge was too long
-  bool run() {
+  bool run(const std::function<bool()>& keep_going) {
     const std::size_t before = mesh_.triangles.size();
     refined_mesh next;
-    for (std::size_t t = 0; t < before; ++t) cut(t, next);
+    for (std::size_t t = 0; t < before; ++t) {
+      if (t % 4096 == 0 && keep_going && !keep_going()) return false;
+      cut(t, next);
+    }
     const bool any = next.triangles.size() > before;
     mesh_.triangles = std::move(next.triangles);
     mesh_.source = std::move(next.source);
@@ -106,7 +109,8 @@ class refinement_round {
 
 }  // namespace
 
-refined_mesh refine(const triangle_mesh& mesh, double edge_m, std::size_t most) {
+refined_mesh refine(const triangle_mesh& mesh, double edge_m, std::size_t most,
+                    const std::function<bool()>& keep_going) {
   double area = 0.0;
   for (const index_triangle& t : mesh.triangles) area += 0.5 * glm::length(area_normal(corners(mesh.positions, t)));
   // Halving leaves edges of 0.5 to 1 times edge_m; triangles of about a fifth of its square, the narrow ones of a mesh
@@ -120,7 +124,7 @@ refined_mesh refine(const triangle_mesh& mesh, double edge_m, std::size_t most) 
   out.source.resize(mesh.triangles.size());
   for (std::size_t t = 0; t < out.source.size(); ++t) out.source[t] = static_cast<std::uint32_t>(t);
   out.barycentric.assign(mesh.triangles.size(), barycentrics{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
-  while (out.triangles.size() < most && refinement_round(out, edge_m).run()) {
+  while (out.triangles.size() < most && refinement_round(out, edge_m).run(keep_going)) {
   }
   for (const index_triangle& t : out.triangles)
     for (std::size_t k = 0; k < 3; ++k)

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "asperity/model/triangle_mesh.hpp"
@@ -22,6 +23,8 @@ struct refined_mesh {
 /// Halves every edge that is longer than edge_m, again and again, where possible without more than `most` triangles
 /// coming of it: then edges stay longer. Two triangles that share an edge share its new vertices too.
 /// @pre edge_m > 0
-[[nodiscard]] refined_mesh refine(const triangle_mesh& mesh, double edge_m, std::size_t most);
+/// @param keep_going asked on the way; after a false one nothing useful comes back
+[[nodiscard]] refined_mesh refine(const triangle_mesh& mesh, double edge_m, std::size_t most,
+                                  const std::function<bool()>& keep_going = {});
 
 }  // namespace asperity::bake

@@ -28,10 +28,11 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) noexcept 
 class slope_system {
  public:
   slope_system(const refined_mesh& mesh, std::size_t originals,
-               const std::function<double(std::size_t, std::size_t)>& rise)
+               const std::function<double(std::size_t, std::size_t)>& rise, const std::function<bool()>& keep_going)
       : mesh_(mesh), originals_(originals), diagonal_(mesh.positions.size(), 0.0) {
     edges_.reserve(3 * mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (t % 4096 == 0 && keep_going && !keep_going()) return;
       const auto& v = mesh.triangles[t];
       const double area = 0.5 * glm::length(area_normal(corners(mesh.positions, v)));
       for (std::size_t k = 0; k < 3; ++k) {
@@ -120,8 +121,9 @@ void centre(const refined_mesh& mesh, std::vector<double>& heights) {
 }  // namespace
 
 slope_solution solve_slopes(const refined_mesh& mesh, std::size_t originals,
-                            const std::function<double(std::size_t t, std::size_t k)>& rise) {
-  const slope_system system(mesh, originals, rise);
+                            const std::function<double(std::size_t t, std::size_t k)>& rise,
+                            const std::function<bool()>& keep_going) {
+  const slope_system system(mesh, originals, rise, keep_going);
   slope_solution out;
   std::vector<double> r = system.right_side();
   std::vector<double> z;
@@ -133,6 +135,7 @@ slope_solution solve_slopes(const refined_mesh& mesh, std::size_t originals,
   const double enough = tolerance * tolerance * rz;
   out.converged = rz == 0.0;
   while (!out.converged && out.iterations < most_iterations) {
+    if (keep_going && !keep_going()) return out;
     ++out.iterations;
     system.apply(p, q);
     const double step = rz / dot(p, q);

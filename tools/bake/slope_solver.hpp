@@ -21,7 +21,9 @@ struct slope_solution {
 /// rise), by conjugate gradients in the hierarchical basis of the refinement.
 /// @param originals vertices of the mesh that was refined
 /// @param rise height that the slopes ask for along edge k of triangle t (from corner k to the next), m
+/// @param keep_going asked on the way; false ends it, not converged
 [[nodiscard]] slope_solution solve_slopes(const refined_mesh& mesh, std::size_t originals,
-                                          const std::function<double(std::size_t t, std::size_t k)>& rise);
+                                          const std::function<double(std::size_t t, std::size_t k)>& rise,
+                                          const std::function<bool()>& keep_going = {});
 
 }  // namespace asperity::bake

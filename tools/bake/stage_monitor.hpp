@@ -22,15 +22,21 @@ class stage_monitor {
 
   /// Reports the share of the stage that is done, 0 to 1. @return false where the bake is cancelled
   bool at(double done) {
+    done_ = done;
     if (!cancelled_ && tell_) cancelled_ = !tell_(stage_, done);
     return !cancelled_;
   }
 
+  /// Reports the share that was reported last, for work between two steps. @return false where the bake is cancelled
+  bool ask() { return at(done_); }
+
+  [[nodiscard]] double done() const noexcept { return done_; }
   [[nodiscard]] bool cancelled() const noexcept { return cancelled_; }
 
  private:
   callback tell_;
   std::string_view stage_;
+  double done_ = 0.0;
   bool cancelled_ = false;
 };
 

@@ -15,8 +15,9 @@ namespace asperity::bake {
 /// edges keep their texels to the bit.
 /// Stops after a fixed number of rounds: a gap may stay where neighbouring points ask the same texels for different
 /// things. largest_crack() tells.
+/// @param monitor asked on the way; a cancelled bake leaves the texture as far as it has come
 /// @return how many edges were worked on
 std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double limit_m, haptic_texture& texture,
-                   unsigned threads = 1);
+                   unsigned threads = 1, stage_monitor* monitor = nullptr);
 
 }  // namespace asperity::bake

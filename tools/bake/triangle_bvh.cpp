@@ -1,6 +1,7 @@
 #include "bake/triangle_bvh.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <thread>
 #include <utility>
@@ -108,7 +109,15 @@ struct triangle_bvh::item {
   std::uint32_t triangle;
 };
 
-triangle_bvh::triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles, unsigned threads)
+/// What all parts of one tree's making share.
+struct triangle_bvh::making {
+  std::span<const index_triangle> triangles;
+  stage_monitor* monitor;
+  std::atomic<bool> cancelled{false};
+};
+
+triangle_bvh::triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles, unsigned threads,
+                           stage_monitor* monitor)
     : positions_(positions) {
   std::vector<item> items(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
@@ -118,7 +127,9 @@ triangle_bvh::triangle_bvh(std::span<const vec3> positions, std::span<const inde
                 static_cast<std::uint32_t>(t)};
   }
   nodes_.resize(node_count(items.size()));
-  build(triangles, items, 0, 0, threads);
+  making all{triangles, monitor};
+  build(all, items, 0, 0, threads, true);
+  if (all.cancelled) return;
   triangle_.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) triangle_[i] = items[i].triangle;
   items = std::vector<item>();
@@ -142,9 +153,13 @@ void triangle_bvh::make_leaf(std::span<const index_triangle> triangles, std::spa
 }
 
 // The number of items alone tells where the nodes of each half go, so that both halves can be built at the same time.
-void triangle_bvh::build(std::span<const index_triangle> triangles, std::span<item> items, std::size_t first,
-                         std::size_t index, unsigned threads) {
-  if (items.size() <= leaf_size) return make_leaf(triangles, items, first, nodes_[index]);
+void triangle_bvh::build(making& all, std::span<item> items, std::size_t first, std::size_t index, unsigned threads,
+                         bool on_calling_thread) {
+  if (items.size() <= leaf_size) return make_leaf(all.triangles, items, first, nodes_[index]);
+  if (items.size() >= least_shared_items) {
+    if (on_calling_thread && all.monitor != nullptr && !all.monitor->ask()) all.cancelled = true;
+    if (all.cancelled) return;
+  }
   std::array<float, 3> low = items[0].centre;
   std::array<float, 3> high = items[0].centre;
   for (const item& i : items)
@@ -162,13 +177,15 @@ void triangle_bvh::build(std::span<const index_triangle> triangles, std::span<it
                    });
   const std::size_t left = index + 1;
   const std::size_t right = left + node_count(half);
-  const auto build_left = [&](unsigned with) { build(triangles, items.first(half), first, left, with); };
-  const auto build_right = [&](unsigned with) { build(triangles, items.subspan(half), first + half, right, with); };
+  const auto build_left = [&](unsigned with, bool here) { build(all, items.first(half), first, left, with, here); };
+  const auto build_right = [&](unsigned with) {
+    build(all, items.subspan(half), first + half, right, with, on_calling_thread);
+  };
   if (threads > 1 && items.size() >= least_shared_items) {
-    const std::jthread helper(build_left, threads / 2);
+    const std::jthread helper(build_left, threads / 2, false);
     build_right(threads - threads / 2);
   } else {
-    build_left(1);
+    build_left(1, on_calling_thread);
     build_right(1);
   }
   const node& l = nodes_[left];

@@ -10,6 +10,7 @@
 
 #include "asperity/core/math.hpp"
 #include "bake/halfedges.hpp"
+#include "bake/stage_monitor.hpp"
 
 namespace asperity::bake {
 
@@ -34,7 +35,9 @@ class triangle_bvh {
 
   /// The same tree with any number of threads. Building takes 16 bytes a triangle more.
   /// @pre all indices in range, all coordinates finite, at least one triangle; the positions outlive the tree and stay
-  triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles, unsigned threads = 1);
+  /// @param monitor asked on the way; a tree whose making is cancelled must not be looked into
+  triangle_bvh(std::span<const vec3> positions, std::span<const index_triangle> triangles, unsigned threads = 1,
+               stage_monitor* monitor = nullptr);
 
   /// The point of the surface nearest to p, no farther than `within`.
   [[nodiscard]] nearest closest(const vec3& p, double within = std::numeric_limits<double>::infinity()) const noexcept;
@@ -80,9 +83,10 @@ class triangle_bvh {
     std::uint32_t count;
   };
   struct item;
+  struct making;
 
-  void build(std::span<const index_triangle> triangles, std::span<item> items, std::size_t first, std::size_t index,
-             unsigned threads);
+  void build(making& all, std::span<item> items, std::size_t first, std::size_t index, unsigned threads,
+             bool on_calling_thread);
   void make_leaf(std::span<const index_triangle> triangles, std::span<const item> items, std::size_t first, node& out);
   [[nodiscard]] std::array<vec3, 3> corners_at(std::size_t i) const noexcept {
     const index_triangle& v = corners_[i];

@@ -18,7 +18,8 @@ function(asperity_component name)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${arg_HEADERS_IN} FILES ${arg_HEADERS})
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} asperity::asperity
-                        PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:asperity_build_options>)
+                        PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:asperity_build_options>
+                        $<BUILD_INTERFACE:asperity_hardening>)
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/internal)
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/internal>)
   endif()

@@ -67,7 +67,7 @@ answer report(const scene& bodies, const backend_bench& options, const bench_of_
                     {"model_memory", timed.gpu.device_bytes}}},
                   {"backends", std::move(backends)},
                   {"units", "SI"}};
-  out.text = bodies.probe->name + " on " + bodies.fixed.front()->name + ", a contact of " +
+  out.text = printable(bodies.probe->name + " on " + bodies.fixed.front()->name) + ", a contact of " +
              std::to_string(timed.patch_triangles) + " triangles and " + std::to_string(options.grid) + " x " +
              std::to_string(options.grid) + " samples, repeated; time on the wall\n";
   out.text += row("GPU", timed.gpu.device + ", OpenGL " + timed.gpu.version);

@@ -30,7 +30,7 @@ answer tell_of_bake(const finished_bake& done, std::vector<std::string> notes) {
   out.document["seconds"] = total;
   out.document["warnings"] = notes;
   out.document["units"] = "SI";
-  out.text = done.source + " -> " + done.file + '\n' + describe_text(done.model);
+  out.text = printable(done.source + " -> " + done.file) + '\n' + describe_text(done.model);
   out.text += done.relief.text;
   if (done.holes.holes > 0) {
     out.text += row("holes closed", std::to_string(done.holes.holes) + ", the largest " +

@@ -11,7 +11,7 @@ void add_can_interfaces(answer& devices) {
   devices.document["can_interfaces"] = json::array();
   for (can::interface_state i : can::list_interfaces()) {
     if (i.problem.empty()) {
-      if (const result<void> support = can::check_support(); !support) i.problem = one_line(support.error().message);
+      if (const result<void> support = can::check_support(); !support) i.problem = printable(support.error().message);
     }
     devices.document["can_interfaces"].push_back({{"name", i.name},
                                                   {"driver", i.driver.empty() ? json() : json(i.driver)},

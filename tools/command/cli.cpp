@@ -39,7 +39,7 @@ std::string serialise(const json& document) {
 }
 
 std::string error_document(std::string_view code, std::string_view message) {
-  return serialise({{"schema", "asperity.error/1"}, {"error", {{"code", code}, {"message", one_line(message)}}}});
+  return serialise({{"schema", "asperity.error/1"}, {"error", {{"code", code}, {"message", printable(message)}}}});
 }
 
 int fail(std::string_view code, std::string_view message, bool as_json, int exit_status) {
@@ -57,7 +57,7 @@ const char* why_stdout_failed() {
 
 int exit_interrupted() noexcept { return 128 + stop_signal(); }
 
-void complain(std::string_view message) { write_all(STDERR_FILENO, "asperity: " + one_line(message) + '\n'); }
+void complain(std::string_view message) { write_all(STDERR_FILENO, "asperity: " + printable(message) + '\n'); }
 
 void tell_error(std::string_view code, std::string_view message, bool as_json) {
   if (has_room(STDERR_FILENO)) complain(message);
@@ -120,7 +120,8 @@ int command_line::run(int argc, const char* const* argv) {
       document.update(done->document);
       out = serialise(document);
     } else if (!common_.quiet) {
-      out = done->text;
+      // Each part has escaped the names in it already; what one has forgotten can break a line and nothing else.
+      out = printable(done->text, '\n');
     }
     if (!write_all(STDOUT_FILENO, out)) {
       complain(why_stdout_failed());

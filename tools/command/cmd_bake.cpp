@@ -70,7 +70,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   };
 
   enter("read", 0.0);
-  result<triangle_mesh> full = io::load_mesh(options.full);
+  result<triangle_mesh> full = io::load_mesh(options.full, not_interrupted);
   if (!full) return full.error();
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
   std::vector<std::string> remarks;
@@ -106,7 +106,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   remarks.insert(remarks.end(), relief->notes.begin(), relief->notes.end());
   settings.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
   if (!options.coarse.empty()) {
-    result<triangle_mesh> coarse = io::load_mesh(options.coarse);
+    result<triangle_mesh> coarse = io::load_mesh(options.coarse, not_interrupted);
     if (!coarse) return coarse.error();
     scale_to_metres(*options.units, *coarse);
     settings.coarse = std::move(coarse).value();

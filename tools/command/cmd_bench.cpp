@@ -88,7 +88,7 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                     {"tick_central", 1.0 / central_tick.p50_s}}},
                   {"units", "SI"}};
   const auto name = [](const textured_model& b) {
-    return b.name + " (" + std::to_string(b.pieces.size()) + " pieces)";
+    return printable(b.name) + " (" + std::to_string(b.pieces.size()) + " pieces)";
   };
   out.text = name(*bodies.probe) + " on " + name(*bodies.fixed.front()) + ", " + std::to_string(options.motion.poses) +
              " poses of a scrubbing path, " + brief(contacts) + " contacts on average, CPU time of one core\n";

@@ -109,7 +109,7 @@ result<answer> list_devices(const driver_choice& choice) {
 #endif
   std::string names = "simulated";
   for (const std::string& driver : known.drivers()) names += ", " + driver;
-  out.text += "  Drivers that looked: " + names + ".\n";
+  out.text += "  Drivers that looked: " + printable(names) + ".\n";
   return out;
 }
 

@@ -43,7 +43,7 @@ void tell(const experiment::published& one, answer& out, std::vector<std::string
         row(s.name, brief(s.value) + " (" + bound_text(s) + ")" + (s.holds() ? "" : "  FAILS") + "  " + s.claim);
     if (!s.holds()) failed.push_back(full_name(one, s));
   }
-  for (const std::string& note : one.found.notes) out.text += "  note: " + note + "\n";
+  for (const std::string& note : one.found.notes) out.text += "  note: " + printable(note) + "\n";
   out.document["experiments"].push_back(to_json(one));
 }
 

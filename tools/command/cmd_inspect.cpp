@@ -55,7 +55,7 @@ result<json> draw(const inspect_command& options, const common_options& common, 
   };
   std::optional<triangle_mesh> original;
   if (!options.original.empty()) {
-    result<triangle_mesh> loaded = io::load_mesh(options.original);
+    result<triangle_mesh> loaded = io::load_mesh(options.original, not_interrupted);
     if (!loaded) return loaded.error();
     original = std::move(*loaded);
     if (const result<void> ok = bring_to_metres(*options.units, options.original, *original); !ok) return ok.error();
@@ -72,7 +72,7 @@ result<answer> inspect(const inspect_command& options, const common_options& com
     if (!opened) return opened.error();
     drawing.emplace(std::move(*opened));
   }
-  const result<textured_model> model = io::load_textured_model(options.file);
+  const result<textured_model> model = io::load_textured_model(options.file, not_interrupted);
   if (!model) return model.error();
   const std::vector<std::string> notes = warnings(*model);
 
@@ -80,7 +80,7 @@ result<answer> inspect(const inspect_command& options, const common_options& com
   out.document = {{"file", options.file}};
   out.document.update(describe(*model));
   out.document["warnings"] = notes;
-  out.text = options.file + '\n' + describe_text(*model) + warnings_text(notes);
+  out.text = printable(options.file) + '\n' + describe_text(*model) + warnings_text(notes);
   if (drawing) {
     const result<json> shown = draw(options, common, *model, *drawing);
     if (!shown) return shown.error();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "asperity/hal/simulated/simulated_device.hpp"
+#include "interrupt.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -154,7 +155,7 @@ std::optional<pose> start_of(const device_recording& r, std::size_t arm) {
 
 result<device_replay> device_replay::open(const std::filesystem::path& file) {
   const auto in_file = [&](const error& e) { return error{e.code, file.string() + ": " + e.message}; };
-  result<device_recording> loaded = load_device_recording(file);
+  result<device_recording> loaded = load_device_recording(file, not_interrupted);
   if (!loaded) return loaded.error();
   if (const result<void> known = check_descriptor(*loaded); !known) return in_file(known.error());
 

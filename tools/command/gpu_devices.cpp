@@ -44,7 +44,7 @@ json to_json(const gl::device& d, const gl::context_ptr& context) {
 
 std::string text_of(const gl::device& d, const json& gpu) {
   const std::string label = "gpu " + std::to_string(d.index);
-  if (!d.problem.empty()) return row(label, d.name + ": cannot be used: " + one_line(d.problem));
+  if (!d.problem.empty()) return row(label, d.name + ": cannot be used: " + d.problem);
   std::string out = row(label, d.name + ", OpenGL " + d.version);
   if (gpu["limits"].is_object()) {
     out += row("", "textures up to " + std::to_string(gpu["limits"]["texture_side"].get<std::int64_t>()) +

@@ -29,7 +29,7 @@ std::string to_text(const gpu_use& use) {
 
 void warn(const gpu_use& use) {
   const auto say = [](const std::string& what) {
-    std::fputs(("asperity: note: " + one_line(what) + "\n").c_str(), stderr);
+    std::fputs(("asperity: note: " + printable(what) + "\n").c_str(), stderr);
   };
   if (!use.problem.empty()) say("the CPU answers in place of the GPU: " + use.problem);
   if (use.software) {

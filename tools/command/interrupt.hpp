@@ -15,6 +15,9 @@ void catch_interrupts();
 /// True after a signal that asked to stop.
 [[nodiscard]] bool interrupted() noexcept;
 
+/// The opposite, for what asks whether to go on.
+[[nodiscard]] inline bool not_interrupted() noexcept { return !interrupted(); }
+
 /// The signal that asked first; 0 where none did.
 [[nodiscard]] int stop_signal() noexcept;
 

@@ -181,7 +181,7 @@ std::vector<std::string> warnings(const textured_model& model) {
 
 std::string warnings_text(const std::vector<std::string>& warnings) {
   std::string out;
-  for (const std::string& w : warnings) out += "  warning: " + w + '\n';
+  for (const std::string& w : warnings) out += "  warning: " + printable(w) + '\n';
   return out;
 }
 

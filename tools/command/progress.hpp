@@ -6,6 +6,8 @@
 #include <string_view>
 #include <unistd.h>
 
+#include "asperity/core/printable.hpp"
+
 namespace asperity::command {
 
 /// Writes "stage  42 %" over itself on stderr, only where that is a terminal, and wipes it at the end. No colour.
@@ -21,7 +23,7 @@ class progress_line {
   /// @param done share of the stage, 0 to 1
   void show(std::string_view stage, double done) {
     if (!shown_) return;
-    std::string line(stage);
+    std::string line = printable(stage);
     line += "  " + std::to_string(static_cast<int>(100.0 * done)) + " %";
     if (line == last_) return;
     const int wipe = static_cast<int>(last_.size() > line.size() ? last_.size() - line.size() : 0);

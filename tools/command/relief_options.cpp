@@ -7,6 +7,7 @@
 #include "asperity/bake/procedural.hpp"
 #include "asperity/io/image_file.hpp"
 #include "asperity/io/material_file.hpp"
+#include "interrupt.hpp"
 #include "options.hpp"
 #include "text.hpp"
 
@@ -27,9 +28,10 @@ std::string image_text(const map_image& image) {
 }
 
 result<relief_job> from_height_map(const relief_options& options, const triangle_mesh& mesh) {
-  const result<map_image> image = io::load_image(options.height_map);
+  result<map_image> image = io::load_image(options.height_map, not_interrupted);
   if (!image) return image.error();
   bake::height_map_settings settings;
+  settings.keep_going = not_interrupted;
   if (image->bits == 0) {
     if (options.has_range)
       return error{error_code::invalid_argument, options.height_map +
@@ -44,15 +46,18 @@ result<relief_job> from_height_map(const relief_options& options, const triangle
     settings.offset_m = options.height_range_m[0];
     settings.scale_m = options.height_range_m[1] - options.height_range_m[0];
   }
-  auto made = bake::height_map_relief(mesh, *image, settings);
+  const json about = image_json(options.height_map, *image);
+  const std::uint32_t bits = image->bits;
+  const std::string words = image_text(*image);
+  auto made = bake::height_map_relief(mesh, std::move(*image), settings);
   if (!made) return error{made.error().code, options.height_map + ": " + made.error().message};
   relief_job job;
-  const double step_m = image->bits == 0 ? 0.0 : std::fabs(settings.scale_m) / ((1U << image->bits) - 1.0);
-  job.document = {{"image", image_json(options.height_map, *image)}, {"texel", made->finest_m}, {"step", step_m}};
-  job.text = row("height map", image_text(*image) + ", texels of " + length_text(made->finest_m) +
+  const double step_m = bits == 0 ? 0.0 : std::fabs(settings.scale_m) / ((1U << bits) - 1.0);
+  job.document = {{"image", about}, {"texel", made->finest_m}, {"step", step_m}};
+  job.text = row("height map", words + ", texels of " + length_text(made->finest_m) +
                                    (step_m > 0.0 ? ", steps of " + length_text(step_m) : std::string()));
   constexpr double finest_step_felt_m = 1e-6;
-  if (step_m > finest_step_felt_m && image->bits <= 8)
+  if (step_m > finest_step_felt_m && bits <= 8)
     job.notes.push_back("the height map rises in steps of " + length_text(step_m) +
                         ", which can be felt: export it with 16 bits or as floating-point numbers");
   job.relief = std::move(made).value();
@@ -90,9 +95,10 @@ result<relief_job> from_normal_map(const map_image& image, const std::string& na
 }
 
 result<relief_job> from_normal_file(const relief_options& options, const triangle_mesh& mesh) {
-  const result<map_image> image = io::load_image(options.normal_map);
+  const result<map_image> image = io::load_image(options.normal_map, not_interrupted);
   if (!image) return image.error();
   bake::normal_map_settings settings;
+  settings.keep_going = not_interrupted;
   settings.scale = options.normal_scale;
   settings.green_is_down = options.normal_y == "down";
   return from_normal_map(*image, options.normal_map, settings, mesh);
@@ -101,9 +107,10 @@ result<relief_job> from_normal_file(const relief_options& options, const triangl
 result<relief_job> from_material(const relief_options& options, const triangle_mesh& mesh, const std::string& file) {
   if (const std::string wrong = extension_error(file, {".gltf", ".glb"}); !wrong.empty())
     return error{error_code::invalid_argument, "--from-material needs a glTF asset: " + wrong};
-  const result<io::normal_texture> texture = io::load_normal_texture(file);
+  const result<io::normal_texture> texture = io::load_normal_texture(file, not_interrupted);
   if (!texture) return texture.error();
   bake::normal_map_settings settings;
+  settings.keep_going = not_interrupted;
   settings.scale = texture->scale * options.normal_scale;
   settings.green_is_down = options.normal_y == "down";
   settings.wrap_u = texture->wrap_u;

@@ -15,7 +15,7 @@ std::string plot_title(const run_command& options, const session_summary& summar
                            : options.motion == "twist" ? " twists on "
                            : options.motion == "free"  ? " wanders over "
                                                        : " scrubs ";
-  const std::string who = file_stem(options.probe) + does + file_stem(options.fixed.front());
+  const std::string who = printable(file_stem(options.probe) + does + file_stem(options.fixed.front()));
   if (!summary.touched()) return who + " and never touches it.";
   return who + ": up to " + brief(summary.largest_hand_force_n()) + " N and " +
          brief(1e3 * summary.largest_hand_torque_n_m()) + " mN m on the hand, " + brief(summary.mean_contacts()) +
@@ -24,8 +24,9 @@ std::string plot_title(const run_command& options, const session_summary& summar
 
 std::string plot_caption(const run_command& options) {
   return (is_simulated(options) ? "Simulated device"
-          : is_replay(options)  ? "Replay of " + std::filesystem::path(replayed_file(options)).filename().string()
-                                : options.device) +
+          : is_replay(options)
+              ? "Replay of " + printable(std::filesystem::path(replayed_file(options)).filename().string())
+              : printable(options.device)) +
          " at 1 kHz, contact loop at " + brief(options.contact_rate_hz) + " Hz, " + clock_of(options) + " clock, " +
          (formulation_name(options.render) == "shared" ? "contacts as one potential" : "contacts as in the paper") +
          (is_simulated(options) ? ", seed " + std::to_string(options.seed) : "") +

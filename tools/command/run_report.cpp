@@ -172,7 +172,7 @@ answer report(const run_command& options, const session_findings& found) {
   out.document["plot"] = options.plot.empty() ? json() : json(options.plot);
   out.document["units"] = "SI";
 
-  out.text = file_stem(options.probe) + " felt on " + file_stem(options.fixed.front()) + ", " +
+  out.text = printable(file_stem(options.probe) + " felt on " + file_stem(options.fixed.front())) + ", " +
              brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
              clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("contact loop", loop_text(ended.contact, contact));

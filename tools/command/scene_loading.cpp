@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "asperity/io/textured_model_file.hpp"
+#include "interrupt.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -12,7 +13,7 @@ namespace {
 constexpr double largest_size_ratio = 500.0;
 
 result<model_ptr> load(const std::string& file) {
-  result<textured_model> model = io::load_textured_model(file);
+  result<textured_model> model = io::load_textured_model(file, not_interrupted);
   if (!model) return model.error();
   return model_ptr(std::make_shared<const textured_model>(std::move(model).value()));
 }

@@ -23,14 +23,6 @@ std::string scaled(double value, const std::array<scale, N>& units) {
 
 }  // namespace
 
-std::string one_line(std::string_view message) {
-  std::string line(message);
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return line;
-}
-
 std::string brief(double value) {
   char text[32];
   const double size = std::fabs(value);
@@ -56,9 +48,10 @@ std::string memory_text(std::size_t bytes) {
 
 std::string row(std::string_view label, std::string_view value) {
   std::string line = "  ";
-  line += label;
-  line.append(label.size() < 24 ? 24 - label.size() : 1, ' ');
-  line += value;
+  const std::string name = printable(label);
+  line += name;
+  line.append(name.size() < 24 ? 24 - name.size() : 1, ' ');
+  line += printable(value);
   line += '\n';
   return line;
 }

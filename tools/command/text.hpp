@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "asperity/core/printable.hpp"
+
 namespace asperity::command {
 
 /// Appends the shortest decimal that reads back as the same double: recordings are exact and compare byte by byte.
@@ -14,10 +16,6 @@ inline void append_number(std::string& out, double value) {
   const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
   out.append(digits, end);
 }
-
-/// The message without line breaks and other control characters, so that an error is one line whatever a file is
-/// called.
-[[nodiscard]] std::string one_line(std::string_view message);
 
 /// Three significant digits.
 [[nodiscard]] std::string brief(double value);
@@ -31,7 +29,7 @@ inline void append_number(std::string& out, double value) {
 /// An amount of memory, as in "12.7 MB", in powers of ten.
 [[nodiscard]] std::string memory_text(std::size_t bytes);
 
-/// "  label ........ value" with the values in one column.
+/// "  label ........ value" with the values in one column, one line whatever the two hold (printable()).
 [[nodiscard]] std::string row(std::string_view label, std::string_view value);
 
 }  // namespace asperity::command

@@ -1,5 +1,6 @@
 #include "file_bytes.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <fcntl.h>
@@ -57,7 +58,8 @@ result<void> check_kind(const struct stat& about, const fs::path& file) {
 }
 
 /// All bytes of a file that was just opened, if that worked.
-result<std::string> read_open(const descriptor& in, const fs::path& file, std::uintmax_t limit) {
+result<std::string> read_open(const descriptor& in, const fs::path& file, std::uintmax_t limit,
+                              const reading_watch& watch) {
   struct stat about {};
   if (!in || ::fstat(in.get(), &about) != 0) {
     return fault(error_code::io_failed, file, "cannot be opened: " + reason() + "; check its permissions");
@@ -70,8 +72,12 @@ result<std::string> read_open(const descriptor& in, const fs::path& file, std::u
                  "has " + std::to_string(size) + " bytes, more than the limit of " + std::to_string(limit) +
                      "; reduce it first");
   }
-  std::string bytes(static_cast<std::size_t>(size), '\0');
-  for (std::size_t done = 0; done < bytes.size();) {
+  constexpr std::size_t at_a_time = std::size_t{8} << 20;
+  std::string bytes;
+  bytes.reserve(static_cast<std::size_t>(size));
+  for (std::size_t done = 0; done < size;) {
+    watch.ask();
+    if (done == bytes.size()) bytes.resize(std::min(done + at_a_time, static_cast<std::size_t>(size)));
     const ssize_t n = ::read(in.get(), bytes.data() + done, bytes.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return fault(error_code::io_failed, file, "cannot be read to its end; check the disk");
@@ -108,12 +114,13 @@ result<void> check_regular_file(const fs::path& file) {
   return check_kind(about, file);
 }
 
-result<std::string> read_file(const fs::path& file, std::uintmax_t limit) {
+result<std::string> read_file(const fs::path& file, std::uintmax_t limit, const reading_watch& watch) {
   if (const auto regular = check_regular_file(file); !regular) return regular.error();
-  return read_open(descriptor(::open(file.c_str(), open_to_read)), file, limit);
+  return read_open(descriptor(::open(file.c_str(), open_to_read)), file, limit, watch);
 }
 
-result<std::string> read_file_below(const fs::path& folder, const fs::path& name, std::uintmax_t limit) {
+result<std::string> read_file_below(const fs::path& folder, const fs::path& name, std::uintmax_t limit,
+                                    const reading_watch& watch) {
   const fs::path file = folder / name;
   descriptor at(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
   for (auto step = name.begin(); step != name.end(); ++step) {
@@ -129,7 +136,7 @@ result<std::string> read_file_below(const fs::path& folder, const fs::path& name
     const int how = last ? open_to_read : O_PATH | O_DIRECTORY | O_CLOEXEC;
     at = descriptor(::openat(at.get(), step->c_str(), how | O_NOFOLLOW));
   }
-  return read_open(at, file, limit);
+  return read_open(at, file, limit, watch);
 }
 
 result<void> write_file(const fs::path& file, std::initializer_list<std::string_view> parts) {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "asperity/core/status.hpp"
+#include "reading_watch.hpp"
 
 namespace asperity::io {
 
@@ -36,14 +37,17 @@ inline constexpr std::uintmax_t max_model_bytes = std::uintmax_t{256} << 20;
 
 /// All bytes of a regular, non-empty file.
 /// @return io_failed (absent, directory, device, unreadable), bad_format (empty), limit_exceeded
-[[nodiscard]] result<std::string> read_file(const std::filesystem::path& file, std::uintmax_t limit);
+/// Throws rejection where the watch does.
+[[nodiscard]] result<std::string> read_file(const std::filesystem::path& file, std::uintmax_t limit,
+                                            const reading_watch& watch = {});
 
 /// The same for a file below a folder. No link is followed on the way down, so nothing outside the folder is opened,
 /// even where somebody changes the folder meanwhile.
 /// @pre `name` is relative, normal and without ".."
 /// @return as read_file(); io_failed for a link
 [[nodiscard]] result<std::string> read_file_below(const std::filesystem::path& folder,
-                                                  const std::filesystem::path& name, std::uintmax_t limit);
+                                                  const std::filesystem::path& name, std::uintmax_t limit,
+                                                  const reading_watch& watch = {});
 
 /// Writes a file from parts, under another name beside it first: it appears whole or not at all.
 /// @return io_failed; nothing is left behind
@@ -70,11 +74,24 @@ template <class Function>
 [[nodiscard]] auto without_exceptions(const std::filesystem::path& file, Function&& body) -> decltype(body()) {
   try {
     return body();
+  } catch (const rejection& r) {
+    return fault(r.code, file, r.what);
   } catch (const std::bad_alloc&) {
     return fault(error_code::limit_exceeded, file, "does not fit into memory; use a smaller mesh");
   } catch (const std::exception& e) {
     return fault(error_code::io_failed, file,
                  std::string("cannot be processed: ") + e.what() + "; check the path and the free memory");
+  }
+}
+
+/// Runs a reader; what it rejects comes back as an error with a mend.
+template <class Function>
+[[nodiscard]] auto refusing(const std::filesystem::path& file, std::string_view mend, Function&& body)
+    -> decltype(body()) {
+  try {
+    return body();
+  } catch (const rejection& r) {
+    return fault(r.code, file, with_mend(r.what, mend));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "gltf_document.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "file_bytes.hpp"
@@ -12,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// JSON of a .gltf may be larger than that of a .glb: buffers can stand in it as text.
-constexpr std::size_t max_text_bytes = std::size_t{256} << 20;
+constexpr std::size_t max_text_bytes = std::size_t{128} << 20;
 /// Each buffer is a file that is opened, or a text that is decoded.
 constexpr std::size_t max_buffers = 64;
 
@@ -52,6 +53,41 @@ fs::path below(const std::string& uri, const std::string& place) {
   return path;
 }
 
+/// The bytes of a data URI, which is base64 here. Throws rejection.
+std::string data_uri_bytes(std::string_view uri, const std::string& place, reading_watch& watch) {
+  static constexpr std::string_view mark = ";base64,";
+  static const std::array<std::uint8_t, 256> values = [] {
+    std::array<std::uint8_t, 256> out{};
+    out.fill(64);
+    std::uint8_t next = 0;
+    for (const char c : std::string_view("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/")) {
+      out[static_cast<unsigned char>(c)] = next++;
+    }
+    return out;
+  }();
+  static constexpr std::array<std::string_view, 5> kinds{"data:application/octet-stream",
+                                                         "data:application/gltf-buffer", "data:image/png",
+                                                         "data:image/jpeg", "data:text/plain"};
+  const std::size_t begin = uri.substr(0, 64).find(mark);
+  bool good = begin != std::string_view::npos && std::ranges::find(kinds, uri.substr(0, begin)) != kinds.end();
+  std::string_view text = good ? uri.substr(begin + mark.size()) : std::string_view();
+  for (int padding = 0; padding < 2 && text.ends_with('='); ++padding) text.remove_suffix(1);
+  good = good && text.size() % 4 != 1;
+  std::string out;
+  out.reserve(text.size() / 4 * 3 + 2);
+  std::uint32_t bits = 0;
+  for (std::size_t i = 0; i < text.size() && good; ++i) {
+    watch.step();
+    const std::uint8_t value = values[static_cast<unsigned char>(text[i])];
+    good = value < 64;
+    bits = bits << 6U | value;
+    // Of each four characters the first brings no whole byte.
+    if (i % 4 != 0) out += static_cast<char>(bits >> (6U - 2U * (i % 4)) & 0xffU);
+  }
+  if (!good) reject(place + " is no base64 data URI of a buffer or an image");
+  return out;
+}
+
 /// Refuses every file: the guard has read what may be read.
 tinygltf::FsCallbacks no_files() {
   return {[](const std::string&, void*) { return false; }, [](const std::string& name, void*) { return name; },
@@ -61,7 +97,8 @@ tinygltf::FsCallbacks no_files() {
 
 }  // namespace
 
-gltf_document::gltf_document(std::string_view bytes, const fs::path& file, buffer_policy policy) {
+gltf_document::gltf_document(std::string_view bytes, const fs::path& file, buffer_policy policy, reading_watch& watch)
+    : watch_(watch) {
   glb_chunks chunks;
   json_limits limits;
   if (policy == buffer_policy::own_folder && !bytes.starts_with("glTF")) {
@@ -70,7 +107,7 @@ gltf_document::gltf_document(std::string_view bytes, const fs::path& file, buffe
   } else {
     chunks = split_glb(bytes);
   }
-  source_ = parse_bounded(chunks.json, limits);
+  source_ = parse_bounded(chunks.json, limits, watch);
   collect_buffers(chunks.bin, file, policy);
   std::vector<std::size_t> sizes;
   for (const std::string_view b : buffers_) sizes.push_back(b.size());
@@ -121,20 +158,13 @@ std::string gltf_document::outside_buffer(const std::string& uri, const std::str
   }
   std::uintmax_t total = 0;
   for (const std::string& other : owned_) total += other.size();
-  return outside_bytes(uri, place, file, max_mesh_bytes - total);
+  return outside_bytes(uri, place, file, max_mesh_bytes - total, watch_);
 }
 
 std::string gltf_document::outside_bytes(const std::string& uri, const std::string& place, const fs::path& file,
-                                         std::uintmax_t limit) {
-  if (uri.starts_with("data:")) {
-    std::vector<unsigned char> decoded;
-    std::string mime_type;
-    if (!tinygltf::DecodeDataURI(&decoded, mime_type, uri, 0, false)) {
-      reject(place + " is no base64 data URI of a buffer or an image");
-    }
-    return {decoded.begin(), decoded.end()};
-  }
-  auto bytes = read_file_below(fs::absolute(file).parent_path(), below(uri, place), limit);
+                                         std::uintmax_t limit, reading_watch& watch) {
+  if (uri.starts_with("data:")) return data_uri_bytes(uri, place, watch);
+  auto bytes = read_file_below(fs::absolute(file).parent_path(), below(uri, place), limit, watch);
   if (!bytes) throw rejection{bytes.error().code, place + " names " + bytes.error().message};
   return std::move(bytes).value();
 }
@@ -158,6 +188,7 @@ std::vector<vec3> gltf_document::positions(int accessor) const {
   std::vector<vec3> out;
   out.reserve(a.count);
   for (std::size_t i = 0; i < a.count; ++i) {
+    watch_.step();
     out.emplace_back(load_number<glm::vec3>(element(a, i)));
     if (!is_finite(out.back())) {
       reject(accessor_name(accessor) + " has a coordinate that is not finite at vertex " + std::to_string(i));
@@ -178,6 +209,7 @@ std::vector<vec2> gltf_document::uvs(int accessor) const {
   std::vector<vec2> out;
   out.reserve(a.count);
   for (std::size_t i = 0; i < a.count; ++i) {
+    watch_.step();
     const char* at = element(a, i);
     const vec2 uv = single  ? vec2(load_number<glm::vec2>(at))
                     : bytes ? vec2(load_number<std::uint8_t>(at), load_number<std::uint8_t>(at + 1)) / 255.0
@@ -204,6 +236,7 @@ std::vector<std::uint32_t> gltf_document::indices(int accessor, std::size_t vert
   if (a.type != TINYGLTF_TYPE_SCALAR || !known) reject(accessor_name(accessor) + " holds indices of a wrong type");
   out.reserve(a.count);
   for (std::size_t i = 0; i < a.count; ++i) {
+    watch_.step();
     const char* at = element(a, i);
     const std::uint32_t v = a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ? load_number<std::uint8_t>(at)
                             : a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT

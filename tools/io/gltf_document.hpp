@@ -24,8 +24,8 @@ enum class buffer_policy : std::uint8_t {
 class gltf_document {
  public:
   /// Opens a .glb, or a .gltf where the bytes do not begin like a .glb. Throws rejection.
-  /// @pre `bytes` outlives the document
-  gltf_document(std::string_view bytes, const std::filesystem::path& file, buffer_policy policy);
+  /// @pre `bytes` and `watch` outlive the document
+  gltf_document(std::string_view bytes, const std::filesystem::path& file, buffer_policy policy, reading_watch& watch);
 
   /// Meshes, nodes and scenes.
   [[nodiscard]] const tinygltf::Model& geometry() const noexcept { return geometry_; }
@@ -37,7 +37,8 @@ class gltf_document {
   /// Bytes that a URI gives: its own, where it is a data URI, or those of a file below the folder of `file`, by the
   /// rules for buffers. Throws rejection. @param place names the URI in messages
   [[nodiscard]] static std::string outside_bytes(const std::string& uri, const std::string& place,
-                                                 const std::filesystem::path& file, std::uintmax_t limit);
+                                                 const std::filesystem::path& file, std::uintmax_t limit,
+                                                 reading_watch& watch);
   /// Elements of an accessor. Whoever reads several that belong together compares their counts first: an accessor of
   /// bytes takes many times its own size once it is read.
   [[nodiscard]] std::size_t count(int accessor) const {
@@ -56,6 +57,7 @@ class gltf_document {
                                            const std::filesystem::path& file);
   [[nodiscard]] const char* element(const tinygltf::Accessor& a, std::size_t i) const;
 
+  reading_watch& watch_;
   json source_;
   tinygltf::Model geometry_;
   std::vector<std::string> owned_;  // buffers that are not the BIN chunk

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <iterator>
 #include <set>
 #include <string>
 
@@ -216,13 +218,45 @@ class geometry_checker {
   std::vector<bool> used_;  // accessors that some primitive names
 };
 
+/// Bytes of JSON between two questions whether to go on.
+constexpr std::size_t watch_every = std::size_t{1} << 18;
+
+/// Characters for a parser that asks on its way whether to go on.
+class watched_iterator {
+ public:
+  using iterator_category = std::forward_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  watched_iterator() = default;
+  watched_iterator(const char* at, const reading_watch& watch) noexcept : at_(at), watch_(&watch) {}
+  reference operator*() const noexcept { return *at_; }
+  watched_iterator& operator++() {
+    if (reinterpret_cast<std::uintptr_t>(++at_) % watch_every == 0) watch_->ask();
+    return *this;
+  }
+  watched_iterator operator++(int) {
+    watched_iterator before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const watched_iterator& other) const noexcept { return at_ == other.at_; }
+
+ private:
+  const char* at_ = nullptr;
+  const reading_watch* watch_ = nullptr;
+};
+
 /// Counts levels and items without a parser. Throws rejection.
-void check_extent(std::string_view text, const json_limits& limits) {
+void check_extent(std::string_view text, const json_limits& limits, const reading_watch& watch) {
   int depth = 0;
   std::size_t items = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    if (i % watch_every == 0) watch.ask();
     if (in_string) {
       if (c == '\\') {
         ++i;
@@ -319,16 +353,18 @@ glb_chunks split_glb(std::string_view bytes) {
   return chunks;
 }
 
-json parse_bounded(std::string_view text, const json_limits& limits) {
+json parse_bounded(std::string_view text, const json_limits& limits, reading_watch& watch) {
   if (text.size() > limits.bytes) {
     throw rejection{error_code::limit_exceeded, "holds " + std::to_string(text.size()) +
                                                     " bytes of JSON, more than the limit of " +
                                                     std::to_string(limits.bytes)};
   }
-  check_extent(text, limits);
+  check_extent(text, limits, watch);
+  const watched_iterator begin(text.data(), watch);
+  const watched_iterator end(text.data() + text.size(), watch);
   json_inspector inspector;
-  json::sax_parse(text.begin(), text.end(), &inspector);
-  json document = json::parse(text.begin(), text.end(), nullptr, false);
+  json::sax_parse(begin, end, &inspector);
+  json document = json::parse(begin, end, nullptr, false);
   if (!document.is_object()) reject("holds JSON that does not parse as an object");
   return document;
 }

@@ -28,7 +28,7 @@ struct glb_chunks {
 
 /// Parses JSON whose depth and number of items are within the limits, and in which no object has a name twice: of two
 /// values under one name, every reader believes another. Throws rejection.
-[[nodiscard]] json parse_bounded(std::string_view text, const json_limits& limits = {});
+[[nodiscard]] json parse_bounded(std::string_view text, const json_limits& limits, reading_watch& watch);
 
 /// Copy of a document that holds its geometry and nothing else: buffer views, the accessors that meshes use, meshes,
 /// nodes and scenes, each field checked, every index and byte range inside its bounds. Images, extensions and extras

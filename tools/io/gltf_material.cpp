@@ -49,14 +49,15 @@ map_wrap wrap_of(const json_object& sampler, const char* key) {
   }
 }
 
-std::string image_bytes(const gltf_document& document, const json_object& image, const std::filesystem::path& file) {
+std::string image_bytes(const gltf_document& document, const json_object& image, const std::filesystem::path& file,
+                        reading_watch& watch) {
   if (!image.has("bufferView"))
-    return gltf_document::outside_bytes(image.text("uri"), image.path("uri"), file, max_image_bytes);
+    return gltf_document::outside_bytes(image.text("uri"), image.path("uri"), file, max_image_bytes, watch);
   return std::string(document.view_bytes(image.index("bufferView", document.geometry().bufferViews.size())));
 }
 
-normal_texture read_normal_texture(std::string_view bytes, const std::filesystem::path& file) {
-  const gltf_document document(bytes, file, buffer_policy::own_folder);
+normal_texture read_normal_texture(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
+  const gltf_document document(bytes, file, buffer_policy::own_folder, watch);
   const json_object root(document.source(), "the document");
   const json_object material = root.element("materials", only_material(root));
   if (!material.has("normalTexture"))
@@ -77,7 +78,7 @@ normal_texture read_normal_texture(std::string_view bytes, const std::filesystem
     out.wrap_v = wrap_of(sampler, "wrapT");
   }
   const json_object image = root.element("images", texture.index("source", root.array("images").size()));
-  auto pixels = decode_image(image_bytes(document, image, file), image.path());
+  auto pixels = decode_image(image_bytes(document, image, file, watch), image.path(), watch);
   if (!pixels) throw rejection{pixels.error().code, pixels.error().message};
   out.image = std::move(pixels).value();
   return out;
@@ -85,15 +86,13 @@ normal_texture read_normal_texture(std::string_view bytes, const std::filesystem
 
 }  // namespace
 
-result<normal_texture> load_normal_texture(const std::filesystem::path& file) {
+result<normal_texture> load_normal_texture(const std::filesystem::path& file, const std::function<bool()>& keep_going) {
   return without_exceptions(file, [&]() -> result<normal_texture> {
-    const auto bytes = read_file(file, max_mesh_bytes);
+    reading_watch watch(keep_going);
+    const auto bytes = read_file(file, max_mesh_bytes, watch);
     if (!bytes) return bytes.error();
-    try {
-      return read_normal_texture(*bytes, file);
-    } catch (const rejection& r) {
-      return fault(r.code, file, with_mend(r.what, "export the asset again"));
-    }
+    return refusing(file, "export the asset again",
+                    [&]() -> result<normal_texture> { return read_normal_texture(*bytes, file, watch); });
   });
 }
 

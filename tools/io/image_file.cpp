@@ -1,5 +1,6 @@
 #include "asperity/io/image_file.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -36,6 +37,14 @@ result<map_image> sized_image(std::size_t width, std::size_t height, std::uint32
   return out;
 }
 
+void reserve_row(map_image& image, std::size_t samples) {
+  const std::size_t needed = image.samples.size() + samples;
+  if (needed <= image.samples.capacity()) return;
+  const std::size_t whole = std::size_t{image.width} * image.height * image.channels;
+  // From a quarter on at once: a last step from nearly all to all would hold the image twice.
+  image.samples.reserve(std::max(needed, 4 * needed >= whole ? whole : 2 * needed));
+}
+
 result<map_image> finite_image(map_image&& image, const std::filesystem::path& file) {
   for (std::size_t i = 0; i < image.samples.size(); ++i) {
     if (std::isfinite(image.samples[i])) continue;
@@ -56,24 +65,25 @@ std::string plain_reason(std::string_view text) {
   return out;
 }
 
-result<map_image> decode_image(std::string_view bytes, const std::filesystem::path& file) {
+result<map_image> decode_image(std::string_view bytes, const std::filesystem::path& file, reading_watch watch) {
   using namespace std::string_view_literals;
-  if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv)) return decode_png(bytes, file);
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n"sv)) return decode_png(bytes, file, watch);
   if (bytes.starts_with("II\x2a\0"sv) || bytes.starts_with("MM\0\x2a"sv) || bytes.starts_with("II\x2b\0"sv) ||
       bytes.starts_with("MM\0\x2b"sv))
-    return decode_tiff(bytes, file);
-  if (bytes.starts_with("\x76\x2f\x31\x01"sv)) return decode_exr(bytes, file);
-  if (bytes.starts_with("\xff\xd8\xff"sv)) return decode_jpeg(bytes, file);
+    return decode_tiff(bytes, file, watch);
+  if (bytes.starts_with("\x76\x2f\x31\x01"sv)) return decode_exr(bytes, file, watch);
+  if (bytes.starts_with("\xff\xd8\xff"sv)) return decode_jpeg(bytes, file, watch);
   return fault(error_code::unsupported, file,
                "does not begin like a PNG, TIFF, EXR or JPEG image; export it as one of these, heights best with 16 "
                "bits or as floating-point numbers");
 }
 
-result<map_image> load_image(const std::filesystem::path& file) {
+result<map_image> load_image(const std::filesystem::path& file, const std::function<bool()>& keep_going) {
   return without_exceptions(file, [&]() -> result<map_image> {
-    const auto bytes = read_file(file, max_image_bytes);
+    const reading_watch watch(keep_going);
+    const auto bytes = read_file(file, max_image_bytes, watch);
     if (!bytes) return bytes.error();
-    return decode_image(*bytes, file);
+    return decode_image(*bytes, file, watch);
   });
 }
 

@@ -1,4 +1,5 @@
-// One decoder per image format. Each gets the file's bytes, and its name for messages.
+// One decoder per image format. Each gets the file's bytes, its name for messages, and whom to ask whether to go on.
+// Each reads row by row, or piece by piece, and throws rejection where the watch does.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +9,22 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/map_image.hpp"
+#include "reading_watch.hpp"
 
 namespace asperity::io {
 
-[[nodiscard]] result<map_image> decode_png(std::string_view bytes, const std::filesystem::path& file);
-[[nodiscard]] result<map_image> decode_tiff(std::string_view bytes, const std::filesystem::path& file);
-[[nodiscard]] result<map_image> decode_exr(std::string_view bytes, const std::filesystem::path& file);
-[[nodiscard]] result<map_image> decode_jpeg(std::string_view bytes, const std::filesystem::path& file);
+[[nodiscard]] result<map_image> decode_png(std::string_view bytes, const std::filesystem::path& file,
+                                           reading_watch& watch);
+[[nodiscard]] result<map_image> decode_tiff(std::string_view bytes, const std::filesystem::path& file,
+                                            reading_watch& watch);
+[[nodiscard]] result<map_image> decode_exr(std::string_view bytes, const std::filesystem::path& file,
+                                           reading_watch& watch);
+[[nodiscard]] result<map_image> decode_jpeg(std::string_view bytes, const std::filesystem::path& file,
+                                            reading_watch& watch);
 
 /// The image in these bytes, whose first ones tell its format.
-[[nodiscard]] result<map_image> decode_image(std::string_view bytes, const std::filesystem::path& file);
+[[nodiscard]] result<map_image> decode_image(std::string_view bytes, const std::filesystem::path& file,
+                                             reading_watch watch = {});
 
 /// An image without samples yet, where its size is within the limits and `bytes` bytes of file can hold it. The last is
 /// asked because a size in a header costs nothing to write: memory is taken only for what can be there.
@@ -26,6 +33,10 @@ namespace asperity::io {
 [[nodiscard]] result<map_image> sized_image(std::size_t width, std::size_t height, std::uint32_t channels,
                                             std::size_t bytes, std::size_t most_per_byte,
                                             const std::filesystem::path& file);
+
+/// Makes room for the samples of further rows: twice as much each time, never more than the whole image takes. A file
+/// that ends early has taken no memory for what it does not hold.
+void reserve_row(map_image& image, std::size_t samples);
 
 /// @return bad_format where a floating-point sample is not finite, with its place
 [[nodiscard]] result<map_image> finite_image(map_image&& image, const std::filesystem::path& file);

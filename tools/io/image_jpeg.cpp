@@ -21,11 +21,14 @@ struct jpeg_job {
   std::jmp_buf back;
   char reason[JMSG_LENGTH_MAX] = "";
   std::vector<unsigned char> row;
+  jpeg_progress_mgr progress{};
+  const reading_watch& watch;
 
-  jpeg_job() {
+  explicit jpeg_job(const reading_watch& w) : watch(w) {
     jpeg.err = jpeg_std_error(&errors);
     errors.error_exit = on_error;
     errors.emit_message = on_warning;
+    progress.progress_monitor = on_progress;
     jpeg.client_data = this;
   }
   jpeg_job(const jpeg_job&) = delete;
@@ -37,6 +40,11 @@ struct jpeg_job {
     (*jpeg->err->format_message)(jpeg, job.reason);
     longjmp(job.back, 1);
   }
+  /// A progressive image is decoded as a whole before its first row; this is called on the way.
+  static void on_progress(j_common_ptr jpeg) {
+    auto& job = *static_cast<jpeg_job*>(jpeg->client_data);
+    if (!job.watch.goes_on()) longjmp(job.back, 1);
+  }
   /// libjpeg fills up what is missing and warns; here that is an error.
   static void on_warning(j_common_ptr jpeg, int level) {
     if (level < 0) on_error(jpeg);
@@ -47,6 +55,7 @@ bool read_header(jpeg_job& job, std::string_view bytes) {
   if (setjmp(job.back) != 0) return false;
   jpeg_create_decompress(&job.jpeg);
   jpeg_mem_src(&job.jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  job.jpeg.progress = &job.progress;
   (void)jpeg_read_header(&job.jpeg, TRUE);
   job.jpeg.out_color_space = job.jpeg.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
   return true;
@@ -66,9 +75,10 @@ bool read_row(jpeg_job& job) {
 
 }  // namespace
 
-result<map_image> decode_jpeg(std::string_view bytes, const std::filesystem::path& file) {
-  jpeg_job job;
+result<map_image> decode_jpeg(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
+  jpeg_job job(watch);
   const auto damaged = [&] {
+    watch.ask();
     return fault(error_code::bad_format, file,
                  "cannot be read as JPEG: " + plain_reason(job.reason) + "; export it again");
   };
@@ -81,7 +91,9 @@ result<map_image> decode_jpeg(std::string_view bytes, const std::filesystem::pat
   sized->bits = 8;
   job.row.resize(std::size_t{sized->width} * channels);
   for (std::uint32_t j = 0; j < sized->height; ++j) {
+    watch.ask();
     if (!read_row(job)) return damaged();
+    reserve_row(*sized, job.row.size());
     for (const unsigned char value : job.row) sized->samples.push_back(static_cast<float>(value) / 255.0F);
   }
   return sized;

@@ -1,10 +1,12 @@
 // PNG through libpng, every bit depth and colour type.
 #include <algorithm>
 #include <csetjmp>
+#include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <png.h>
 #include <string>
-#include <vector>
 
 #include "asperity/io/image_file.hpp"
 #include "file_bytes.hpp"
@@ -17,6 +19,10 @@ namespace {
 constexpr std::size_t most_pixels_per_byte = std::size_t{1032} * 8;
 constexpr std::size_t max_chunk_bytes = std::size_t{8} << 20;
 
+struct free_memory {
+  void operator()(unsigned char* p) const noexcept { std::free(p); }
+};
+
 /// What the reading works on. It stands outside the functions that libpng may leave by longjmp: a jump runs no
 /// destructors.
 struct png_job {
@@ -28,13 +34,17 @@ struct png_job {
   png_uint_32 width = 0, height = 0;
   int depth = 0, channels = 0;
   std::size_t row_bytes = 0;
-  std::vector<unsigned char> pixels;
-  std::vector<unsigned char*> rows;
+  int passes = 1;
+  std::size_t rows_kept = 1;  // all of an interlaced image, whose rows come in seven passes
+  std::unique_ptr<unsigned char[], free_memory> rows;
+  const reading_watch& watch;
 
-  explicit png_job(std::string_view b) : bytes(b) {
+  png_job(std::string_view b, const reading_watch& w) : bytes(b), watch(w) {
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, this, on_error, on_warning);
     if (png != nullptr) info = png_create_info_struct(png);
   }
+  [[nodiscard]] unsigned char* row(std::size_t j) const noexcept { return rows.get() + j % rows_kept * row_bytes; }
+
   png_job(const png_job&) = delete;
   png_job& operator=(const png_job&) = delete;
   ~png_job() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -47,6 +57,7 @@ struct png_job {
   static void on_read(png_structp png, png_bytep to, std::size_t count) {
     auto& job = *static_cast<png_job*>(png_get_io_ptr(png));
     if (count > job.bytes.size() - job.at) png_error(png, "the file ends early");
+    if (!job.watch.goes_on()) png_error(png, "cancelled");
     std::memcpy(to, job.bytes.data() + job.at, count);
     job.at += count;
   }
@@ -77,25 +88,46 @@ bool choose_samples(png_job& job) {
     png_set_strip_alpha(job.png);
   }
   if (job.depth == 16) png_set_swap(job.png);  // PNG is big-endian
-  (void)png_set_interlace_handling(job.png);
+  job.passes = png_set_interlace_handling(job.png);
   png_read_update_info(job.png, job.info);
   job.row_bytes = png_get_rowbytes(job.png, job.info);
   return png_get_channels(job.png, job.info) == job.channels;
 }
 
-bool read_pixels(png_job& job) {
+bool read_row(png_job& job, std::size_t j) {
   if (setjmp(png_jmpbuf(job.png)) != 0) return false;
-  png_read_image(job.png, job.rows.data());
+  png_read_row(job.png, job.row(j), nullptr);
+  return true;
+}
+
+bool read_end(png_job& job) {
+  if (setjmp(png_jmpbuf(job.png)) != 0) return false;
   png_read_end(job.png, nullptr);
   return true;
 }
 
+void append_samples(const png_job& job, std::size_t j, map_image& to) {
+  const unsigned char* row = job.row(j);
+  const std::size_t count = std::size_t{to.width} * to.channels;
+  reserve_row(to, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (job.depth == 16) {
+      std::uint16_t value = 0;
+      std::memcpy(&value, row + 2 * i, sizeof value);
+      to.samples.push_back(static_cast<float>(value) / 65535.0F);
+    } else {
+      to.samples.push_back(static_cast<float>(row[i]) / 255.0F);
+    }
+  }
+}
+
 }  // namespace
 
-result<map_image> decode_png(std::string_view bytes, const std::filesystem::path& file) {
-  png_job job(bytes);
+result<map_image> decode_png(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
+  png_job job(bytes, watch);
   if (job.info == nullptr) return fault(error_code::limit_exceeded, file, "does not fit into memory; reduce it first");
   const auto damaged = [&] {
+    watch.ask();
     return fault(error_code::bad_format, file,
                  "cannot be read as PNG: " + plain_reason(job.reason) + ", before byte " + std::to_string(job.at) +
                      " of " + std::to_string(bytes.size()) + "; export it again");
@@ -106,26 +138,19 @@ result<map_image> decode_png(std::string_view bytes, const std::filesystem::path
   if (!sized) return sized.error();
   if (!choose_samples(job)) return damaged();
   map_image& out = *sized;
-  job.pixels.resize(job.row_bytes * job.height);
-  for (std::size_t j = 0; j < job.height; ++j) job.rows.push_back(job.pixels.data() + j * job.row_bytes);
-  if (!read_pixels(job)) return damaged();
-
   out.bits = static_cast<std::uint32_t>(job.depth);
-  const std::size_t per_row = std::size_t{out.width} * out.channels;
-  out.samples.resize(per_row * out.height);
-  for (std::size_t j = 0; j < out.height; ++j) {
-    const unsigned char* row = job.rows[j];
-    for (std::size_t i = 0; i < per_row; ++i) {
-      float& to = out.samples[j * per_row + i];
-      if (job.depth == 16) {
-        std::uint16_t value = 0;
-        std::memcpy(&value, row + 2 * i, sizeof value);
-        to = static_cast<float>(value) / 65535.0F;
-      } else {
-        to = static_cast<float>(row[i]) / 255.0F;
-      }
+  if (job.passes > 1) job.rows_kept = out.height;
+  // From calloc, so that rows that the file does not hold take no memory.
+  job.rows.reset(static_cast<unsigned char*>(std::calloc(job.rows_kept, job.row_bytes)));
+  if (!job.rows) throw std::bad_alloc();
+  for (int pass = 0; pass < job.passes; ++pass) {
+    for (std::size_t j = 0; j < out.height; ++j) {
+      watch.ask();
+      if (!read_row(job, j)) return damaged();
+      if (pass + 1 == job.passes) append_samples(job, j, out);
     }
   }
+  if (!read_end(job)) return damaged();
   return sized;
 }
 

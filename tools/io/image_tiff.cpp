@@ -1,5 +1,7 @@
-// TIFF through libtiff: grey and colour of 8 and 16 bits and float32, in strips or tiles, whatever the compression.
+// TIFF through libtiff: the first image of the file, grey or colour, of 8 or 16 bits or float32, in strips or tiles,
+// uncompressed or by LZW, Deflate or PackBits.
 #include <algorithm>
+#include <array>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -20,13 +22,14 @@ constexpr tmsize_t max_single_allocation = tmsize_t{512} << 20;
 /// The file in memory, as libtiff wants to see it.
 struct tiff_memory {
   std::string_view bytes;
+  const reading_watch& watch;
   toff_t at = 0;
   std::string reason;
 
   static tiff_memory& of(thandle_t handle) { return *static_cast<tiff_memory*>(handle); }
   static tmsize_t read(thandle_t handle, void* to, tmsize_t count) {
     tiff_memory& m = of(handle);
-    if (count <= 0 || m.at >= m.bytes.size()) return 0;
+    if (count <= 0 || m.at >= m.bytes.size() || !m.watch.goes_on()) return 0;
     const auto n = std::min<std::size_t>(static_cast<std::size_t>(count), m.bytes.size() - m.at);
     std::memcpy(to, m.bytes.data() + m.at, n);
     m.at += n;
@@ -72,7 +75,7 @@ tiff_handle open_tiff(tiff_memory& memory) {
 struct tiff_layout {
   std::uint32_t width = 0, height = 0;
   std::uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG,
-                photometric = PHOTOMETRIC_MINISBLACK;
+                photometric = PHOTOMETRIC_MINISBLACK, compression = COMPRESSION_NONE;
 };
 
 tiff_layout layout_of(TIFF* tiff) {
@@ -84,11 +87,19 @@ tiff_layout layout_of(TIFF* tiff) {
   (void)TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &out.format);
   (void)TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &out.planar);
   (void)TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &out.photometric);
+  (void)TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &out.compression);
   return out;
 }
 
 /// What of the layout this reader does not know, or nothing.
 std::string unknown_in(const tiff_layout& l) {
+  // Without loss, and by decoders that every build of libtiff has and that do one thing.
+  constexpr std::array<std::uint16_t, 5> known{COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
+                                               COMPRESSION_DEFLATE, COMPRESSION_PACKBITS};
+  if (std::ranges::find(known, l.compression) == known.end()) {
+    return "is compressed by TIFF scheme " + std::to_string(l.compression) +
+           "; export it uncompressed, or with LZW, Deflate or PackBits";
+  }
   const bool known_number = (l.format == SAMPLEFORMAT_UINT && (l.bits == 8 || l.bits == 16)) ||
                             (l.format == SAMPLEFORMAT_IEEEFP && l.bits == 32);
   if (!known_number) {
@@ -107,14 +118,18 @@ std::string unknown_in(const tiff_layout& l) {
 /// Small images have tiles larger than themselves, but not of any size: a tile is taken into memory as it is.
 bool has_sensible_tiles(TIFF* tiff, const tiff_layout& l) {
   constexpr std::uint32_t always = 1024;
+  constexpr std::uint64_t most_tile_pixels = std::uint64_t{1}
+                                             << 24;  // decoded at once, without asking whether to go on
   std::uint32_t tile_width = 0, tile_height = 0;
   (void)TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tile_width);
   (void)TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tile_height);
-  return tile_width <= std::max(always, l.width + 15) && tile_height <= std::max(always, l.height + 15);
+  return tile_width <= std::max(always, l.width + 15) && tile_height <= std::max(always, l.height + 15) &&
+         std::uint64_t{tile_width} * tile_height <= most_tile_pixels;
 }
 
 /// Appends `pixels` pixels without what comes after the last channel (alpha).
 void append_pixels(const tiff_layout& l, const unsigned char* from, std::size_t pixels, map_image& to) {
+  reserve_row(to, pixels * to.channels);
   for (std::size_t i = 0; i < pixels; ++i) {
     for (std::size_t c = 0; c < to.channels; ++c) {
       const auto* at = reinterpret_cast<const char*>(from) + (i * l.samples + c) * (l.bits / 8U);
@@ -127,9 +142,10 @@ void append_pixels(const tiff_layout& l, const unsigned char* from, std::size_t 
   }
 }
 
-bool read_strips(TIFF* tiff, const tiff_layout& l, map_image& to) {
+bool read_strips(TIFF* tiff, const tiff_layout& l, const reading_watch& watch, map_image& to) {
   std::vector<unsigned char> row(static_cast<std::size_t>(TIFFScanlineSize64(tiff)));
   for (std::uint32_t j = 0; j < l.height; ++j) {
+    watch.ask();
     if (TIFFReadScanline(tiff, row.data(), j, 0) < 0) return false;
     append_pixels(l, row.data(), l.width, to);
   }
@@ -137,7 +153,7 @@ bool read_strips(TIFF* tiff, const tiff_layout& l, map_image& to) {
 }
 
 /// One row of tiles at a time.
-bool read_tiles(TIFF* tiff, const tiff_layout& l, map_image& to) {
+bool read_tiles(TIFF* tiff, const tiff_layout& l, const reading_watch& watch, map_image& to) {
   std::uint32_t tile_width = 0, tile_height = 0;
   (void)TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &tile_width);
   (void)TIFFGetField(tiff, TIFFTAG_TILELENGTH, &tile_height);
@@ -151,6 +167,7 @@ bool read_tiles(TIFF* tiff, const tiff_layout& l, map_image& to) {
   for (std::uint32_t top = 0; top < l.height; top += tile_height) {
     for (std::size_t k = 0; k < across; ++k) {
       const auto left = static_cast<std::uint32_t>(k * tile_width);
+      watch.ask();
       if (TIFFReadTile(tiff, tile.data(), left, top, 0, 0) < 0) return false;
       for (std::size_t j = 0; j < band_rows; ++j)
         std::memcpy(&band[j * band_row_bytes + left * pixel_bytes], &tile[j * tile_width * pixel_bytes],
@@ -164,9 +181,10 @@ bool read_tiles(TIFF* tiff, const tiff_layout& l, map_image& to) {
 
 }  // namespace
 
-result<map_image> decode_tiff(std::string_view bytes, const std::filesystem::path& file) {
-  tiff_memory memory{bytes, 0, {}};
+result<map_image> decode_tiff(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
+  tiff_memory memory{bytes, watch, 0, {}};
   const auto damaged = [&] {
+    watch.ask();
     return fault(
         error_code::bad_format, file,
         "cannot be read as TIFF: " + plain_reason(memory.reason.empty() ? "its data are inconsistent" : memory.reason) +
@@ -179,10 +197,11 @@ result<map_image> decode_tiff(std::string_view bytes, const std::filesystem::pat
   auto sized = sized_image(l.width, l.height, l.samples >= 3 ? 3 : 1, bytes.size(), most_pixels_per_byte, file);
   if (!sized) return sized.error();
   if (TIFFIsTiled(tiff.get()) != 0 && !has_sensible_tiles(tiff.get(), l))
-    return fault(error_code::bad_format, file, "has tiles far larger than itself; export it again, in strips");
+    return fault(error_code::bad_format, file,
+                 "has tiles far larger than itself, or of more than 16777216 pixels; export it again, in strips");
   sized->bits = l.bits == 32 ? 0 : l.bits;
-  const bool whole =
-      TIFFIsTiled(tiff.get()) != 0 ? read_tiles(tiff.get(), l, *sized) : read_strips(tiff.get(), l, *sized);
+  const bool whole = TIFFIsTiled(tiff.get()) != 0 ? read_tiles(tiff.get(), l, watch, *sized)
+                                                  : read_strips(tiff.get(), l, watch, *sized);
   if (!whole || !memory.reason.empty()) return damaged();
   return finite_image(std::move(*sized), file);
 }

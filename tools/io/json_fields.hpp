@@ -10,18 +10,11 @@
 
 #include "asperity/core/math.hpp"
 #include "asperity/core/status.hpp"
+#include "reading_watch.hpp"
 
 namespace asperity::io {
 
 using json = nlohmann::json;
-
-/// What is wrong with the file under the reader's hands. Never leaves asperity::io.
-struct rejection {
-  error_code code;
-  std::string what;
-};
-
-[[noreturn]] inline void reject(std::string what) { throw rejection{error_code::bad_format, std::move(what)}; }
 
 /// A JSON object and its place in the document, for messages.
 class json_object {

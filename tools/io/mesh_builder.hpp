@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
+#include "asperity/io/mesh_file.hpp"
 #include "asperity/model/triangle_mesh.hpp"
+#include "reading_watch.hpp"
 
 namespace asperity::io {
 
@@ -15,15 +17,33 @@ struct polygon_soup {
   std::vector<vec3> positions;
   std::vector<std::uint32_t> corners;  ///< indices into positions, polygon after polygon
   std::vector<std::uint32_t> ends;     ///< for each polygon, one past its last corner
-  std::vector<vec2> corner_uvs;        ///< empty, or one per corner
+  std::vector<vec2> uvs;
+  std::vector<std::uint32_t> corner_uvs;  ///< indices into uvs: none, or one per corner
 
-  void end_polygon() { ends.push_back(static_cast<std::uint32_t>(corners.size())); }
+  /// Throws rejection where the mesh has become larger than the limits of load_mesh().
+  void end_polygon() {
+    ends.push_back(static_cast<std::uint32_t>(corners.size()));
+    if (corners.size() - 2 * ends.size() > max_mesh_triangles) refuse_triangles();
+  }
+  /// Throws rejection.
+  [[noreturn]] static void refuse_triangles();
 };
+
+/// Throws rejection for more vertices, triangles or corners of one polygon than load_mesh() takes. For counts that a
+/// file announces, before anything is made of them.
+void check_vertex_count(std::uint64_t count);
+void check_triangle_count(std::uint64_t count);
+void check_corner_count(std::uint64_t count);
 
 /// Welds vertices at bit-equal positions, splits polygons, leaves out vertices that no triangle uses.
 /// Quads and concave polygons are split without folding over.
-/// @return bad_format where there is no triangle; limit_exceeded for a concave polygon of more than 256 corners
-[[nodiscard]] result<triangle_mesh> build_mesh(polygon_soup&& soup, const std::filesystem::path& file);
+/// @return bad_format where there is no triangle; limit_exceeded for a concave polygon that is too tangled to be split
+///         in a time that grows with its corners
+[[nodiscard]] result<triangle_mesh> build_mesh(polygon_soup&& soup, const std::filesystem::path& file,
+                                               reading_watch& watch);
+
+/// How a mesh is mended whose fault says nothing else.
+inline constexpr const char* mesh_mend = "export the mesh again";
 
 /// Largest index or count that fits the soup.
 inline constexpr std::uint64_t max_soup_index = 0xfffffffe;

@@ -22,7 +22,7 @@ bool fits_float32(const vec3& p) { return round_to_float32(p) == p; }
 
 }  // namespace
 
-result<triangle_mesh> load_mesh(const std::filesystem::path& file) {
+result<triangle_mesh> load_mesh(const std::filesystem::path& file, const std::function<bool()>& keep_going) {
   return without_exceptions(file, [&]() -> result<triangle_mesh> {
     if (const auto regular = check_regular_file(file); !regular) return regular.error();
     const std::string extension = lower_case_extension(file);
@@ -35,9 +35,10 @@ result<triangle_mesh> load_mesh(const std::filesystem::path& file) {
       return fault(error_code::unsupported, file,
                    "has an unknown extension '" + extension + "'; use .ply, .obj, .stl, .gltf or .glb");
     }
-    const auto bytes = read_file(file, max_mesh_bytes);
+    const reading_watch watch(keep_going);
+    const auto bytes = read_file(file, max_mesh_bytes, watch);
     if (!bytes) return bytes.error();
-    return reader(*bytes, file);
+    return reader(*bytes, file, watch);
   });
 }
 

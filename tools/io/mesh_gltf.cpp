@@ -16,7 +16,6 @@ namespace {
 
 /// Limits for triangles and for vertices. A scene can place one mesh many times over, so the file's size bounds
 /// neither.
-constexpr std::size_t max_triangles = 8'000'000;  // as many as a bake takes
 constexpr std::size_t max_vertices = 8'000'000;
 
 glm::dmat4 local_transform(const tinygltf::Node& node) {
@@ -83,7 +82,7 @@ void check_size(const tinygltf::Model& model, const std::vector<placed_mesh>& sc
       const int positions = primitive.attributes.at("POSITION");
       vertices += count(positions);
       corners += count(primitive.indices < 0 ? positions : primitive.indices);
-      if (corners / 3 > max_triangles || vertices > max_vertices) {  // checked at each step: no sum can wrap round
+      if (corners / 3 > max_mesh_triangles || vertices > max_vertices) {  // checked at each step: no sum can wrap round
         throw rejection{error_code::limit_exceeded, "places more than 8 million triangles or vertices in its scene"};
       }
     }
@@ -91,7 +90,7 @@ void check_size(const tinygltf::Model& model, const std::vector<placed_mesh>& sc
 }
 
 void add_primitive(const gltf_document& document, const tinygltf::Primitive& primitive, const std::string& place,
-                   const glm::dmat4& transform, polygon_soup& soup, bool& all_have_uvs) {
+                   const glm::dmat4& transform, polygon_soup& soup, bool& all_have_uvs, reading_watch& watch) {
   if (primitive.mode == TINYGLTF_MODE_POINTS || primitive.mode == TINYGLTF_MODE_LINE ||
       primitive.mode == TINYGLTF_MODE_LINE_LOOP || primitive.mode == TINYGLTF_MODE_LINE_STRIP) {
     return;  // no surface
@@ -113,15 +112,19 @@ void add_primitive(const gltf_document& document, const tinygltf::Primitive& pri
 
   const auto first = static_cast<std::uint32_t>(soup.positions.size());
   for (const vec3& p : positions) {
+    watch.step();
     soup.positions.emplace_back(transform * glm::dvec4(p, 1.0));
     if (!is_finite(soup.positions.back())) reject(place + " is moved beyond all numbers by its node");
   }
   // A mirroring transform turns triangles inside out; glTF says that their winding turns with it.
   const bool mirrored = glm::determinant(glm::dmat3(transform)) < 0.0;
+  const auto first_uv = static_cast<std::uint32_t>(soup.uvs.size());
+  soup.uvs.insert(soup.uvs.end(), uvs.begin(), uvs.end());
   for (std::size_t t = 0; t < indices.size(); t += 3) {
+    watch.step();
     for (const std::size_t k : mirrored ? std::array<std::size_t, 3>{0, 2, 1} : std::array<std::size_t, 3>{0, 1, 2}) {
       soup.corners.push_back(first + indices[t + k]);
-      if (all_have_uvs) soup.corner_uvs.push_back(uvs[indices[t + k]]);
+      if (all_have_uvs) soup.corner_uvs.push_back(first_uv + indices[t + k]);
     }
     soup.end_polygon();
   }
@@ -129,10 +132,10 @@ void add_primitive(const gltf_document& document, const tinygltf::Primitive& pri
 
 }  // namespace
 
-result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file) {
-  polygon_soup soup;
-  try {
-    const gltf_document document(bytes, file, buffer_policy::own_folder);
+result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file, reading_watch watch) {
+  return refusing(file, mesh_mend, [&] {
+    polygon_soup soup;
+    const gltf_document document(bytes, file, buffer_policy::own_folder, watch);
     const tinygltf::Model& model = document.geometry();
     bool all_have_uvs = true;
     const std::vector<placed_mesh> scene = placed_meshes(model);
@@ -141,14 +144,12 @@ result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::p
       const auto& primitives = model.meshes[static_cast<std::size_t>(placed.mesh)].primitives;
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         const std::string place = "meshes[" + std::to_string(placed.mesh) + "].primitives[" + std::to_string(p) + "]";
-        add_primitive(document, primitives[p], place, placed.transform, soup, all_have_uvs);
+        add_primitive(document, primitives[p], place, placed.transform, soup, all_have_uvs, watch);
       }
     }
-    if (!all_have_uvs) soup.corner_uvs.clear();
-  } catch (const rejection& r) {
-    return fault(r.code, file, with_mend(r.what, "export the mesh again"));
-  }
-  return build_mesh(std::move(soup), file);
+    if (!all_have_uvs) soup.corner_uvs = {};
+    return build_mesh(std::move(soup), file, watch);
+  });
 }
 
 }  // namespace asperity::io

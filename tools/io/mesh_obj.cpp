@@ -10,9 +10,12 @@
 namespace asperity::io {
 namespace {
 
+constexpr std::size_t max_uvs = 3 * max_mesh_triangles;
+
 class obj_reader {
  public:
-  obj_reader(std::string_view bytes, const std::filesystem::path& file) : cursor_(bytes), file_(file) {}
+  obj_reader(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch)
+      : cursor_(bytes, watch), file_(file), watch_(watch) {}
 
   result<triangle_mesh> read() {
     do {
@@ -26,8 +29,9 @@ class obj_reader {
     } while (cursor_.next_line());
     if (!check_indices()) return fault(error_code::bad_format, file_, line_ + " " + what_ + "; export the mesh again");
     // A mesh of which only some faces have texture coordinates has none that a bake could use.
-    if (corners_with_uv_ == soup_.corners.size()) collect_uvs();
-    return build_mesh(std::move(soup_), file_);
+    if (corners_with_uv_ != soup_.corners.size()) soup_.corner_uvs = {};
+    lines_ = {};
+    return build_mesh(std::move(soup_), file_, watch_);
   }
 
  private:
@@ -44,6 +48,7 @@ class obj_reader {
       if (!to_number(word, p[axis])) return bad("needs three numbers after v, but has " + in_quotes(word));
     }
     if (!is_finite(p)) return bad("has a coordinate that is not finite");
+    if (soup_.positions.size() == max_mesh_vertices) check_vertex_count(max_mesh_vertices + 1);
     soup_.positions.push_back(p);
     return true;
   }
@@ -54,7 +59,12 @@ class obj_reader {
     const std::string_view v = cursor_.word();
     const bool good = to_number(u, uv.x) && (v.empty() || to_number(v, uv.y));
     if (!good || !std::isfinite(uv.x) || !std::isfinite(uv.y)) return bad("needs finite numbers after vt");
-    uvs_.emplace_back(uv.x, 1.0 - uv.y);  // OBJ counts v from the image's last row, glTF from its first
+    if (soup_.uvs.size() == max_uvs) {
+      throw rejection{error_code::limit_exceeded, "has more than the " + std::to_string(max_uvs) +
+                                                      " texture coordinates of the largest mesh; " +
+                                                      "decimate it first"};
+    }
+    soup_.uvs.emplace_back(uv.x, 1.0 - uv.y);  // OBJ counts v from the image's last row, glTF from its first
     return true;
   }
 
@@ -83,13 +93,13 @@ class obj_reader {
         const std::string_view rest = word.substr(slash + 1);
         const std::string_view uv_word = rest.substr(0, rest.find('/'));
         if (!uv_word.empty()) {
-          if (!resolve(uv_word, uvs_.size(), uv)) return false;
+          if (!resolve(uv_word, soup_.uvs.size(), uv)) return false;
           ++corners_with_uv_;
         }
       }
       soup_.corners.push_back(vertex);
-      uv_indices_.push_back(uv);
-      ++count;
+      soup_.corner_uvs.push_back(uv);
+      check_corner_count(++count);
     }
     if (count < 3) return bad("has a face of " + std::to_string(count) + " corners, fewer than 3");
     soup_.end_polygon();
@@ -104,9 +114,9 @@ class obj_reader {
     for (std::size_t k = 0; k < soup_.ends.size(); ++k) {
       for (; corner < soup_.ends[k]; ++corner) {
         const bool vertex = soup_.corners[corner] < soup_.positions.size();
-        if (vertex && (!with_uvs || uv_indices_[corner] < uvs_.size())) continue;
-        bad(vertex ? "names texture coordinate " + std::to_string(uv_indices_[corner] + std::uint64_t{1}) + " of " +
-                         std::to_string(uvs_.size())
+        if (vertex && (!with_uvs || soup_.corner_uvs[corner] < soup_.uvs.size())) continue;
+        bad(vertex ? "names texture coordinate " + std::to_string(soup_.corner_uvs[corner] + std::uint64_t{1}) +
+                         " of " + std::to_string(soup_.uvs.size())
                    : "names vertex " + std::to_string(soup_.corners[corner] + std::uint64_t{1}) + " of " +
                          std::to_string(soup_.positions.size()));
         line_ = "line " + std::to_string(lines_[k]);
@@ -116,17 +126,11 @@ class obj_reader {
     return true;
   }
 
-  void collect_uvs() {
-    soup_.corner_uvs.reserve(uv_indices_.size());
-    for (const std::uint32_t i : uv_indices_) soup_.corner_uvs.push_back(uvs_[i]);
-  }
-
   text_cursor cursor_;
   const std::filesystem::path& file_;
-  polygon_soup soup_;
-  std::vector<vec2> uvs_;
-  std::vector<std::uint32_t> uv_indices_;  // one per corner
-  std::vector<std::uint32_t> lines_;       // one per face
+  reading_watch& watch_;
+  polygon_soup soup_;                 // while it is read, with a texture coordinate for every corner, given or not
+  std::vector<std::uint32_t> lines_;  // one per face
   std::size_t corners_with_uv_ = 0;
   std::string line_;
   std::string what_;
@@ -134,8 +138,8 @@ class obj_reader {
 
 }  // namespace
 
-result<triangle_mesh> read_obj(std::string_view bytes, const std::filesystem::path& file) {
-  return obj_reader(bytes, file).read();
+result<triangle_mesh> read_obj(std::string_view bytes, const std::filesystem::path& file, reading_watch watch) {
+  return refusing(file, mesh_mend, [&] { return obj_reader(bytes, file, watch).read(); });
 }
 
 }  // namespace asperity::io

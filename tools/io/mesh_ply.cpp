@@ -78,8 +78,8 @@ role role_of(std::string_view element_name, std::string_view name, bool list) {
 
 class header_reader {
  public:
-  header_reader(std::string_view bytes, const std::filesystem::path& file)
-      : bytes_(bytes), cursor_(bytes), file_(file) {}
+  header_reader(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch)
+      : bytes_(bytes), cursor_(bytes, watch), file_(file) {}
 
   result<ply_header> read() {
     if (cursor_.word() != "ply" || !cursor_.next_line()) return bad("is not 'ply', so this is no PLY file");
@@ -170,7 +170,7 @@ class header_reader {
 /// Numbers of an ascii body.
 class ascii_source {
  public:
-  ascii_source(std::string_view body, std::size_t line) : cursor_(body, line) {}
+  ascii_source(std::string_view body, std::size_t line, reading_watch& watch) : cursor_(body, watch, line) {}
 
   bool number(scalar, double& value) {
     const std::string_view word = cursor_.word_anywhere();
@@ -252,7 +252,8 @@ class binary_source {
 template <class Source>
 class body_reader {
  public:
-  body_reader(Source source, const std::filesystem::path& file) : source_(std::move(source)), file_(file) {}
+  body_reader(Source source, const std::filesystem::path& file, reading_watch& watch)
+      : source_(std::move(source)), file_(file), watch_(watch) {}
 
   result<triangle_mesh> read(const ply_header& header) {
     for (const element& e : header.elements) {
@@ -276,7 +277,7 @@ class body_reader {
         }
       }
     }
-    return build_mesh(std::move(soup_), file_);
+    return build_mesh(std::move(soup_), file_, watch_);
   }
 
  private:
@@ -289,8 +290,12 @@ class body_reader {
     std::size_t least = 0;
     for (const property& p : e.properties) least += Source::least_bytes(p.list_count.value_or(p.type));
     if (e.count > source_.left() / least || e.count > max_soup_index) return false;
-    if (e.has(role::x)) soup_.positions.reserve(static_cast<std::size_t>(e.count));
+    if (e.has(role::x)) {
+      check_vertex_count(e.count);
+      soup_.positions.reserve(static_cast<std::size_t>(e.count));
+    }
     if (e.has(role::corners)) {
+      check_triangle_count(e.count);
       soup_.ends.reserve(static_cast<std::size_t>(e.count));
       soup_.corners.reserve(static_cast<std::size_t>(e.count) * 3);
     }
@@ -303,6 +308,7 @@ class body_reader {
   }
 
   bool number(scalar type, double& value) {
+    watch_.step();
     if (source_.number(type, value)) return true;
     what_ = source_.cut_off() ? "is the end of the file within an element" : "holds something that is not a number";
     return false;
@@ -341,6 +347,7 @@ class body_reader {
       what_ = "begins a face of " + std::to_string(n) + " corners, fewer than 3";
       return false;
     }
+    if (q.meaning == role::corners) check_corner_count(n);
     for (std::size_t i = 0; i < n; ++i) {
       double value = 0.0;
       if (!number(q.type, value)) return false;
@@ -357,6 +364,7 @@ class body_reader {
 
   Source source_;
   const std::filesystem::path& file_;
+  reading_watch& watch_;
   polygon_soup soup_;
   std::uint64_t index_ = 0;
   std::string what_;
@@ -387,15 +395,17 @@ std::optional<error> check_elements(const ply_header& header, const std::filesys
 
 }  // namespace
 
-result<triangle_mesh> read_ply(std::string_view bytes, const std::filesystem::path& file) {
-  const auto header = header_reader(bytes, file).read();
-  if (!header) return header.error();
-  if (auto e = check_elements(*header, file)) return *e;
-  const std::string_view body = bytes.substr(header->bytes);
-  if (header->format == encoding::ascii) {
-    return body_reader(ascii_source(body, header->lines), file).read(*header);
-  }
-  return body_reader(binary_source(body, header->bytes, header->format == encoding::big), file).read(*header);
+result<triangle_mesh> read_ply(std::string_view bytes, const std::filesystem::path& file, reading_watch watch) {
+  return refusing(file, mesh_mend, [&]() -> result<triangle_mesh> {
+    const auto header = header_reader(bytes, file, watch).read();
+    if (!header) return header.error();
+    if (auto e = check_elements(*header, file)) return *e;
+    const std::string_view body = bytes.substr(header->bytes);
+    if (header->format == encoding::ascii) {
+      return body_reader(ascii_source(body, header->lines, watch), file, watch).read(*header);
+    }
+    return body_reader(binary_source(body, header->bytes, header->format == encoding::big), file, watch).read(*header);
+  });
 }
 
 }  // namespace asperity::io

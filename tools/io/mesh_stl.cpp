@@ -25,13 +25,15 @@ void add_triangle_corner(polygon_soup& soup, const vec3& p) {
   soup.positions.push_back(p);
 }
 
-result<triangle_mesh> read_binary(std::string_view bytes, const std::filesystem::path& file) {
+result<triangle_mesh> read_binary(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
   polygon_soup soup;
   const std::size_t count = (bytes.size() - stl_header_bytes) / facet_bytes;
+  check_triangle_count(count);
   soup.positions.reserve(3 * count);
   soup.corners.reserve(3 * count);
   soup.ends.reserve(count);
   for (std::size_t f = 0; f < count; ++f) {
+    watch.step();
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const std::size_t offset = stl_header_bytes + f * facet_bytes + 12 + 12 * corner;
       const char* at = bytes.data() + offset;
@@ -45,12 +47,13 @@ result<triangle_mesh> read_binary(std::string_view bytes, const std::filesystem:
     }
     soup.end_polygon();
   }
-  return build_mesh(std::move(soup), file);
+  return build_mesh(std::move(soup), file, watch);
 }
 
 class ascii_reader {
  public:
-  ascii_reader(std::string_view bytes, const std::filesystem::path& file) : cursor_(bytes), file_(file) {}
+  ascii_reader(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch)
+      : cursor_(bytes, watch), file_(file), watch_(watch) {}
 
   result<triangle_mesh> read() {
     bool closed = false;
@@ -65,7 +68,7 @@ class ascii_reader {
       }
     }
     if (!closed) return bad("ends without 'endsolid', so the file is cut off");
-    return build_mesh(std::move(soup_), file_);
+    return build_mesh(std::move(soup_), file_, watch_);
   }
 
  private:
@@ -108,22 +111,22 @@ class ascii_reader {
 
   text_cursor cursor_;
   const std::filesystem::path& file_;
+  reading_watch& watch_;
   polygon_soup soup_;
   std::string what_;
 };
 
-}  // namespace
-
-result<triangle_mesh> read_stl(std::string_view bytes, const std::filesystem::path& file) {
+result<triangle_mesh> read_either(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
   const std::size_t announced = bytes.size() < stl_header_bytes ? 0 : load_number<std::uint32_t>(bytes.data() + 80);
   if (bytes.size() >= stl_header_bytes && bytes.size() - stl_header_bytes == announced * facet_bytes) {
-    return read_binary(bytes, file);
+    return read_binary(bytes, file, watch);
   }
-  text_cursor cursor(bytes);
+  text_cursor cursor(bytes, watch);
   const bool solid = is_keyword(cursor.word_anywhere(), "solid");
   cursor.next_line();
   const std::string_view second = cursor.word_anywhere();
-  if (solid && (is_keyword(second, "facet") || is_keyword(second, "endsolid"))) return ascii_reader(bytes, file).read();
+  if (solid && (is_keyword(second, "facet") || is_keyword(second, "endsolid")))
+    return ascii_reader(bytes, file, watch).read();
   if (bytes.size() < stl_header_bytes) {
     return fault(error_code::bad_format, file,
                  "has " + std::to_string(bytes.size()) +
@@ -133,6 +136,12 @@ result<triangle_mesh> read_stl(std::string_view bytes, const std::filesystem::pa
                "byte 80 announces " + std::to_string(announced) + " triangles, which take " +
                    std::to_string(stl_header_bytes + announced * facet_bytes) + " bytes, but the file has " +
                    std::to_string(bytes.size()) + "; export the mesh again");
+}
+
+}  // namespace
+
+result<triangle_mesh> read_stl(std::string_view bytes, const std::filesystem::path& file, reading_watch watch) {
+  return refusing(file, mesh_mend, [&] { return read_either(bytes, file, watch); });
 }
 
 }  // namespace asperity::io

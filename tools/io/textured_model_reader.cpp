@@ -250,32 +250,33 @@ bounds bounds_of(const std::vector<vec3>& positions) {
   return box;
 }
 
-result<textured_model> read_checked(std::string_view bytes, const std::filesystem::path& file) {
-  textured_model model;
-  try {
-    model = read_model(gltf_document(bytes, file, buffer_policy::own_chunk_only));
-  } catch (const rejection& r) {
-    return fault(r.code, file, with_mend(r.what, "bake the model again"));
+result<textured_model> read_checked(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
+  static constexpr const char* mend = "bake the model again";
+  result<textured_model> read = refusing(file, mend, [&]() -> result<textured_model> {
+    return read_model(gltf_document(bytes, file, buffer_policy::own_chunk_only, watch));
+  });
+  if (!read) return read;
+  if (const auto valid = validate(*read); !valid) {
+    return fault(valid.error().code, file, with_mend(valid.error().message, mend));
   }
-  if (const auto valid = validate(model); !valid) {
-    return fault(valid.error().code, file, with_mend(valid.error().message, "bake the model again"));
-  }
-  model.mass = compute_mass_properties(model.mesh);
-  model.box = bounds_of(model.mesh.positions);
-  return model;
+  read->mass = compute_mass_properties(read->mesh);
+  read->box = bounds_of(read->mesh.positions);
+  return read;
 }
 
 }  // namespace
 
-result<textured_model> read_textured_model(std::string_view bytes, const std::filesystem::path& file) {
-  return without_exceptions(file, [&] { return read_checked(bytes, file); });
+result<textured_model> read_textured_model(std::string_view bytes, const std::filesystem::path& file,
+                                           reading_watch watch) {
+  return without_exceptions(file, [&] { return read_checked(bytes, file, watch); });
 }
 
-result<textured_model> load_textured_model(const std::filesystem::path& file) {
+result<textured_model> load_textured_model(const std::filesystem::path& file, const std::function<bool()>& keep_going) {
   return without_exceptions(file, [&]() -> result<textured_model> {
-    const auto bytes = read_file(file, max_model_bytes);
+    reading_watch watch(keep_going);
+    const auto bytes = read_file(file, max_model_bytes, watch);
     if (!bytes) return bytes.error();
-    return read_checked(*bytes, file);
+    return read_checked(*bytes, file, watch);
   });
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <unistd.h>
 
+#include "asperity/core/printable.hpp"
 #include "document.hpp"
 #include "kit.hpp"
 #include "own_process.hpp"
@@ -13,7 +14,8 @@ namespace {
 namespace kit = asperity::conformance;
 
 void print(const kit::report& r, bool as_json) {
-  const std::string text = as_json ? kit::to_json(r) : kit::to_text(r);
+  // A driver's names and reasons are its vendor's text: none of it reaches the terminal's controls.
+  const std::string text = as_json ? kit::to_json(r) : asperity::printable(kit::to_text(r), '\n');
   std::fwrite(text.data(), 1, text.size(), stdout);
   std::fflush(stdout);
 }
@@ -45,7 +47,9 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "%s\nRun with --help for more information.\n", asperity::printable(e.what()).c_str());
+    return 2;
   }
   if (!device.empty()) options.device = device;
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -13,6 +14,9 @@
 #include <tinyxml2.h>
 #include <utility>
 
+#include "asperity/core/printable.hpp"
+#include "xml_extent.hpp"
+
 namespace asperity {
 namespace {
 
@@ -20,8 +24,22 @@ using tinyxml2::XMLElement;
 constexpr std::size_t longest_text = std::size_t{16} << 20;
 constexpr std::size_t most_links = 1000;
 
+// Beyond these a number describes no arm that a hand could hold, but a slip of the unit or of the exponent.
+constexpr double longest_m = 10.0;
+constexpr double heaviest_kg = 1000.0;
+constexpr double most_effort_n_m = 1000.0;
+constexpr double most_speed_rad_per_s = 100.0;
+constexpr double most_turn_rad = 100.0;
+constexpr double most_axis = 1e6;  // an axis has a direction; its length says nothing
+
 error wrong(const XMLElement* at, const std::string& what) {
   return {error_code::bad_format, "URDF, line " + std::to_string(at->GetLineNum()) + ": " + what};
+}
+
+/// A word of the document as it may stand in a message.
+std::string shown(std::string_view word) {
+  constexpr std::size_t longest = 60;
+  return printable(word.substr(0, longest)) + (word.size() > longest ? "..." : "");
 }
 
 std::string name_of(const XMLElement* e) {
@@ -59,17 +77,56 @@ result<std::array<double, N>> attribute(const XMLElement* e, const char* name,
     return wrong(e, std::string("<") + e->Name() + "> has no " + name);
   }
   if (const auto n = numbers<N>(text)) return *n;
-  return wrong(
-      e, std::string(name) + "=\"" + text + "\" is not " + std::to_string(N) + " finite number" + (N == 1 ? "" : "s"));
+  return wrong(e, std::string(name) + "=\"" + shown(text) + "\" is not " + std::to_string(N) + " finite number" +
+                      (N == 1 ? "" : "s"));
 }
 
-result<pose> origin_of(const XMLElement* parent) {
+std::string brief(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%g", value);
+  return text.data();
+}
+
+/// The attribute's numbers, each from `least` to `most`. @param whose for the message, as in "joint elbow"
+template <std::size_t N>
+result<std::array<double, N>> attribute_within(const XMLElement* e, const char* name, const std::string& whose,
+                                               double least, double most, const char* unit,
+                                               std::optional<std::array<double, N>> otherwise) {
+  auto all = attribute<N>(e, name, otherwise);
+  if (!all) return all;
+  for (const double x : *all) {
+    if (x >= least && x <= most) continue;
+    return wrong(e, std::string(name) + "=\"" + shown(e->Attribute(name)) + "\" of " + whose + " holds " + brief(x) +
+                        ", outside " + brief(least) + " to " + brief(most) + " " + unit + ": correct it");
+  }
+  return all;
+}
+
+/// Whether a symmetric matrix has no negative principal value, but for rounding in the document.
+bool is_semidefinite(mat3 a, double tolerance) {
+  for (int i = 0; i < 3; ++i) a[i][i] += tolerance;
+  return a[0][0] >= 0.0 && a[0][0] * a[1][1] - a[0][1] * a[1][0] >= 0.0 && glm::determinant(a) >= 0.0;
+}
+
+/// What no body has as its inertia about its centre of mass, or nothing. Points and rods have moments of zero.
+const char* fault_of_inertia(const mat3& inertia) {
+  const double trace = inertia[0][0] + inertia[1][1] + inertia[2][2];
+  if (inertia == mat3(0.0)) return nullptr;
+  const double tolerance = 1e-4 * trace;  // documents are written with few digits
+  if (!(trace > 0.0) || !is_semidefinite(inertia, tolerance)) return "is not positive definite";
+  // Of the principal moments none is above the sum of the other two: the second moments of mass are not negative.
+  if (!is_semidefinite(mat3(0.5 * trace) - inertia, tolerance)) return "breaks the triangle inequality";
+  return nullptr;
+}
+
+/// @param whose for messages, as in "joint elbow"
+result<pose> origin_of(const XMLElement* parent, const std::string& whose) {
   const XMLElement* e = parent->FirstChildElement("origin");
   if (e == nullptr) return pose{};
   const std::array<double, 3> zero{};
-  const auto xyz = attribute<3>(e, "xyz", zero);
+  const auto xyz = attribute_within<3>(e, "xyz", whose, -longest_m, longest_m, "m", zero);
   if (!xyz) return xyz.error();
-  const auto rpy = attribute<3>(e, "rpy", zero);
+  const auto rpy = attribute_within<3>(e, "rpy", whose, -most_turn_rad, most_turn_rad, "rad", zero);
   if (!rpy) return rpy.error();
   const auto& [roll, pitch, yaw] = *rpy;
   // About the fixed axes x, y, z in this order.
@@ -80,23 +137,30 @@ result<pose> origin_of(const XMLElement* parent) {
 result<link_mass> mass_of(const XMLElement* link) {
   const XMLElement* e = link->FirstChildElement("inertial");
   if (e == nullptr) return link_mass{};
-  const result<pose> at = origin_of(e);
+  const std::string whose = "the <inertial> of link " + shown(name_of(link));
+  const result<pose> at = origin_of(e, whose);
   if (!at) return at.error();
   const XMLElement* m = e->FirstChildElement("mass");
   const XMLElement* i = e->FirstChildElement("inertia");
   if (m == nullptr || i == nullptr) return wrong(e, "<inertial> needs <mass> and <inertia>");
-  const auto mass = attribute<1>(m, "value", std::nullopt);
+  if (const auto sign = attribute<1>(m, "value", std::nullopt); sign && (*sign)[0] < 0.0) {
+    return wrong(m, "the mass of link " + shown(name_of(link)) + " is negative");
+  }
+  const auto mass = attribute_within<1>(m, "value", whose, 0.0, heaviest_kg, "kg", std::nullopt);
   if (!mass) return mass.error();
-  if ((*mass)[0] < 0.0) return wrong(m, "the mass is negative");
+  const double most_inertia = heaviest_kg * longest_m * longest_m;
   std::array<double, 6> t{};
   const char* const names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
   for (std::size_t k = 0; k < 6; ++k) {
-    const auto x =
-        attribute<1>(i, names[k], k == 1 || k == 2 || k == 4 ? std::optional(std::array{0.0}) : std::nullopt);
+    const auto x = attribute_within<1>(i, names[k], whose, -most_inertia, most_inertia, "kg m^2",
+                                       k == 1 || k == 2 || k == 4 ? std::optional(std::array{0.0}) : std::nullopt);
     if (!x) return x.error();
     t[k] = (*x)[0];
   }
   const mat3 inertia{t[0], t[1], t[2], t[1], t[3], t[4], t[2], t[4], t[5]};
+  if (const char* why = fault_of_inertia(inertia)) {
+    return wrong(i, "the inertia of link " + shown(name_of(link)) + " " + why + ", as no body's does: correct it");
+  }
   const mat3 r = glm::mat3_cast(at->rotation);
   return link_mass{(*mass)[0], at->position, r * inertia * glm::transpose(r)};
 }
@@ -121,7 +185,7 @@ result<robot> index(const XMLElement* root) {
   for (const XMLElement* e = root->FirstChildElement("link"); e != nullptr; e = e->NextSiblingElement("link")) {
     if (name_of(e).empty()) return wrong(e, "a link has no name");
     if (r.links.size() == most_links) return wrong(e, "the robot has more than 1000 links");
-    if (!r.links.emplace(name_of(e), e).second) return wrong(e, "there are two links of the name " + name_of(e));
+    if (!r.links.emplace(name_of(e), e).second) return wrong(e, "there are two links of the name " + shown(name_of(e)));
   }
   for (const XMLElement* e = root->FirstChildElement("joint"); e != nullptr; e = e->NextSiblingElement("joint")) {
     joint_entry j;
@@ -139,13 +203,13 @@ result<robot> index(const XMLElement* root) {
     j.parent = parent_link;
     j.child = child_link;
     if (!r.links.contains(j.parent) || !r.links.contains(j.child)) {
-      return wrong(e, "joint " + j.name + " joins a link that is not there");
+      return wrong(e, "joint " + shown(j.name) + " joins a link that is not there");
     }
-    const result<pose> at = origin_of(e);
+    const result<pose> at = origin_of(e, "joint " + shown(j.name));
     if (!at) return at.error();
     j.T_parent = *at;
     if (!r.joint_to.emplace(j.child, r.joints.size()).second) {
-      return wrong(e, "link " + j.child + " has two parents: an arm is a tree");
+      return wrong(e, "link " + shown(j.child) + " has two parents: an arm is a tree");
     }
     r.joints.push_back(std::move(j));
   }
@@ -165,16 +229,17 @@ result<void> add_fixed(const robot& r, const std::string& link, const pose& T, c
   while (!open.empty()) {
     const hung_link at = open.back();
     open.pop_back();
-    if (++seen > r.links.size()) return wrong(r.links.at(link), "link " + link + " hangs on itself");
     const result<link_mass> own = mass_of(r.links.at(at.name));
     if (!own) return own.error();
     if (at.moved_by == nullptr) {
       sum.add(*own, at.T);
     } else if (own->mass_kg > 0.0) {
-      return wrong(at.moved_by->element, "joint " + at.moved_by->name +
+      return wrong(at.moved_by->element, "joint " + shown(at.moved_by->name) +
                                              " moves a mass beside the chain, which the arm could not hold: fix it, or "
                                              "take another handle_link");
     }
+    // A link has one parent: only the first can be met twice.
+    if (seen++ > 0 && at.name == link) return wrong(r.links.at(link), "link " + shown(link) + " hangs on itself");
     for (const joint_entry& j : r.joints) {
       if (j.parent != at.name || j.child == next_in_chain) continue;
       const joint_entry* moved_by = at.moved_by != nullptr || j.type == "fixed" ? at.moved_by : &j;
@@ -186,45 +251,47 @@ result<void> add_fixed(const robot& r, const std::string& link, const pose& T, c
 
 result<chain_joint> joint_of(const joint_entry& j, const pose& before, const urdf_chain& which, double& speed) {
   if (j.element->FirstChildElement("mimic") != nullptr) {
-    return wrong(j.element, "joint " + j.name + " mimics another; each joint of the chain needs a motor of its own");
+    return wrong(j.element,
+                 "joint " + shown(j.name) + " mimics another; each joint of the chain needs a motor of its own");
   }
   if (j.type != "revolute" && j.type != "continuous") {
-    return wrong(j.element, "joint " + j.name + " is of type " + j.type +
+    return wrong(j.element, "joint " + shown(j.name) + " is of type " + shown(j.type) +
                                 "; a chain has revolute, continuous and fixed "
                                 "joints only");
   }
+  const std::string whose = "joint " + shown(j.name);
   chain_joint out;
   out.T_parent = before * j.T_parent;
   out.axis = {1.0, 0.0, 0.0};
   if (const XMLElement* e = j.element->FirstChildElement("axis")) {
-    const auto axis = attribute<3>(e, "xyz", std::nullopt);
+    const auto axis = attribute_within<3>(e, "xyz", whose, -most_axis, most_axis, "of any unit", std::nullopt);
     if (!axis) return axis.error();
     const vec3 a{(*axis)[0], (*axis)[1], (*axis)[2]};
-    if (!(glm::length(a) > 1e-9)) return wrong(e, "the axis of joint " + j.name + " has no direction");
+    if (!(glm::length(a) > 1e-9)) return wrong(e, "the axis of " + whose + " has no direction");
     out.axis = glm::normalize(a);
   }
   out.lower_rad = -which.continuous_range_rad;
   out.upper_rad = which.continuous_range_rad;
   const XMLElement* e = j.element->FirstChildElement("limit");
   if (e == nullptr) {
-    if (j.type == "revolute") return wrong(j.element, "revolute joint " + j.name + " has no <limit>");
+    if (j.type == "revolute") return wrong(j.element, "revolute joint " + shown(j.name) + " has no <limit>");
     return out;
   }
   const std::array<double, 1> zero{};
-  const auto effort = attribute<1>(e, "effort", zero);
+  const auto effort = attribute_within<1>(e, "effort", whose, 0.0, most_effort_n_m, "N m", zero);
   if (!effort) return effort.error();
-  const auto velocity = attribute<1>(e, "velocity", zero);
+  const auto velocity = attribute_within<1>(e, "velocity", whose, 0.0, most_speed_rad_per_s, "rad/s", zero);
   if (!velocity) return velocity.error();
   out.max_torque_n_m = (*effort)[0];
   speed = (*velocity)[0];
   if (j.type == "revolute") {
-    const auto lower = attribute<1>(e, "lower", zero);
+    const auto lower = attribute_within<1>(e, "lower", whose, -most_turn_rad, most_turn_rad, "rad", zero);
     if (!lower) return lower.error();
-    const auto upper = attribute<1>(e, "upper", zero);
+    const auto upper = attribute_within<1>(e, "upper", whose, -most_turn_rad, most_turn_rad, "rad", zero);
     if (!upper) return upper.error();
     out.lower_rad = (*lower)[0];
     out.upper_rad = (*upper)[0];
-    if (!(out.lower_rad < out.upper_rad)) return wrong(e, "the limits of joint " + j.name + " are not in rising order");
+    if (!(out.lower_rad < out.upper_rad)) return wrong(e, "the limits of " + whose + " are not in rising order");
   }
   return out;
 }
@@ -235,6 +302,9 @@ result<urdf_arm> parse_urdf(std::string_view text, const urdf_chain& which) {
   if (text.size() > longest_text) {
     return error{error_code::limit_exceeded, "the URDF is longer than 16 MiB, which no arm's is"};
   }
+  // Before anybody parses: tinyxml2 takes quadratic time for the attributes of one element, and its memory follows
+  // the number of elements and not the bytes.
+  if (const result<void> sane = check_xml_extent(text); !sane) return sane.error();
   tinyxml2::XMLDocument document;
   if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) {
     return error{error_code::bad_format, "the URDF is no XML document, line " +
@@ -249,7 +319,7 @@ result<urdf_arm> parse_urdf(std::string_view text, const urdf_chain& which) {
   if (!robot_or) return robot_or.error();
   const robot& r = *robot_or;
   for (const std::string* link : {&which.base_link, &which.handle_link}) {
-    if (!r.links.contains(*link)) return wrong(root, "the robot has no link \"" + *link + "\"");
+    if (!r.links.contains(*link)) return wrong(root, "the robot has no link \"" + shown(*link) + "\"");
   }
 
   std::vector<std::size_t> way;  // joints from the handle back to the base
@@ -257,7 +327,8 @@ result<urdf_arm> parse_urdf(std::string_view text, const urdf_chain& which) {
   while (link != which.base_link) {
     const auto up = r.joint_to.find(link);
     if (up == r.joint_to.end() || way.size() > r.joints.size()) {
-      return wrong(root, "link \"" + which.handle_link + "\" does not hang on link \"" + which.base_link + "\"");
+      return wrong(
+          root, "link \"" + shown(which.handle_link) + "\" does not hang on link \"" + shown(which.base_link) + "\"");
     }
     way.push_back(up->second);
     link = r.joints[up->second].parent;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 
 #include "asperity/bake/relief.hpp"
 #include "asperity/core/status.hpp"
@@ -17,13 +18,15 @@ struct height_map_settings {
   double scale_m = 1.0;
   map_wrap wrap_u = map_wrap::repeat;
   map_wrap wrap_v = map_wrap::repeat;
+  /// Asked at least ten times a second, on the calling thread; false cancels.
+  std::function<bool()> keep_going = {};
 };
 
 /// The relief of a height or displacement map that lies on a mesh by the mesh's own texture coordinates; these may
 /// overlap, mirror or leave the unit square. Bilinear between pixels. An image with colours is taken where they are
-/// all grey.
-/// @return bad_mesh (no texture coordinates) | bad_texture (colours, not finite) | invalid_argument
-[[nodiscard]] result<relief> height_map_relief(const triangle_mesh& mesh, const map_image& map,
+/// all grey. The relief keeps the image's samples, 4 bytes a pixel: an image that is moved in is not copied.
+/// @return bad_mesh (no texture coordinates) | bad_texture (colours, not finite) | invalid_argument | cancelled
+[[nodiscard]] result<relief> height_map_relief(const triangle_mesh& mesh, map_image map,
                                                const height_map_settings& settings);
 
 /// Tangent-space normal maps: red along increasing u, blue outwards, green along decreasing v (upwards in the image,
@@ -33,6 +36,8 @@ struct normal_map_settings {
   bool green_is_down = false;  ///< DirectX
   map_wrap wrap_u = map_wrap::repeat;
   map_wrap wrap_v = map_wrap::repeat;
+  /// Asked several times a second, on the calling thread; false cancels.
+  std::function<bool()> keep_going = {};
 };
 
 /// How well a normal map could be integrated.
@@ -57,7 +62,8 @@ struct normal_map_relief {
 /// where the map's charts meet, and its mean height is zero on every component of the mesh. A map's slopes hold against
 /// its triangles' planes.
 /// @pre mesh is closed and 2-manifold (check by baking), no triangle without area
-/// @return bad_mesh (no texture coordinates) | bad_texture (grey, not a tangent-space map) | limit_exceeded
+/// @return bad_mesh (no texture coordinates) | bad_texture (grey, not a tangent-space map) | limit_exceeded |
+///         cancelled
 /// @source Frankot and Chellappa 1988 (projection on integrable slopes); Yserentant 1986 (hierarchical basis)
 [[nodiscard]] result<normal_map_relief> integrate_normal_map(const triangle_mesh& mesh, const map_image& map,
                                                              const normal_map_settings& settings);

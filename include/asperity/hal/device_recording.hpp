@@ -1,6 +1,7 @@
 // A device session as bytes: docs/reference/device-recording.md in code. Never inside a tick.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
@@ -8,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +27,7 @@ inline constexpr std::uint8_t block_mark = 0xfe;
 inline constexpr std::size_t longest_name = 256;
 inline constexpr std::uintmax_t largest_file = std::uintmax_t{1} << 30;
 inline constexpr std::size_t most_calls = std::size_t{1} << 23;  // an hour and more at 1 kHz
+inline constexpr std::size_t free_call_bytes = std::size_t{512} << 20;
 inline constexpr std::uint8_t end_mark = 0xff;
 inline constexpr std::uint8_t same_sample = 0x80;  // in the byte of the call: the sample is that of the read before
 
@@ -294,11 +297,14 @@ class recording_encoder {
 }
 
 /// The recording in `bytes`, of at most 8,388,608 calls. Memory grows with the calls that are there, whatever their
-/// number is said to be. Bytes that end before the recording does, as those of a program that was killed, give the
-/// calls up to the last whole block, and `cut` says so.
+/// number is said to be, and takes at most four times the bytes and 512 MiB: a recording of so many short calls that
+/// they would need more is no session. Bytes that end before the recording does, as those of a program that was killed,
+/// give the calls up to the last whole block, and `cut` says so.
+/// @param keep_going asked on the way; false ends the reading
 /// @return bad_format for anything that encode() does not write, and for a cut before the first whole block's end |
-/// limit_exceeded
-[[nodiscard]] inline result<device_recording> decode(const std::string& bytes) {
+/// limit_exceeded | cancelled
+[[nodiscard]] inline result<device_recording> decode(const std::string& bytes,
+                                                     const std::function<bool()>& keep_going = {}) {
   using namespace recording_detail;
   const auto bad = [](const std::string& what) {
     return error{error_code::bad_format, "the device recording " + what + ": record the session again"};
@@ -328,6 +334,17 @@ class recording_encoder {
     out.cut = true;
     return std::move(out);
   };
+  // The number of calls stands near the end. Believed for the room alone, which takes no memory until it is used.
+  const std::size_t shortest_call = 3;
+  const std::size_t room = free_call_bytes + 4 * bytes.size();
+  if (constexpr std::size_t tail = 25; bytes.size() > tail) {
+    const std::string end = bytes.substr(bytes.size() - tail, 8);
+    const auto told = byte_reader(end).number<std::uint64_t>();
+    const std::size_t most = std::min({most_calls, bytes.size() / shortest_call, room / sizeof(call_record)});
+    out.calls.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(told, most)));
+  }
+  const auto wanted = [&](std::size_t step) { return step % 65536 != 0 || !keep_going || keep_going(); };
+  const error cancelled{error_code::cancelled, "the device recording was not read to its end: cancelled"};
   device_sample last;
   bool seen = false;
   std::uint64_t writes = 0;
@@ -347,6 +364,12 @@ class recording_encoder {
     }
     if (in_blocks && out.calls.size() == whole + block_calls) {
       return bad("lacks the check sum at byte " + std::to_string(at));
+    }
+    if (!wanted(out.calls.size())) return cancelled;
+    if ((out.calls.size() + 1) * sizeof(call_record) > room) {
+      return error{error_code::limit_exceeded,
+                   "the device recording holds so many calls in so few bytes that they would need more memory than "
+                   "four times its size and 512 MiB, as no session does: record the session again"};
     }
     if (out.calls.size() == most_calls) {
       return error{error_code::limit_exceeded,
@@ -395,8 +418,9 @@ class recording_encoder {
 }
 
 /// Reads a recording from a file of at most 1 GiB.
-/// @return io_failed | bad_format | limit_exceeded
-[[nodiscard]] inline result<device_recording> load_device_recording(const std::filesystem::path& file) {
+/// @return io_failed | bad_format | limit_exceeded | cancelled
+[[nodiscard]] inline result<device_recording> load_device_recording(const std::filesystem::path& file,
+                                                                    const std::function<bool()>& keep_going = {}) {
   std::error_code failed;
   if (!std::filesystem::exists(file, failed)) {
     return error{error_code::io_failed, file.string() + ": cannot be found; check the path"};
@@ -413,7 +437,7 @@ class recording_encoder {
   std::ifstream in(file, std::ios::binary);
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!in) return error{error_code::io_failed, file.string() + " could not be read to its end"};
-  result<device_recording> decoded = decode(bytes);
+  result<device_recording> decoded = decode(bytes, keep_going);
   if (!decoded) return error{decoded.error().code, file.string() + ": " + decoded.error().message};
   return decoded;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/map_image.hpp"
@@ -18,8 +19,11 @@ struct normal_texture {
 
 /// The normal texture of the one material that all triangles of a .gltf or .glb have. Images inside the file, in data
 /// URIs and in files below its folder are read; the same limits and rules hold as for its buffers.
-/// @return io_failed | bad_format | limit_exceeded; unsupported where triangles differ in their normal texture or have
+/// @param keep_going asked at least ten times a second, on this thread; false ends the reading
+/// @return io_failed | bad_format | limit_exceeded | cancelled; unsupported where triangles differ in their normal
+/// texture or have
 ///         none, where the texture has a transform or uses other coordinates than TEXCOORD_0
-[[nodiscard]] result<normal_texture> load_normal_texture(const std::filesystem::path& file);
+[[nodiscard]] result<normal_texture> load_normal_texture(const std::filesystem::path& file,
+                                                         const std::function<bool()>& keep_going = {});
 
 }  // namespace asperity::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/textured_model.hpp"
@@ -9,8 +10,11 @@
 namespace asperity::io {
 
 /// Loads and checks a textured model; everything that a tick relies on is true of what comes back.
-/// @return io_failed | bad_format | bad_mesh | bad_texture | unsupported | limit_exceeded, with the place and the mend
-[[nodiscard]] result<textured_model> load_textured_model(const std::filesystem::path& file);
+/// @param keep_going asked on the way through the file, on this thread; false ends the reading
+/// @return io_failed | bad_format | bad_mesh | bad_texture | unsupported | limit_exceeded | cancelled, with the place
+///         and the mend
+[[nodiscard]] result<textured_model> load_textured_model(const std::filesystem::path& file,
+                                                         const std::function<bool()>& keep_going = {});
 
 /// Writes a valid glTF 2.0 .glb that any viewer opens as the coarse mesh; appears whole or not at all. Positions and
 /// texture coordinates are rounded to float32; a model that came from a file is written with the same bits again. The

@@ -1,4 +1,5 @@
 // URDF documents: arms that are known by other means, and documents that are no arms.
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -6,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "asperity/urdf/read_urdf.hpp"
 #include "hal/arm/arm_rig.hpp"
@@ -185,6 +187,98 @@ TEST(urdf, what_is_no_arm_is_refused_with_its_line) {
   const auto missing = read_urdf("/nowhere/arm.urdf", table_to_pen);
   ASSERT_FALSE(missing);
   has(missing.error().message, "/nowhere/arm.urdf");
+}
+
+// What no body has, and numbers that are slips of a unit or an exponent: refused with the element, its name and line.
+TEST(urdf, masses_and_limits_that_no_arm_has_are_refused) {
+  const std::string good = two_links();
+  const std::string inertia = "<inertia ixx=\"0\" iyy=\"0.001\" izz=\"0.001\"/>";
+  const std::string limit = "<limit lower=\"-1.5\" upper=\"2.5\" effort=\"12\" velocity=\"6.5\"/>";
+  const auto with = [&good](const std::string& what, const std::string& by) {
+    std::string s = good;
+    const std::size_t at = s.find(what);
+    EXPECT_NE(at, std::string::npos) << what;
+    return why(s.replace(at, what.size(), by));
+  };
+  const auto tensor = [](const char* text) { return "<inertia " + std::string(text) + "/>"; };
+  struct wrong {
+    std::string what, by, says;
+  };
+  const std::vector<wrong> all{
+      {inertia, tensor("ixx='-0.001' iyy='0.001' izz='0.001'"), "line 11: the inertia of link upper is not positive"},
+      {inertia, tensor("ixx='0.001' iyy='0.001' izz='0.001' ixy='0.002'"), "upper is not positive definite"},
+      {inertia, tensor("ixx='0.001' iyy='0.001' izz='0.001' ixy='0.0009' ixz='0.0009' iyz='-0.0009'"), "not positive"},
+      {inertia, tensor("ixx='0' iyy='0' izz='0' ixz='0.001'"), "upper is not positive definite"},
+      {inertia, tensor("ixx='0.001' iyy='0.001' izz='0.0021'"),
+       "line 11: the inertia of link upper breaks the triangle"},
+      {inertia, tensor("ixx='0.0021' iyy='0.001' izz='0.001'"), "upper breaks the triangle inequality"},
+      // Principal moments 1, 1 and 2.2 about axes that are turned by 45 degrees.
+      {inertia, tensor("ixx='1.6' iyy='1.6' izz='1' ixy='0.6'"), "upper breaks the triangle inequality"},
+      {inertia, tensor("ixx='1e300' iyy='1e300' izz='1e300'"), "ixx=\"1e300\" of the <inertial> of link upper"},
+      {"mass value=\"0.7\"", "mass value=\"7e5\"", "outside 0 to 1000 kg"},
+      {limit, "<limit lower='-1' upper='1' effort='1e308'/>",
+       "line 8: effort=\"1e308\" of joint shoulder holds 1e+308"},
+      {limit, "<limit lower='-1' upper='1' effort='-1'/>", "effort=\"-1\" of joint shoulder"},
+      {limit, "<limit lower='-1' upper='1' velocity='1e9'/>", "velocity=\"1e9\" of joint shoulder"},
+      {limit, "<limit lower='-1' upper='1e9' effort='1'/>", "upper=\"1e9\" of joint shoulder"},
+      {limit, "<limit lower='-inf' upper='1' effort='1'/>", "lower=\"-inf\" is not 1 finite number"},
+      {"xyz=\"0.3 0 0\"", "xyz=\"0.3 0 1e300\"", "line 18: xyz=\"0.3 0 1e300\" of joint elbow holds 1e+300"},
+      {"rpy=\"0.1 0.2 0.3\"", "rpy=\"0.1 1e300 0.3\"", "of joint tip"},
+      {"xyz=\"0 -1 0\"", "xyz=\"0 -1e200 0\"", "of joint elbow"},
+  };
+  for (const wrong& w : all) {
+    const std::string said = with(w.what, w.by);
+    EXPECT_NE(said.find(w.says), std::string::npos) << w.by << " said: " << said;
+    EXPECT_NE(said.find("URDF, line "), std::string::npos) << said;
+  }
+  for (const char* sound :
+       {"ixx='0.001' iyy='0.001' izz='0.002'", "ixx='0.002' iyy='0.002' izz='0.001' ixy='0.0004'"}) {
+    EXPECT_EQ(with(inertia, tensor(sound)), "") << sound;
+  }
+}
+
+// A name cannot steer the terminal that a message reaches, nor fill it.
+TEST(urdf, messages_show_names_and_never_obey_them) {
+  const std::string odd = "\x1b[2J&#10;\xe2\x80\xae";
+  std::string s = two_links();
+  s.replace(s.find("name=\"shoulder\""), 15, "name=\"" + odd + std::string(5000, 'x') + "\"");
+  s.replace(s.find("effort=\"12\""), 11, "effort=\"-12\"");
+  const std::string said = why(s);
+  EXPECT_NE(said.find("joint \\x1b[2J\\n\\u{202e}xxx"), std::string::npos) << said;
+  EXPECT_LT(said.size(), 400U);
+}
+
+double seconds_of(const std::string& text) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_NE(why(text), "");
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// tinyxml2 takes quadratic time for the attributes of one element, 44 s for 80,000, and memory by the element.
+TEST(urdf, documents_of_another_size_than_an_arms_are_refused_before_they_are_parsed) {
+  const auto attributes = [](int n) {
+    std::string s = "<robot>\n<link";
+    for (int i = 0; i < n; ++i) s += " a" + std::to_string(i) + "=''";
+    return s + "/></robot>";
+  };
+  EXPECT_NE(why(attributes(80'000)).find("line 2: an element has more than 64 attributes"), std::string::npos);
+  EXPECT_LT(seconds_of(attributes(200'000)), 2.0);
+  // What only looks like the end of an element, and what only looks like attributes.
+  EXPECT_NE(why("<robot a='>' b='" + std::string("/>' ") + attributes(80).substr(13)).find("64 attributes"),
+            std::string::npos);
+  // Comments and CDATA hold no elements, whatever they look like.
+  std::string commented = two_links();
+  commented.insert(commented.find("<link"), "<!-- " + attributes(80) + " --><![CDATA[" + attributes(80) + "]]>");
+  EXPECT_EQ(why(commented), "");
+  const auto repeated = [](const char* what, int n) {
+    std::string s = "<robot>";
+    for (int i = 0; i < n; ++i) s += what;
+    return s;
+  };
+  EXPECT_NE(why(repeated("<a/>", 100'001) + "</robot>").find("more than 100000 elements"), std::string::npos);
+  EXPECT_NE(why(repeated("<a>", 70)).find("more than 64 levels"), std::string::npos);
+  EXPECT_NE(why(repeated("<a b='' c='' d='' e='' f=''/>", 90'000)).find("400000 attributes"), std::string::npos);
+  EXPECT_EQ(why(repeated("<a></a>", 50'000) + two_links().substr(two_links().find("<link"))), "");
 }
 
 TEST(urdf, spoiled_documents_are_read_or_refused_and_never_more) {

@@ -259,6 +259,22 @@ TEST(device_recording, hostile_bytes_end_in_an_error_or_in_a_recording) {
   EXPECT_GT(refused, 100);
 }
 
+TEST(device_recording, is_not_read_on_where_nobody_wants_it) {
+  recording_encoder e;
+  std::string bytes = e.begin({}, device_state::present);
+  for (int i = 0; i < 200'000; ++i) bytes += e.call({.call = device_call::open});
+  bytes += e.end();
+  int asked = 0;
+  ASSERT_TRUE(decode(bytes, [&] { return ++asked > 0; }));
+  EXPECT_GE(asked, 12);  // of its calls, and of the bytes of its check sum
+  for (const int stop_at : {1, 3, asked - 1}) {
+    int again = 0;
+    const auto ended = decode(bytes, [&] { return ++again < stop_at; });
+    ASSERT_FALSE(ended);
+    EXPECT_EQ(ended.error().code, error_code::cancelled);
+  }
+}
+
 TEST(device_recording, reads_files_and_says_what_is_wrong_with_them) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir());
   EXPECT_FALSE(load_device_recording(folder / "there_is_no_such_recording"));

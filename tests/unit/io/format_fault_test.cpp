@@ -106,16 +106,21 @@ TEST(MeshFault, Obj) {
   });
 }
 
-TEST(MeshFault, ObjConcavePolygonBeyondTheLimit) {
-  std::string text;
+TEST(MeshFault, PolygonsBeyondTheLimit) {
+  const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   std::string face = "f";
-  for (int i = 0; i < 300; ++i) {  // a comb
-    text.append("v ").append(std::to_string(i)).append(i % 2 == 0 ? " 0 0\n" : " 1 0\n");
-    face.append(" ").append(std::to_string(300 - i));
+  std::string continued = "f";
+  for (int i = 0; i < 65'537; ++i) {
+    face += " 1";
+    continued += " \\\n1";
   }
-  text += "v 0 -9 0\nv 299 -9 0\n";
-  expect_faults(
-      {{"comb.obj", text + face + " 301 302\n", error_code::limit_exceeded, "face 0 is concave and has 302 corners"}});
+  const std::string body = std::string(36, '\0') + std::string("\1\0\1\0", 4) + std::string(4 * 65'537, '\0');
+  std::string wide = ply("3", "1", body, "binary_little_endian");
+  wide.replace(wide.find("list uchar"), 10, "list uint");
+  const char* says = "65537 corners in one face, more than the 65536";
+  expect_faults({{"a.obj", three + face + "\n", error_code::limit_exceeded, says},
+                 {"b.obj", three + continued + "\n", error_code::limit_exceeded, says},
+                 {"a.ply", wide, error_code::limit_exceeded, says}});
 }
 
 TEST(MeshFault, Stl) {

@@ -130,7 +130,7 @@ class page {
   void write_header() {
     const bake_report& r = model_.report;
     const vec3 size = 1e3 * (model_.box.high - model_.box.low);
-    sheet_.text(margin, 48.0, command::one_line(model_.name.empty() ? "(no name)" : model_.name), 32.0,
+    sheet_.text(margin, 48.0, printable(model_.name.empty() ? "(no name)" : model_.name), 32.0,
                 sheet::weight::bold, sheet::anchor::start, page_width - 2.0 * margin);
     std::vector<std::string> facts{brief(size.x) + " \u00d7 " + brief(size.y) + " \u00d7 " + brief(size.z) + " mm"};
     if (r.full_triangles > 0) facts.push_back("original " + count(r.full_triangles) + " triangles");
@@ -167,7 +167,7 @@ class page {
         "RMS " + length(shown.rms) + ", largest " + length(std::max(std::fabs(shown.least), std::fabs(shown.largest)));
     begin(2, draw_values(surface, values, {shown.low, shown.high}, scale_of(shown), from, panel_width, panel_height),
           shown.is_distance ? "Distance to the original" : "Height above the coarse surface",
-          shown.is_distance ? command::one_line(options_.original_name) + ": " + numbers
+          shown.is_distance ? printable(options_.original_name) + ": " + numbers
                             : numbers + "; no original was given to compare with");
     scale_line(from);
     constexpr double width = 340.0;
