@@ -354,6 +354,19 @@ TEST(device_loop, a_loop_that_goes_away_leaves_no_force_behind) {
   EXPECT_EQ(dev.delivered_j(), delivered_j);
 }
 
+// A loop that stands still: the device, which holds the last command, lets go 20 ms after it.
+TEST(device_loop, a_loop_that_stands_still_is_forgotten_by_the_device) {
+  rig r(pressing_hand());
+  r.run_ms(1000);
+  ASSERT_GT(force_of(r.last()), 1.0);
+  const std::int64_t told_at_ns = r.last().time_ns;
+  wrench held;
+  ASSERT_EQ(r.dev.applied(told_at_ns + 20 * ms, held), status::ok);
+  EXPECT_EQ(held.force, r.last().on_hand_d.force);
+  ASSERT_EQ(r.dev.applied(told_at_ns + 20 * ms + 1, held), status::ok);
+  EXPECT_TRUE(is_zero(held));
+}
+
 TEST(device_loop, a_contact_that_stays_away_fades) {
   simulated_device dev(pressing_hand());
   ASSERT_TRUE(dev.open() && dev.arm());

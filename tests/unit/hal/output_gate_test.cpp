@@ -229,6 +229,56 @@ TEST(output_gate, settles_at_the_continuous_limit) {
   EXPECT_EQ(gate.fault(), gate_fault::none);
 }
 
+TEST(output_gate, settles_at_the_continuous_torque) {
+  gate_limits l = plain();
+  l.continuous_torque_n_m = 0.2;
+  l.thermal_time_s = 2.0;
+  output_gate gate(l);
+  double peak = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    peak = std::max(peak, gate.pass(i * ms, {}, want(vec3(0.0), {0, 5, 0})).on_hand.torque.y);
+    ASSERT_LE(gate.torque_mean_square(), 0.04);
+  }
+  EXPECT_GT(peak, 0.45);
+  EXPECT_NEAR(gate.last().torque.y, 0.2, 0.0025);
+  EXPECT_EQ(gate.fault(), gate_fault::none);
+}
+
+// A continuous limit above the peak, as an application may state it, is the peak's: the gate neither lets more through as
+// it warms up nor shuts over its own limits.
+TEST(output_gate, a_continuous_limit_above_the_peak_changes_nothing) {
+  for (const double continuous : {0.5001, 5.0, 1e6}) {
+    gate_limits l = plain();
+    l.continuous_torque_n_m = continuous;
+    l.continuous_force_n = 20.0 * continuous;
+    l.thermal_time_s = 0.05;
+    output_gate gate(l);
+    for (int i = 0; i < 500; ++i) {
+      const wrench w = gate.pass(i * ms, {}, want({0, 100, 0}, {0, 0, 100})).on_hand;
+      ASSERT_LE(w.force.y, 10.0 * (1.0 + 1e-12)) << continuous;
+      ASSERT_LE(w.torque.z, 0.5 * (1.0 + 1e-12)) << continuous;
+    }
+    EXPECT_NEAR(gate.last().force.y, 10.0, 1e-9) << continuous;
+    EXPECT_NEAR(gate.last().torque.z, 0.5, 1e-9) << continuous;
+    EXPECT_EQ(gate.fault(), gate_fault::none) << continuous;
+  }
+}
+
+// How long a device with a watchdog of its own goes on with what it was told last.
+TEST(output_gate, a_command_is_valid_for_as_long_as_was_said_and_no_longer) {
+  for (const std::int64_t hold_ns : {ms, 7 * ms, 20 * ms}) {
+    output_gate gate(plain(), hold_ns);
+    for (int i = 0; i < 5; ++i) {
+      const device_command c = gate.pass(i * ms, {}, want({1, 0, 0}));
+      EXPECT_EQ(c.valid_until_ns, i * ms + hold_ns);
+      EXPECT_EQ(c.frame, wrench_frame::device_base);
+      EXPECT_EQ(c.sequence, static_cast<std::uint64_t>(i) + 1U);
+    }
+  }
+  output_gate by_default(plain());
+  EXPECT_EQ(by_default.pass(3 * ms, {}, want({1, 0, 0})).valid_until_ns, 23 * ms);
+}
+
 TEST(output_gate, warms_with_its_time_constant) {
   gate_limits l = plain();
   l.thermal_time_s = 2.0;
