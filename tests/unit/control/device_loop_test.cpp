@@ -396,6 +396,81 @@ TEST(device_loop, keeps_within_the_limits_of_device_and_application) {
   EXPECT_NEAR(largest, 0.7, 1e-9);
 }
 
+// The device's own limits hold although the application states none.
+TEST(device_loop, keeps_within_what_the_device_states_of_itself) {
+  simulated_config hand = pressing_hand();
+  hand.capabilities.peak_force_n = hand.capabilities.continuous_force_n = 0.6;
+  hand.capabilities.force_slew_n_per_s = 20.0;
+  rig r(hand);
+  r.run_ms(1500);
+  double largest = 0.0;
+  double steepest = 0.0;
+  for (std::size_t i = 1; i < r.log.size(); ++i) {
+    largest = std::max(largest, force_of(r.log[i]));
+    steepest = std::max(steepest, glm::length(r.log[i].on_hand_d.force - r.log[i - 1].on_hand_d.force));
+  }
+  EXPECT_NEAR(largest, 0.6, 1e-9);
+  EXPECT_LE(steepest, 0.020 * (1.0 + 1e-9));
+}
+
+// A device that may not put out is told zero at once, so that one that is armed again in the next tick begins at zero.
+TEST(device_loop, forgets_its_wrench_with_the_first_tick_of_a_disarmed_device) {
+  control_config control;
+  control.limits.force_slew_n_per_s = 200.0;
+  rig r(pressing_hand(), control);
+  r.run_ms(1000);
+  ASSERT_GT(force_of(r.last()), 1.0);
+  ASSERT_EQ(r.dev.disarm(), status::ok);
+  r.run_ms(1);
+  EXPECT_EQ(force_of(r.last()), 0.0);
+  const double booked_j = r.last().delivered_j;
+  ASSERT_TRUE(r.dev.arm());
+  r.run_ms(1);
+  EXPECT_LE(force_of(r.last()), 0.2 * (1.0 + 1e-9));
+  EXPECT_EQ(r.last().delivered_j, booked_j);
+}
+
+// What is recorded of a tick without a sample is the last good pose.
+TEST(device_loop, a_rejected_sample_goes_nowhere) {
+  simulated_config hand = pressing_hand();
+  hand.faults = {{device_fault::nan_pose, 800 * ms, 803 * ms}};
+  rig r(hand);
+  r.run_ms(900);
+  for (std::size_t i = 800; i < 803; ++i) {
+    EXPECT_NE(r.log[i].sample, sample_verdict::accepted);
+    EXPECT_EQ(r.log[i].T_dh.position, r.log[799].T_dh.position);
+    EXPECT_EQ(r.log[i].T_wa_target.position, r.log[799].T_wa_target.position);
+  }
+}
+
+// A wall until it is told otherwise, then forces that no probe can bear.
+struct breaking_renderer {
+  analytic_wall wall;
+  const bool* broken = nullptr;
+  status step(const scene_pose& at, tick& out) noexcept {
+    const status s = wall.step(at, out);
+    if (*broken) out.force.on_probe_w.force = {0.0, 0.0, 1e300};
+    return s;
+  }
+};
+
+// The coupling would go on pulling at a probe that stands where it was lost.
+TEST(device_loop, a_lost_probe_pulls_at_nothing) {
+  bool broken = false;
+  simulated_device dev(pressing_hand());
+  std::vector<session_record> log;
+  virtual_session<breaking_renderer, simulated_device, keep_all> session(
+      {{}, &broken}, {{pose{}}, vec3(0.0)}, rig::opened(dev), control_config{}, {}, keep_all{&log});
+  static_cast<void>(session.run_until(1000 * ms));
+  ASSERT_GT(force_of(log.back()), 1.0);
+  broken = true;
+  static_cast<void>(session.run_until(1010 * ms));
+  for (std::size_t i = 1003; i < log.size(); ++i) {
+    ASSERT_EQ(log[i].probe_status, status::not_finite) << i;
+    EXPECT_EQ(force_of(log[i]), 0.0) << i;
+  }
+}
+
 // A renderer gone mad: whatever it answers, what leaves is finite and within the limits.
 struct mad_renderer {
   int n = 0;

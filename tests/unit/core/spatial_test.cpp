@@ -60,6 +60,10 @@ TEST(spatial, outer_product_and_blocks_land_where_they_should) {
   add_outer(m, 2.0, g);
   EXPECT_EQ(m(0, 5), 12.0);
   EXPECT_EQ(m(5, 0), 12.0);
+  add_outer(m, -0.5, {{4, 0, 0}, {0, 0, 1}});  // added to what is there
+  EXPECT_EQ(m(0, 5), 10.0);
+  EXPECT_EQ(m(0, 0), -6.0);
+  EXPECT_EQ(m(1, 2), 12.0);
   set_block(m, 3, 0, skew({1, 2, 3}));
   EXPECT_EQ(m(3, 1), -3.0);  // first row of skew is (0, -z, y)
   EXPECT_EQ(m(3, 2), 2.0);
