@@ -70,6 +70,19 @@ std::string how_it_failed(const run& r) {
   return last.empty() ? end : last + " (" + end + ")";
 }
 
+// The compiler's first complaint, else the last line.
+std::string why_not_built(const run& r) {
+  std::istringstream lines(r.output);
+  std::string line;
+  std::string last;
+  while (std::getline(lines, line)) {
+    const std::size_t error = line.find("error: ");
+    if (error != std::string::npos) return line.substr(error);
+    last = line;
+  }
+  return last;
+}
+
 bool was_not_run(const run& r) {
   return r.output.find("***Not Run") != std::string::npos ||
          r.output.find("No tests were found") != std::string::npos || r.code == 126 || r.code == 127;
@@ -124,8 +137,9 @@ result<outcome> try_bug(const workshop& where, const bug& what) {
   outcome answer;
   result<void> trouble;
   for (const std::string& test : what.tests) {
-    if (build(where, test).code != 0) {
-      answer = {verdict::not_built, test, "", 0.0};
+    const run built = build(where, test);
+    if (built.code != 0) {
+      answer = {verdict::not_built, test, why_not_built(built), 0.0};
       break;
     }
     const run r = run_test(where, test);

@@ -471,6 +471,70 @@ TEST(device_loop, a_lost_probe_pulls_at_nothing) {
   }
 }
 
+// A device that is where it is put, and keeps what it is told.
+struct placed_device {
+  using policy_tag = device_tag;
+  pose T_dh{};
+  device_command told{};
+  device_capabilities stated = simulated_config{}.capabilities;
+
+  [[nodiscard]] const device_capabilities& capabilities() const noexcept { return stated; }
+  [[nodiscard]] device_state state() const noexcept { return device_state::active; }
+  [[nodiscard]] result<void> open() { return {}; }
+  [[nodiscard]] result<void> arm() { return {}; }
+  [[nodiscard]] result<void> clear_fault() { return {}; }
+  status disarm() noexcept { return status::ok; }
+  void close() noexcept {}
+  [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
+    in.T_dh = T_dh;
+    in.host_time_ns = in.device_time_ns = now_ns;
+    ++in.sequence;
+    in.valid = sample_field::position | sample_field::rotation;
+    return status::ok;
+  }
+  [[nodiscard]] status write(std::int64_t, const device_command& out) noexcept {
+    told = out;
+    return status::ok;
+  }
+};
+
+// A tick after a long silence moves the probe by longest_step_ns: the hand's way since then is no leap of the probe.
+TEST(device_loop, a_late_tick_is_a_tick_of_the_longest_step) {
+  const auto after = [](std::int64_t silence_ns) {
+    placed_device dev;
+    exchange shared;
+    std::vector<session_record> log;
+    device_loop<placed_device, keep_all> loop(dev, {}, vec3(0.0), shared, keep_all{&log});
+    EXPECT_EQ(loop.tick(0), status::ok);
+    dev.T_dh.position = {0.0, 0.01, 0.0};
+    EXPECT_EQ(loop.tick(silence_ns), status::ok);
+    EXPECT_EQ(dev.told.on_hand.force, log.back().on_hand_d.force);
+    EXPECT_EQ(dev.told.valid_until_ns, silence_ns + 20 * ms);
+    return log.back();
+  };
+  const session_record due = after(5 * ms);
+  EXPECT_LT(due.on_hand_d.force.y, -0.1);
+  for (const std::int64_t late_ns : {6 * ms, 500 * ms, 3'600'000 * ms}) {
+    const session_record late = after(late_ns);
+    EXPECT_EQ(late.T_wa.position, due.T_wa.position) << late_ns;
+    EXPECT_EQ(late.on_hand_d.force, due.on_hand_d.force) << late_ns;
+  }
+}
+
+// After a fault the probe stands where the device is, and not where the wall held it.
+TEST(device_loop, begins_anew_at_the_device_when_a_fault_is_cleared) {
+  rig r(pressing_hand());
+  r.run_ms(1000);
+  r.session.device().stop();
+  r.run_ms(100);
+  ASSERT_EQ(force_of(r.last()), 0.0);
+  const auto stretch_m = [&] { return glm::length(r.last().T_wa_target.position - r.last().T_wa.position); };
+  ASSERT_GT(stretch_m(), 0.004);
+  ASSERT_TRUE(r.session.device().clear_fault());
+  r.run_ms(1);
+  EXPECT_LT(stretch_m(), 0.001);
+}
+
 // A renderer gone mad: whatever it answers, what leaves is finite and within the limits.
 struct mad_renderer {
   int n = 0;

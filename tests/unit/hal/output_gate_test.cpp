@@ -175,6 +175,15 @@ TEST(output_gate, device_limits_cannot_be_raised) {
   gate_limits generous = plain();
   generous.peak_force_n = 1000.0;
   EXPECT_EQ(tighter(plain(), generous).peak_force_n, 10.0);
+  // Nor any other of them, whichever side states the lower one.
+  for (double gate_limits::*const which :
+       {&gate_limits::peak_force_n, &gate_limits::continuous_force_n, &gate_limits::force_slew_n_per_s,
+        &gate_limits::peak_torque_n_m, &gate_limits::continuous_torque_n_m, &gate_limits::torque_slew_n_m_per_s}) {
+    gate_limits high = plain();
+    high.*which *= 3.0;
+    EXPECT_EQ(tighter(plain(), high).*which, plain().*which);
+    EXPECT_EQ(tighter(high, plain()).*which, plain().*which);
+  }
   device_capabilities unstated;
   EXPECT_EQ(tighter(limits_of(unstated), generous).peak_force_n, 0.0);
 }
@@ -244,8 +253,8 @@ TEST(output_gate, settles_at_the_continuous_torque) {
   EXPECT_EQ(gate.fault(), gate_fault::none);
 }
 
-// A continuous limit above the peak, as an application may state it, is the peak's: the gate neither lets more through as
-// it warms up nor shuts over its own limits.
+// A continuous limit above the peak, as an application may state it, is the peak's: the gate neither lets more through
+// as it warms up nor shuts over its own limits.
 TEST(output_gate, a_continuous_limit_above_the_peak_changes_nothing) {
   for (const double continuous : {0.5001, 5.0, 1e6}) {
     gate_limits l = plain();
@@ -323,6 +332,39 @@ TEST(output_gate, low_pass_takes_its_time_and_nothing_of_what_is_not_finite) {
       EXPECT_TRUE(is_finite(fresh.pass(i * ms, {}, want({i == 10 ? bad : 1.0, 0, 0})).on_hand));
     }
     EXPECT_EQ(fresh.fault(), gate_fault::not_finite);
+  }
+}
+
+// Force and torque pass the same filter: the torque's part of the way is the force's, in every tick.
+TEST(output_gate, low_passes_the_torque_as_the_force) {
+  gate_limits l = plain();
+  l.force_slew_n_per_s = l.torque_slew_n_m_per_s = 1e5;
+  output_gate gate(l, 20 * ms, 10.0);
+  for (int i = 0; i <= 30; ++i) {
+    const wrench w = gate.pass(i * ms, {}, want({0, 6, 0}, {0, 0.3, 0})).on_hand;
+    EXPECT_NEAR(w.torque.y, 0.05 * w.force.y, 1e-15) << i;
+    if (i == 16) {
+      EXPECT_NEAR(w.torque.y, 0.3 * (1.0 - std::exp(-16.0e-3 * 2.0 * 3.14159265 * 10.0)), 0.0075);
+    }
+  }
+}
+
+// What is no ordinary number is found as it came, and stays nowhere: cleared in the same tick, the gate follows again.
+TEST(output_gate, a_low_pass_keeps_nothing_of_what_shut_the_gate) {
+  for (const double bad : {nan_value, infinity, 2e150, -2e150}) {
+    for (int axis = 0; axis < 6; ++axis) {
+      output_gate gate(plain(), 20 * ms, 10.0);
+      static_cast<void>(gate.pass(0, {}, want(vec3(0.0))));
+      device_command c = want(vec3(0.0));
+      (axis < 3 ? c.on_hand.force[axis] : c.on_hand.torque[axis - 3]) = bad;
+      EXPECT_TRUE(is_zero(gate.pass(ms, {}, c).on_hand));
+      ASSERT_EQ(gate.fault(), gate_fault::not_finite) << bad << ' ' << axis;
+      ASSERT_TRUE(gate.clear());
+      const wrench w = gate.pass(2 * ms, {}, want({6, 0, 0}, {0, 0.3, 0})).on_hand;
+      EXPECT_EQ(gate.fault(), gate_fault::none) << bad << ' ' << axis;
+      EXPECT_GT(w.force.x, 0.0);
+      EXPECT_GT(w.torque.y, 0.0);
+    }
   }
 }
 
