@@ -188,6 +188,30 @@ TEST(output_gate, device_limits_cannot_be_raised) {
   EXPECT_EQ(tighter(limits_of(unstated), generous).peak_force_n, 0.0);
 }
 
+// Nor made to last: whatever time constant an application states, the running mean square that the device's own limits
+// allow, over the device's own time constant, is not passed.
+TEST(output_gate, the_devices_thermal_budget_cannot_be_raised) {
+  gate_limits device = plain();
+  device.continuous_force_n = 4.0;
+  device.continuous_torque_n_m = 0.2;
+  device.thermal_time_s = 0.5;
+  for (const double stated_s : {0.05, 0.5, 5.0, 1e9}) {
+    gate_limits application = plain();
+    application.thermal_time_s = stated_s;
+    output_gate gate(tighter(device, application));
+    double force_n2 = 0.0;
+    double torque_n2_m2 = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const bool pauses = i % 1000 > 700;
+      const wrench w = gate.pass(i * ms, {}, pauses ? want(vec3(0.0)) : want({0, 0, 100}, {5, 0, 0})).on_hand;
+      force_n2 += 1e-3 / (0.5 + 1e-3) * (w.force.z * w.force.z - force_n2);
+      torque_n2_m2 += 1e-3 / (0.5 + 1e-3) * (w.torque.x * w.torque.x - torque_n2_m2);
+      ASSERT_LE(force_n2, 16.0 * (1.0 + 1e-9)) << stated_s << ' ' << i;
+      ASSERT_LE(torque_n2_m2, 0.04 * (1.0 + 1e-9)) << stated_s << ' ' << i;
+    }
+  }
+}
+
 // A million commands, poses and limits of any bit pattern: finite, within the limit, no faster than the slew rate.
 TEST(output_gate, no_bit_pattern_gets_past) {
   std::mt19937_64 bits(20241);
