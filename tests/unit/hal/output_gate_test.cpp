@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <asperity/hal/output_gate.hpp>
 
@@ -161,6 +162,19 @@ TEST(bound_vector, certificate_catches_a_previous_value_that_is_not_within_the_l
   }
 }
 
+// The certificate's room is for rounding: a millionth over the limit is over it.
+TEST(bound_vector, certificate_leaves_room_for_rounding_only) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const auto& [over, certified] : {std::pair{1e-10, true}, std::pair{1e-6, false}, std::pair{0.05, false}}) {
+      vec3 previous{0.0};
+      previous[axis] = 10.0 * (1.0 + over);
+      const bounded_vector v = bound_vector(previous, previous, {10.0, 10.0, 1e-12}, true);
+      EXPECT_EQ(v.certified, certified) << over;
+      EXPECT_EQ(v.value == vec3(0.0), !certified) << over;
+    }
+  }
+}
+
 TEST(output_gate, limits_that_are_no_numbers_let_nothing_through) {
   for (const double bad : {nan_value, -1.0, 0.0}) {
     gate_limits l = plain();
@@ -169,6 +183,23 @@ TEST(output_gate, limits_that_are_no_numbers_let_nothing_through) {
     for (int i = 0; i < 20; ++i) static_cast<void>(gate.pass(i * ms, {}, want({1, 2, 3})));
     EXPECT_EQ(gate.last().force, vec3(0.0));
   }
+}
+
+TEST(output_gate, takes_each_limit_that_a_device_states_for_what_it_is) {
+  device_capabilities stated;
+  stated.continuous_force_n = 1.0;
+  stated.peak_force_n = 2.0;
+  stated.continuous_torque_n_m = 3.0;
+  stated.peak_torque_n_m = 4.0;
+  stated.force_slew_n_per_s = 5.0;
+  stated.torque_slew_n_m_per_s = 6.0;
+  const gate_limits l = limits_of(stated);
+  EXPECT_EQ(l.continuous_force_n, 1.0);
+  EXPECT_EQ(l.peak_force_n, 2.0);
+  EXPECT_EQ(l.continuous_torque_n_m, 3.0);
+  EXPECT_EQ(l.peak_torque_n_m, 4.0);
+  EXPECT_EQ(l.force_slew_n_per_s, 5.0);
+  EXPECT_EQ(l.torque_slew_n_m_per_s, 6.0);
 }
 
 TEST(output_gate, device_limits_cannot_be_raised) {
