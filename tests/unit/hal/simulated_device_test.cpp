@@ -141,6 +141,24 @@ TEST(simulated_device, faults_on_a_command_that_no_gate_would_send) {
   EXPECT_EQ(e.write(0, world), status::not_finite);
 }
 
+// What no gate would send is cut down to what the device states of itself, force and torque apart, direction kept.
+TEST(simulated_device, puts_out_no_more_than_it_states) {
+  simulated_config c = still_hand();
+  c.capabilities.peak_force_n = 5.0;
+  c.capabilities.peak_torque_n_m = 0.5;
+  simulated_device d = armed(c);
+  device_sample s;
+  ASSERT_EQ(d.read(0, s), status::ok);
+  for (const double times : {0.5, 1.0, 3.0, 1e300}) {
+    const wrench wanted{times * vec3(3, 0, 4), times * vec3(0, -0.3, 0.4)};
+    ASSERT_EQ(d.write(0, {wanted, wrench_frame::device_base, 20 * ms, 1}), status::ok);
+    wrench w;
+    ASSERT_EQ(d.applied(0, w), status::ok);
+    EXPECT_LT(glm::length(w.force - std::min(times, 1.0) * vec3(3, 0, 4)), 1e-14) << times;
+    EXPECT_LT(glm::length(w.torque - std::min(times, 1.0) * vec3(0, -0.3, 0.4)), 1e-15) << times;
+  }
+}
+
 TEST(simulated_device, quantises_and_delays) {
   simulated_config c;
   c.motion = {.direction_d = {1, 0, 0}, .depth_m = 0.1};
