@@ -75,7 +75,8 @@ result<workshop> open_workshop(const order& o, unsigned worker) {
   fs::create_directories(w.build);
   // A bug may leave a name unused: no reason not to build it.
   const std::string configure = "cd '" + w.source.string() + "' && cmake --preset release -B '" + w.build.string() +
-                                "' -DASPERITY_WERROR=OFF > '" + (place / "configure.log").string() + "' 2>&1";
+                                "' -DASPERITY_WERROR=OFF -DASPERITY_MUTANT=ON > '" +
+                                (place / "configure.log").string() + "' 2>&1";
   if (std::system(configure.c_str()) != 0) {
     return error{error_code::io_failed, "configuring failed: " + (place / "configure.log").string()};
   }
