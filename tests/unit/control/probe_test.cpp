@@ -86,8 +86,8 @@ TEST(probe, carries_its_inertia_with_its_rotation) {
   EXPECT_NEAR(response_about_x(0.5 * pi), 1e-3 * 1e-6 / 1e-5, 1e-9);
 }
 
-// About any axis of any body: a torque about a principal axis, wherever the body has turned it, turns the body about that
-// axis, by the moment of that axis. Turned by quarters the sense of the rotation would not show.
+// About any axis of any body: a torque about a principal axis, wherever the body has turned it, turns the body about
+// that axis, by the moment of that axis. Turned by quarters the sense of the rotation would not show.
 TEST(probe, turns_about_its_own_axes_however_it_lies) {
   mat3 inertia(0.0);
   const vec3 moments{1e-5, 3e-5, 9e-5};
@@ -212,6 +212,28 @@ TEST(virtual_coupling, is_critically_damped_up_to_its_bound) {
   EXPECT_DOUBLE_EQ(virtual_coupling({}, 0.01, 1e-5).damping_n_m_s_per_rad(), 2.0 * std::sqrt(3e-5));
   EXPECT_EQ(virtual_coupling({}, 1.0, 1.0).damping_n_s_per_m(), 5.0);
   EXPECT_EQ(virtual_coupling({.damping_n_s_per_m = 0.7}, 1.0, 1.0).damping_n_s_per_m(), 0.7);
+}
+
+// Each of the four terms by itself, with every velocity that it is made of.
+TEST(virtual_coupling, is_two_springs_and_two_dampers) {
+  const virtual_coupling c({.stiffness_n_per_m = 400.0,
+                            .stiffness_n_m_per_rad = 2.0,
+                            .damping_n_s_per_m = 3.0,
+                            .damping_n_m_s_per_rad = 0.05},
+                           0.01, 1e-5);
+  const pose here{exp_rotation({0, 0, 0.1}), {0.001, 0.002, 0.003}};
+  const pose there{exp_rotation({0, 0, 0.3}), {0.004, 0.002, 0.001}};
+  const twist still{};
+  const twist moving{{0.1, -0.2, 0.3}, {1.0, -2.0, 3.0}};
+  const wrench springs = c.on_probe(there, still, here, still);
+  EXPECT_LT(glm::length(springs.force - vec3(1.2, 0.0, -0.8)), 1e-14);
+  EXPECT_LT(glm::length(springs.torque - vec3(0.0, 0.0, 0.4)), 1e-14);
+  const wrench pulled = c.on_probe(here, moving, here, still);
+  EXPECT_LT(glm::length(pulled.force - 3.0 * moving.linear), 1e-14);
+  EXPECT_LT(glm::length(pulled.torque - 0.05 * moving.angular), 1e-14);
+  const wrench held = c.on_probe(here, still, here, moving);
+  EXPECT_LT(glm::length(held.force + 3.0 * moving.linear), 1e-14);
+  EXPECT_LT(glm::length(held.torque + 0.05 * moving.angular), 1e-14);
 }
 
 TEST(virtual_coupling, pulls_the_probe_towards_the_device) {
