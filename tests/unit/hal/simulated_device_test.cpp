@@ -227,6 +227,23 @@ TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
   EXPECT_NEAR(before.y, 2.4, 1e-9);
 }
 
+TEST(simulated_device, motors_hold_their_own_torque_and_its_slew) {
+  simulated_config config = still_hand();
+  config.actuator = {.peak_torque_n_m = 0.03, .torque_slew_n_m_per_s = 10.0};
+  simulated_device dev = armed(config);
+  vec3 before{0.0};
+  for (std::int64_t t = 0; t < 20'000'000; t += 50'000) {
+    device_sample in;
+    ASSERT_EQ(dev.read(t, in), status::ok);
+    const wrench told{vec3(0.0), {0.0, 0.06, -0.08}};
+    ASSERT_EQ(dev.write(t, {told, wrench_frame::device_base, t + 20 * ms, 1}), status::ok);
+    EXPECT_LE(glm::length(dev.put_out().torque - before), 0.0005 + 1e-12);
+    before = dev.put_out().torque;
+  }
+  EXPECT_NEAR(before.y, 0.018, 1e-12);
+  EXPECT_NEAR(before.z, -0.024, 1e-12);
+}
+
 TEST(simulated_device, motors_warm_up_and_derate) {
   simulated_config config;
   config.actuator = {.peak_force_n = 10.0, .continuous_force_n = 4.0, .thermal_time_s = 0.5};
