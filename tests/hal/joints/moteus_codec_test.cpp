@@ -171,6 +171,22 @@ TEST(MoteusCodec, whole_units_survive_the_division) {
   }
 }
 
+// Just below, at and just above every whole number of units: never more than what was asked for, never a unit less than
+// it could be. The quotient rounds up to a whole number now and then.
+TEST(MoteusCodec, whole_numbers_of_units_never_say_more) {
+  for (const double unit : {0.01, 0.001, 1e-4, 1e-5, 0.1, 0.00025}) {
+    for (int n = 1; n <= 20'000; ++n) {
+      const double exact = n * unit;
+      for (const double wanted : {std::nextafter(exact, 0.0), exact, std::nextafter(exact, 1e9)}) {
+        const auto count = static_cast<double>(wire_count(wanted, unit, 1e9));
+        ASSERT_LE(count * unit, wanted) << n << " of " << unit;
+        ASSERT_GT((count + 1.0) * unit, wanted) << n << " of " << unit;
+        ASSERT_EQ(static_cast<double>(wire_count(-wanted, unit, 1e9)), -count) << n << " of " << unit;
+      }
+    }
+  }
+}
+
 TEST(MoteusCodec, hostile_bytes_end_the_reading_within_their_length) {
   std::mt19937_64 bits(7);
   std::size_t made_no_sense = 0;
