@@ -99,7 +99,7 @@ struct gate_limits {
           .peak_torque_n_m = std::min(a.peak_torque_n_m, b.peak_torque_n_m),
           .continuous_torque_n_m = std::min(a.continuous_torque_n_m, b.continuous_torque_n_m),
           .torque_slew_n_m_per_s = std::min(a.torque_slew_n_m_per_s, b.torque_slew_n_m_per_s),
-          .thermal_time_s = std::max(a.thermal_time_s, b.thermal_time_s)};
+          .thermal_time_s = std::min(a.thermal_time_s, b.thermal_time_s)};
 }
 
 /// From a fault to a wrench of zero at the latest, ns: whatever was put out, at the slew rate, in ticks of this period.

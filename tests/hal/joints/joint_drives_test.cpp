@@ -147,6 +147,25 @@ TYPED_TEST(JointDrives, a_cleared_fault_leads_to_idle_and_not_to_torque) {
   EXPECT_EQ(r.peer.enables(), 2);
 }
 
+TYPED_TEST(JointDrives, a_torque_from_before_a_fault_does_not_come_back) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  ASSERT_FALSE(r.is_limp());
+  r.feeding = false;
+  ASSERT_TRUE(r.run_until(drive_state::fault, 100 * ms));
+  r.run(50 * ms);
+  ASSERT_TRUE(r.drive.clear_fault(r.clock.now_ns()));
+  ASSERT_TRUE(r.run_until(drive_state::idle)) << r.drive.fault().what;
+  ASSERT_TRUE(r.drive.enable(r.clock.now_ns()));
+  ASSERT_TRUE(r.run_until(drive_state::enabled));
+  for (int i = 0; i < 50; ++i) {
+    r.tick();
+    ASSERT_TRUE(r.is_limp()) << TypeParam::name << " tick " << i;
+  }
+  EXPECT_EQ(r.drive.state(), drive_state::enabled) << r.drive.fault().what;
+}
+
 TYPED_TEST(JointDrives, a_fault_that_stays_in_the_drive_comes_back) {
   rig<TypeParam> r;
   ASSERT_TRUE(r.bring_up());

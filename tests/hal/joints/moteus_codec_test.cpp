@@ -143,11 +143,45 @@ TEST(MoteusCodec, hostile_numbers_stay_within_the_limit_and_keep_their_sign) {
   }
 }
 
+// The table of the document's register command set, written down again: what is encoded and decoded with one wrong unit
+// agrees with itself.
+TEST(MoteusCodec, units_are_those_of_the_document) {
+  struct row {
+    quantity what;
+    double in8, in16, in32;
+  };
+  for (const row& u : {row{q::torque_n_m, 0.5, 0.01, 0.001}, row{q::voltage_v, 0.5, 0.1, 0.001},
+                       row{q::temperature_c, 1.0, 0.1, 0.001}, row{q::time_s, 0.01, 0.001, 1e-6},
+                       row{q::position_rev, 0.01, 1e-4, 1e-5}, row{q::velocity_rev_per_s, 0.1, 0.00025, 1e-5},
+                       row{q::scale, 1.0 / 127.0, 1.0 / 32767.0, 1.0 / 2147483647.0}, row{q::plain, 1.0, 1.0, 1.0}}) {
+    EXPECT_EQ(unit_of(u.what, resolution::int8), u.in8) << static_cast<int>(u.what);
+    EXPECT_EQ(unit_of(u.what, resolution::int16), u.in16) << static_cast<int>(u.what);
+    EXPECT_EQ(unit_of(u.what, resolution::int32), u.in32) << static_cast<int>(u.what);
+    EXPECT_EQ(unit_of(u.what, resolution::real), 1.0) << static_cast<int>(u.what);
+  }
+}
+
 TEST(MoteusCodec, whole_units_survive_the_division) {
   for (const resolution r : {resolution::int8, resolution::int16, resolution::int32}) {
     for (int n = -127; n <= 127; ++n) {
       for (const quantity what : {q::torque_n_m, q::position_rev, q::velocity_rev_per_s, q::time_s, q::scale}) {
         EXPECT_EQ(encode_int(n * unit_of(what, r), what, r, 1e9), n) << static_cast<int>(what);
+      }
+    }
+  }
+}
+
+// Just below, at and just above every whole number of units: never more than what was asked for, never a unit less than
+// it could be. The quotient rounds up to a whole number now and then.
+TEST(MoteusCodec, whole_numbers_of_units_never_say_more) {
+  for (const double unit : {0.01, 0.001, 1e-4, 1e-5, 0.1, 0.00025}) {
+    for (int n = 1; n <= 20'000; ++n) {
+      const double exact = n * unit;
+      for (const double wanted : {std::nextafter(exact, 0.0), exact, std::nextafter(exact, 1e9)}) {
+        const auto count = static_cast<double>(wire_count(wanted, unit, 1e9));
+        ASSERT_LE(count * unit, wanted) << n << " of " << unit;
+        ASSERT_GT((count + 1.0) * unit, wanted) << n << " of " << unit;
+        ASSERT_EQ(static_cast<double>(wire_count(-wanted, unit, 1e9)), -count) << n << " of " << unit;
       }
     }
   }

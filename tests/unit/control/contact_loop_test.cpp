@@ -1,4 +1,6 @@
+#include <array>
 #include <gtest/gtest.h>
+#include <limits>
 
 #include <asperity/control/contact_loop.hpp>
 
@@ -71,6 +73,82 @@ TEST_F(contact_loop_test, a_renderer_that_fails_leaves_an_empty_contact_that_say
   ASSERT_TRUE(shared.contacts.refresh());
   EXPECT_EQ(shared.contacts.front().answer, status::backend_failed);
   EXPECT_EQ(shared.contacts.front().on_probe_w.force, vec3(0.0));
+}
+
+// Answers whatever it holds.
+struct held_answer {
+  tick what{};
+  std::array<contact, 3> contacts{};
+  std::array<penetration, 3> depths{};
+  status answer = status::ok;
+  status step(const scene_pose&, tick& out) noexcept {
+    out = what;
+    out.contacts = contacts;
+    out.depths = depths;
+    return answer;
+  }
+};
+
+TEST_F(contact_loop_test, weights_the_direction_by_depth) {
+  held_answer renderer;
+  const vec3 directions[] = {{0, 0, -1}, {1, 0, 0}, {0, 1, 0}};
+  const double depths_m[] = {0.003, 0.001, -0.5};  // the last one does not touch
+  for (std::size_t i = 0; i < 3; ++i) {
+    renderer.contacts[i].window.n_ab_w = directions[i];
+    renderer.depths[i].depth_m = depths_m[i];
+  }
+  contact_loop<held_answer> loop(renderer, {{pose{}}, vec3(0.0)}, shared);
+  put({}, 1);
+  ASSERT_EQ(loop.tick(1), status::ok);
+  ASSERT_TRUE(shared.contacts.refresh());
+  EXPECT_LT(glm::length(shared.contacts.front().direction_ab_w - vec3(0.25, 0.0, -0.75)), 1e-15);
+  EXPECT_EQ(shared.contacts.front().contacts, 2U);
+  EXPECT_EQ(shared.contacts.front().max_depth_m, 0.003);
+}
+
+// A renderer that fails may leave anything behind.
+TEST_F(contact_loop_test, hands_over_no_force_of_a_renderer_that_failed) {
+  for (const status s : {status::ok, status::capacity_reached, status::invalid_pose, status::not_finite,
+                         status::stale_input, status::not_ready, status::backend_failed}) {
+    held_answer renderer;
+    renderer.what.force.on_probe_w.force = {1, 2, 3};
+    renderer.what.force.stiffness(0, 0) = -5.0;
+    renderer.answer = s;
+    exchange own;
+    contact_loop<held_answer> loop(renderer, {{pose{}}, vec3(0.0)}, own);
+    own.poses.publish();
+    EXPECT_EQ(loop.tick(1), s);
+    ASSERT_TRUE(own.contacts.refresh());
+    const linear_contact& c = own.contacts.front();
+    const bool usable = s == status::ok || s == status::capacity_reached;
+    EXPECT_EQ(c.answer, s);
+    EXPECT_EQ(c.on_probe_w.force, usable ? vec3(1, 2, 3) : vec3(0.0)) << to_string(s);
+    EXPECT_EQ(c.stiffness(0, 0), usable ? -5.0 : 0.0) << to_string(s);
+  }
+}
+
+// What is not finite is told and goes no further, wherever it stands.
+TEST_F(contact_loop_test, hands_over_nothing_that_is_not_finite) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    for (std::size_t where = 0; where < 12; ++where) {
+      held_answer renderer;
+      renderer.what.force.on_probe_w.force = {1, 2, 3};
+      if (where < 3) renderer.what.force.on_probe_w.force[static_cast<int>(where)] = bad;
+      if (where >= 3 && where < 6) renderer.what.force.on_probe_w.torque[static_cast<int>(where) - 3] = bad;
+      if (where >= 6) renderer.what.force.stiffness(where - 6, 11 - where) = bad;
+      exchange own;
+      contact_loop<held_answer> loop(renderer, {{pose{}}, vec3(0.0)}, own);
+      own.poses.back() = {{}, 7};
+      own.poses.publish();
+      static_cast<void>(loop.tick(7));
+      ASSERT_TRUE(own.contacts.refresh());
+      const linear_contact& c = own.contacts.front();
+      EXPECT_EQ(c.answer, status::not_finite) << where;
+      EXPECT_TRUE(is_zero(c.on_probe_w)) << where;
+      EXPECT_TRUE(is_finite(c.stiffness)) << where;
+      EXPECT_EQ(c.time_ns, 7);
+    }
+  }
 }
 
 }  // namespace

@@ -359,6 +359,19 @@ TEST(device_loop, a_loop_that_goes_away_leaves_no_force_behind) {
   EXPECT_EQ(dev.delivered_j(), delivered_j);
 }
 
+// A loop that stands still: the device, which holds the last command, lets go 20 ms after it.
+TEST(device_loop, a_loop_that_stands_still_is_forgotten_by_the_device) {
+  rig r(pressing_hand());
+  r.run_ms(1000);
+  ASSERT_GT(force_of(r.last()), 1.0);
+  const std::int64_t told_at_ns = r.last().time_ns;
+  wrench held;
+  ASSERT_EQ(r.dev.applied(told_at_ns + 20 * ms, held), status::ok);
+  EXPECT_EQ(held.force, r.last().on_hand_d.force);
+  ASSERT_EQ(r.dev.applied(told_at_ns + 20 * ms + 1, held), status::ok);
+  EXPECT_TRUE(is_zero(held));
+}
+
 // Nothing is felt of it, but it goes on holding the probe: let go, the probe would sink into the body, and the next
 // contact would throw it out.
 TEST(device_loop, a_contact_that_stays_away_is_no_longer_felt) {
@@ -389,6 +402,145 @@ TEST(device_loop, keeps_within_the_limits_of_device_and_application) {
   double largest = 0.0;
   for (const session_record& t : r.log) largest = std::max(largest, force_of(t));
   EXPECT_NEAR(largest, 0.7, 1e-9);
+}
+
+// The device's own limits hold although the application states none.
+TEST(device_loop, keeps_within_what_the_device_states_of_itself) {
+  simulated_config hand = pressing_hand();
+  hand.capabilities.peak_force_n = hand.capabilities.continuous_force_n = 0.6;
+  hand.capabilities.force_slew_n_per_s = 20.0;
+  rig r(hand);
+  r.run_ms(1500);
+  double largest = 0.0;
+  double steepest = 0.0;
+  for (std::size_t i = 1; i < r.log.size(); ++i) {
+    largest = std::max(largest, force_of(r.log[i]));
+    steepest = std::max(steepest, glm::length(r.log[i].on_hand_d.force - r.log[i - 1].on_hand_d.force));
+  }
+  EXPECT_NEAR(largest, 0.6, 1e-9);
+  EXPECT_LE(steepest, 0.020 * (1.0 + 1e-9));
+}
+
+// A device that may not put out is told zero at once, so that one that is armed again in the next tick begins at zero.
+TEST(device_loop, forgets_its_wrench_with_the_first_tick_of_a_disarmed_device) {
+  control_config control;
+  control.limits.force_slew_n_per_s = 200.0;
+  rig r(pressing_hand(), control);
+  r.run_ms(1000);
+  ASSERT_GT(force_of(r.last()), 1.0);
+  ASSERT_EQ(r.dev.disarm(), status::ok);
+  r.run_ms(1);
+  EXPECT_EQ(force_of(r.last()), 0.0);
+  const double booked_j = r.last().delivered_j;
+  ASSERT_TRUE(r.dev.arm());
+  r.run_ms(1);
+  EXPECT_LE(force_of(r.last()), 0.2 * (1.0 + 1e-9));
+  EXPECT_EQ(r.last().delivered_j, booked_j);
+}
+
+// What is recorded of a tick without a sample is the last good pose.
+TEST(device_loop, a_rejected_sample_goes_nowhere) {
+  simulated_config hand = pressing_hand();
+  hand.faults = {{device_fault::nan_pose, 800 * ms, 803 * ms}};
+  rig r(hand);
+  r.run_ms(900);
+  for (std::size_t i = 800; i < 803; ++i) {
+    EXPECT_NE(r.log[i].sample, sample_verdict::accepted);
+    EXPECT_EQ(r.log[i].T_dh.position, r.log[799].T_dh.position);
+    EXPECT_EQ(r.log[i].T_wa_target.position, r.log[799].T_wa_target.position);
+  }
+}
+
+// A wall until it is told otherwise, then forces that no probe can bear.
+struct breaking_renderer {
+  analytic_wall wall;
+  const bool* broken = nullptr;
+  status step(const scene_pose& at, tick& out) noexcept {
+    const status s = wall.step(at, out);
+    if (*broken) out.force.on_probe_w.force = {0.0, 0.0, 1e300};
+    return s;
+  }
+};
+
+// The coupling would go on pulling at a probe that stands where it was lost.
+TEST(device_loop, a_lost_probe_pulls_at_nothing) {
+  bool broken = false;
+  simulated_device dev(pressing_hand());
+  std::vector<session_record> log;
+  virtual_session<breaking_renderer, simulated_device, keep_all> session(
+      {{}, &broken}, {{pose{}}, vec3(0.0)}, rig::opened(dev), control_config{}, {}, keep_all{&log});
+  static_cast<void>(session.run_until(1000 * ms));
+  ASSERT_GT(force_of(log.back()), 1.0);
+  broken = true;
+  static_cast<void>(session.run_until(1010 * ms));
+  for (std::size_t i = 1003; i < log.size(); ++i) {
+    ASSERT_EQ(log[i].probe_status, status::not_finite) << i;
+    EXPECT_EQ(force_of(log[i]), 0.0) << i;
+  }
+}
+
+// A device that is where it is put, and keeps what it is told.
+struct placed_device {
+  using policy_tag = device_tag;
+  pose T_dh{};
+  device_command told{};
+  device_capabilities stated = simulated_config{}.capabilities;
+
+  [[nodiscard]] const device_capabilities& capabilities() const noexcept { return stated; }
+  [[nodiscard]] device_state state() const noexcept { return device_state::active; }
+  [[nodiscard]] result<void> open() { return {}; }
+  [[nodiscard]] result<void> arm() { return {}; }
+  [[nodiscard]] result<void> clear_fault() { return {}; }
+  status disarm() noexcept { return status::ok; }
+  void close() noexcept {}
+  [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
+    in.T_dh = T_dh;
+    in.host_time_ns = in.device_time_ns = now_ns;
+    ++in.sequence;
+    in.valid = sample_field::position | sample_field::rotation;
+    return status::ok;
+  }
+  [[nodiscard]] status write(std::int64_t, const device_command& out) noexcept {
+    told = out;
+    return status::ok;
+  }
+};
+
+// A tick after a long silence moves the probe by longest_step_ns: the hand's way since then is no leap of the probe.
+TEST(device_loop, a_late_tick_is_a_tick_of_the_longest_step) {
+  const auto after = [](std::int64_t silence_ns) {
+    placed_device dev;
+    exchange shared;
+    std::vector<session_record> log;
+    device_loop<placed_device, keep_all> loop(dev, {}, vec3(0.0), shared, keep_all{&log});
+    EXPECT_EQ(loop.tick(0), status::ok);
+    dev.T_dh.position = {0.0, 0.01, 0.0};
+    EXPECT_EQ(loop.tick(silence_ns), status::ok);
+    EXPECT_EQ(dev.told.on_hand.force, log.back().on_hand_d.force);
+    EXPECT_EQ(dev.told.valid_until_ns, silence_ns + 20 * ms);
+    return log.back();
+  };
+  const session_record due = after(5 * ms);
+  EXPECT_LT(due.on_hand_d.force.y, -0.1);
+  for (const std::int64_t late_ns : {6 * ms, 500 * ms, 3'600'000 * ms}) {
+    const session_record late = after(late_ns);
+    EXPECT_EQ(late.T_wa.position, due.T_wa.position) << late_ns;
+    EXPECT_EQ(late.on_hand_d.force, due.on_hand_d.force) << late_ns;
+  }
+}
+
+// After a fault the probe stands where the device is, and not where the wall held it.
+TEST(device_loop, begins_anew_at_the_device_when_a_fault_is_cleared) {
+  rig r(pressing_hand());
+  r.run_ms(1000);
+  r.session.device().stop();
+  r.run_ms(100);
+  ASSERT_EQ(force_of(r.last()), 0.0);
+  const auto stretch_m = [&] { return glm::length(r.last().T_wa_target.position - r.last().T_wa.position); };
+  ASSERT_GT(stretch_m(), 0.004);
+  ASSERT_TRUE(r.session.device().clear_fault());
+  r.run_ms(1);
+  EXPECT_LT(stretch_m(), 0.001);
 }
 
 // A renderer gone mad: whatever it answers, what leaves is finite and within the limits.

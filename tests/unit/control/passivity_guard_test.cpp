@@ -46,6 +46,38 @@ TEST(passivity_guard, damps_a_surplus_away_in_one_sample_where_it_can) {
   EXPECT_NEAR(guard.surplus_j(), 0.0, 1e-12);
 }
 
+// The same of a turn, and of both at once: each part is damped by its own inertia at the one rate that takes the sum out.
+TEST(passivity_guard, damps_a_turn_as_it_damps_a_motion) {
+  constexpr double inertia = 1e-3;
+  constexpr double h = 1e-3;
+  const vec3 turn{0.0, 0.0, 0.002};  // 2 rad/s
+  const pose turned{exp_rotation(turn), vec3(0.0)};
+  const pose turned_twice{exp_rotation(2.0 * turn), vec3(0.0)};
+
+  passivity_guard guard({.mass_kg = 1.0, .inertia_kg_m2 = inertia});
+  guard.observe({}, {}, 0.0);
+  guard.observe(turned, {vec3(0.0), {0, 0, 5e-4}}, h);  // 1 microjoule: under the tolerance
+  EXPECT_EQ(guard.adjust({}).alpha_per_s, 0.0);
+  guard.observe(turned_twice, {vec3(0.0), {0, 0, 5e-4}}, h);
+  guard.observe(turned, {vec3(0.0), {0, 0, -0.4995}}, h);  // 1 mJ in all, at -2 rad/s
+  const guard_action a = guard.adjust({});
+  EXPECT_NEAR(a.alpha_per_s, 1.001e-3 / (h * inertia * 4.0), 1e-6 * a.alpha_per_s);
+  EXPECT_NEAR(a.on_hand.torque.z, a.alpha_per_s * inertia * 2.0, 1e-9);
+  EXPECT_EQ(a.on_hand.force, vec3(0.0));
+  guard.observe({}, a.on_hand, h);  // the same velocity: the surplus is gone
+  EXPECT_NEAR(guard.surplus_j(), 0.0, 1e-12);
+
+  passivity_guard both({.mass_kg = 1.0, .inertia_kg_m2 = inertia});
+  both.observe({}, {}, 0.0);
+  both.observe({turned.rotation, {0.001, 0, 0}}, {{0.2, 0, 0}, vec3(0.0)}, h);  // 0.2 mJ at 1 m/s and 2 rad/s
+  const guard_action b = both.adjust({});
+  EXPECT_NEAR(b.alpha_per_s, 2e-4 / (h * (1.0 + inertia * 4.0)), 1e-9);
+  EXPECT_NEAR(b.on_hand.force.x, -b.alpha_per_s, 1e-9);
+  EXPECT_NEAR(b.on_hand.torque.z, -b.alpha_per_s * inertia * 2.0, 1e-9);
+  both.observe({turned_twice.rotation, {0.002, 0, 0}}, b.on_hand, h);
+  EXPECT_NEAR(both.surplus_j(), 0.0, 1e-12);
+}
+
 TEST(passivity_guard, never_damps_faster_than_half_the_velocity_in_a_sample) {
   passivity_guard guard({.mass_kg = 0.1, .hard_limit_j = 10.0});
   guard.observe(at_x(0.0), {}, 0.0);

@@ -86,6 +86,31 @@ TEST(probe, carries_its_inertia_with_its_rotation) {
   EXPECT_NEAR(response_about_x(0.5 * pi), 1e-3 * 1e-6 / 1e-5, 1e-9);
 }
 
+// About any axis of any body: a torque about a principal axis, wherever the body has turned it, turns the body about
+// that axis, by the moment of that axis. Turned by quarters the sense of the rotation would not show.
+TEST(probe, turns_about_its_own_axes_however_it_lies) {
+  mat3 inertia(0.0);
+  const vec3 moments{1e-5, 3e-5, 9e-5};
+  for (int i = 0; i < 3; ++i) inertia[i][i] = moments[i];
+  const virtual_coupling spring = undamped(500.0, 3.0);
+  std::mt19937_64 bits(11);
+  for (int n = 0; n < 20; ++n) {
+    const vec3 turn{3.0 * unit(bits) - 1.5, 3.0 * unit(bits) - 1.5, 3.0 * unit(bits) - 1.5};
+    for (int axis = 0; axis < 3; ++axis) {
+      probe p({0.01, inertia});
+      p.reset({exp_rotation(turn), vec3(0.0)});
+      const pose target = p.state().T_wc;
+      vec3 along_a{0.0};
+      along_a[axis] = 1.0;
+      const vec3 along_w = exp_rotation(turn) * along_a;
+      ASSERT_EQ(p.step(1e-6, spring, target, {}, {}, {vec3(0.0), 1e-3 * along_w}), status::ok);
+      const vec3 expected = 1e-3 * 1e-6 / moments[axis] * along_w;
+      EXPECT_LT(glm::length(p.state().velocity_w.angular - expected), 1e-6 * glm::length(expected)) << n << ' ' << axis;
+      EXPECT_NEAR(p.kinetic_j(), 0.5 * moments[axis] * glm::dot(expected, expected), 1e-5 * p.kinetic_j());
+    }
+  }
+}
+
 struct stiff_scene {
   probe tool;
   virtual_coupling coupling{{}, 0.01, 1e-5};
@@ -186,6 +211,28 @@ TEST(virtual_coupling, is_critically_damped_up_to_its_bound) {
   EXPECT_DOUBLE_EQ(virtual_coupling({}, 0.01, 1e-5).damping_n_m_s_per_rad(), 2.0 * std::sqrt(3e-5));
   EXPECT_EQ(virtual_coupling({}, 1.0, 1.0).damping_n_s_per_m(), 5.0);
   EXPECT_EQ(virtual_coupling({.damping_n_s_per_m = 0.7}, 1.0, 1.0).damping_n_s_per_m(), 0.7);
+}
+
+// Each of the four terms by itself, with every velocity that it is made of.
+TEST(virtual_coupling, is_two_springs_and_two_dampers) {
+  const virtual_coupling c({.stiffness_n_per_m = 400.0,
+                            .stiffness_n_m_per_rad = 2.0,
+                            .damping_n_s_per_m = 3.0,
+                            .damping_n_m_s_per_rad = 0.05},
+                           0.01, 1e-5);
+  const pose here{exp_rotation({0, 0, 0.1}), {0.001, 0.002, 0.003}};
+  const pose there{exp_rotation({0, 0, 0.3}), {0.004, 0.002, 0.001}};
+  const twist still{};
+  const twist moving{{0.1, -0.2, 0.3}, {1.0, -2.0, 3.0}};
+  const wrench springs = c.on_probe(there, still, here, still);
+  EXPECT_LT(glm::length(springs.force - vec3(1.2, 0.0, -0.8)), 1e-14);
+  EXPECT_LT(glm::length(springs.torque - vec3(0.0, 0.0, 0.4)), 1e-14);
+  const wrench pulled = c.on_probe(here, moving, here, still);
+  EXPECT_LT(glm::length(pulled.force - 3.0 * moving.linear), 1e-14);
+  EXPECT_LT(glm::length(pulled.torque - 0.05 * moving.angular), 1e-14);
+  const wrench held = c.on_probe(here, still, here, moving);
+  EXPECT_LT(glm::length(held.force + 3.0 * moving.linear), 1e-14);
+  EXPECT_LT(glm::length(held.torque + 0.05 * moving.angular), 1e-14);
 }
 
 TEST(virtual_coupling, pulls_the_probe_towards_the_device) {

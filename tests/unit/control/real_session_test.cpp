@@ -75,6 +75,19 @@ TEST(real_session, stops_when_it_is_destroyed_and_when_it_never_ran) {
   EXPECT_EQ(dev.state(), device_state::ready);
 }
 
+TEST(real_session, tells_the_gate_why_it_stops) {
+  simulated_device dev(touching_hand());
+  ASSERT_TRUE(dev.open() && dev.arm());
+  real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+  for (const gate_fault cause : {gate_fault::interrupted, gate_fault::stopped}) {
+    session.start();
+    session.stop(cause);
+    session.stop(gate_fault::watchdog);  // it does not run any more
+    EXPECT_EQ(session.device().gate().fault(), cause);
+    ASSERT_TRUE(session.device().clear_fault());
+  }
+}
+
 std::atomic<int> threads_set_up{0};
 
 TEST(real_session, lets_each_thread_be_set_up_once) {

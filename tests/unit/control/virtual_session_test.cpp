@@ -70,6 +70,18 @@ TEST(virtual_session, depends_on_its_schedule) {
   EXPECT_NE(run(1, {.contact_period_ns = 5'000'000}, motion_kind::press, 1'500'000'000), on_time);
 }
 
+TEST(virtual_session, runs_the_contact_first_where_both_are_due) {
+  simulated_device dev;
+  ASSERT_TRUE(dev.open() && dev.arm());
+  virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{},
+                                                           {.contact_period_ns = 2'000'000});
+  for (std::uint64_t tick = 0; tick < 10; ++tick) {
+    EXPECT_EQ(session.contact_ticks(), (tick + 1) / 2);
+    static_cast<void>(session.step());
+    EXPECT_EQ(session.contact_ticks(), tick / 2 + 1) << tick;
+  }
+}
+
 TEST(virtual_session, keeps_to_its_periods) {
   simulated_device dev;
   ASSERT_TRUE(dev.open() && dev.arm());

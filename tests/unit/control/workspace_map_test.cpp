@@ -1,3 +1,4 @@
+#include <cmath>
 #include <gtest/gtest.h>
 
 #include <asperity/control/workspace_map.hpp>
@@ -12,6 +13,15 @@ TEST(workspace_map, is_the_identity_by_default) {
   EXPECT_EQ(map.to_world(T).position, T.position);
   const wrench w{{1, 2, 3}, {4, 5, 6}};
   EXPECT_EQ(map.to_device(w, {1, 2, 3}, {1, 2, 3}).torque, w.torque);
+}
+
+// p_w = T_wd (scale p_d): the scale is about the device's origin, which stays where T_wd puts it.
+TEST(workspace_map, scales_about_the_devices_origin) {
+  const workspace_map map{{exp_rotation({0, 0, 0.5 * 3.141592653589793}), {1, 2, 3}}, 2.0, {}};
+  EXPECT_EQ(map.to_world(pose{}).position, vec3(1, 2, 3));
+  const pose T = map.to_world(pose{exp_rotation({0.1, 0, 0}), {0.25, 0, 0.5}});
+  EXPECT_LT(glm::length(T.position - vec3(1, 2.5, 4)), 1e-15);
+  EXPECT_LT(glm::length(T.rotation * vec3(0, 1, 0) - vec3(-std::cos(0.1), 0, std::sin(0.1))), 1e-15);
 }
 
 // Power at the handle equals power at the probe's point, for any map and lever: the map itself makes no energy.

@@ -51,7 +51,13 @@ TEST(spatial, solve_refuses_singular_and_nan_systems_and_leaves_the_answer_alone
   for (std::size_t i = 0; i < 6; ++i) a(i, i) = 1.0;
   a(2, 2) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(solve(a, vec6{}, x));
-  EXPECT_EQ(x[5], 6.0);
+  // Regular, with an answer that is none: a load that is not finite, and one over all numbers.
+  a(2, 2) = 1e-200;
+  for (const double load : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN(), 1e200}) {
+    EXPECT_FALSE(solve(a, {{0, 0, load}, vec3(0.0)}, x)) << load;
+  }
+  EXPECT_EQ(x.linear, vec3(1, 2, 3));
+  EXPECT_EQ(x.angular, vec3(4, 5, 6));
 }
 
 TEST(spatial, outer_product_and_blocks_land_where_they_should) {
@@ -60,6 +66,10 @@ TEST(spatial, outer_product_and_blocks_land_where_they_should) {
   add_outer(m, 2.0, g);
   EXPECT_EQ(m(0, 5), 12.0);
   EXPECT_EQ(m(5, 0), 12.0);
+  add_outer(m, -0.5, {{4, 0, 0}, {0, 0, 1}});  // added to what is there
+  EXPECT_EQ(m(0, 5), 10.0);
+  EXPECT_EQ(m(0, 0), -6.0);
+  EXPECT_EQ(m(1, 2), 12.0);
   set_block(m, 3, 0, skew({1, 2, 3}));
   EXPECT_EQ(m(3, 1), -3.0);  // first row of skew is (0, -z, y)
   EXPECT_EQ(m(3, 2), 2.0);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <asperity/hal/output_gate.hpp>
 
@@ -161,6 +162,19 @@ TEST(bound_vector, certificate_catches_a_previous_value_that_is_not_within_the_l
   }
 }
 
+// The certificate's room is for rounding: a millionth over the limit is over it.
+TEST(bound_vector, certificate_leaves_room_for_rounding_only) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const auto& [over, certified] : {std::pair{1e-10, true}, std::pair{1e-6, false}, std::pair{0.05, false}}) {
+      vec3 previous{0.0};
+      previous[axis] = 10.0 * (1.0 + over);
+      const bounded_vector v = bound_vector(previous, previous, {10.0, 10.0, 1e-12}, true);
+      EXPECT_EQ(v.certified, certified) << over;
+      EXPECT_EQ(v.value == vec3(0.0), !certified) << over;
+    }
+  }
+}
+
 TEST(output_gate, limits_that_are_no_numbers_let_nothing_through) {
   for (const double bad : {nan_value, -1.0, 0.0}) {
     gate_limits l = plain();
@@ -171,12 +185,62 @@ TEST(output_gate, limits_that_are_no_numbers_let_nothing_through) {
   }
 }
 
+TEST(output_gate, takes_each_limit_that_a_device_states_for_what_it_is) {
+  device_capabilities stated;
+  stated.continuous_force_n = 1.0;
+  stated.peak_force_n = 2.0;
+  stated.continuous_torque_n_m = 3.0;
+  stated.peak_torque_n_m = 4.0;
+  stated.force_slew_n_per_s = 5.0;
+  stated.torque_slew_n_m_per_s = 6.0;
+  const gate_limits l = limits_of(stated);
+  EXPECT_EQ(l.continuous_force_n, 1.0);
+  EXPECT_EQ(l.peak_force_n, 2.0);
+  EXPECT_EQ(l.continuous_torque_n_m, 3.0);
+  EXPECT_EQ(l.peak_torque_n_m, 4.0);
+  EXPECT_EQ(l.force_slew_n_per_s, 5.0);
+  EXPECT_EQ(l.torque_slew_n_m_per_s, 6.0);
+}
+
 TEST(output_gate, device_limits_cannot_be_raised) {
   gate_limits generous = plain();
   generous.peak_force_n = 1000.0;
   EXPECT_EQ(tighter(plain(), generous).peak_force_n, 10.0);
+  // Nor any other of them, whichever side states the lower one.
+  for (double gate_limits::*const which :
+       {&gate_limits::peak_force_n, &gate_limits::continuous_force_n, &gate_limits::force_slew_n_per_s,
+        &gate_limits::peak_torque_n_m, &gate_limits::continuous_torque_n_m, &gate_limits::torque_slew_n_m_per_s}) {
+    gate_limits high = plain();
+    high.*which *= 3.0;
+    EXPECT_EQ(tighter(plain(), high).*which, plain().*which);
+    EXPECT_EQ(tighter(high, plain()).*which, plain().*which);
+  }
   device_capabilities unstated;
   EXPECT_EQ(tighter(limits_of(unstated), generous).peak_force_n, 0.0);
+}
+
+// Nor made to last: whatever time constant an application states, the running mean square that the device's own limits
+// allow, over the device's own time constant, is not passed.
+TEST(output_gate, the_devices_thermal_budget_cannot_be_raised) {
+  gate_limits device = plain();
+  device.continuous_force_n = 4.0;
+  device.continuous_torque_n_m = 0.2;
+  device.thermal_time_s = 0.5;
+  for (const double stated_s : {0.05, 0.5, 5.0, 1e9}) {
+    gate_limits application = plain();
+    application.thermal_time_s = stated_s;
+    output_gate gate(tighter(device, application));
+    double force_n2 = 0.0;
+    double torque_n2_m2 = 0.0;
+    for (int i = 0; i < 3000; ++i) {
+      const bool pauses = i % 1000 > 700;
+      const wrench w = gate.pass(i * ms, {}, pauses ? want(vec3(0.0)) : want({0, 0, 100}, {5, 0, 0})).on_hand;
+      force_n2 += 1e-3 / (0.5 + 1e-3) * (w.force.z * w.force.z - force_n2);
+      torque_n2_m2 += 1e-3 / (0.5 + 1e-3) * (w.torque.x * w.torque.x - torque_n2_m2);
+      ASSERT_LE(force_n2, 16.0 * (1.0 + 1e-9)) << stated_s << ' ' << i;
+      ASSERT_LE(torque_n2_m2, 0.04 * (1.0 + 1e-9)) << stated_s << ' ' << i;
+    }
+  }
 }
 
 // A million commands, poses and limits of any bit pattern: finite, within the limit, no faster than the slew rate.
@@ -229,6 +293,56 @@ TEST(output_gate, settles_at_the_continuous_limit) {
   EXPECT_EQ(gate.fault(), gate_fault::none);
 }
 
+TEST(output_gate, settles_at_the_continuous_torque) {
+  gate_limits l = plain();
+  l.continuous_torque_n_m = 0.2;
+  l.thermal_time_s = 2.0;
+  output_gate gate(l);
+  double peak = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    peak = std::max(peak, gate.pass(i * ms, {}, want(vec3(0.0), {0, 5, 0})).on_hand.torque.y);
+    ASSERT_LE(gate.torque_mean_square(), 0.04);
+  }
+  EXPECT_GT(peak, 0.45);
+  EXPECT_NEAR(gate.last().torque.y, 0.2, 0.0025);
+  EXPECT_EQ(gate.fault(), gate_fault::none);
+}
+
+// A continuous limit above the peak, as an application may state it, is the peak's: the gate neither lets more through
+// as it warms up nor shuts over its own limits.
+TEST(output_gate, a_continuous_limit_above_the_peak_changes_nothing) {
+  for (const double continuous : {0.5001, 5.0, 1e6}) {
+    gate_limits l = plain();
+    l.continuous_torque_n_m = continuous;
+    l.continuous_force_n = 20.0 * continuous;
+    l.thermal_time_s = 0.05;
+    output_gate gate(l);
+    for (int i = 0; i < 500; ++i) {
+      const wrench w = gate.pass(i * ms, {}, want({0, 100, 0}, {0, 0, 100})).on_hand;
+      ASSERT_LE(w.force.y, 10.0 * (1.0 + 1e-12)) << continuous;
+      ASSERT_LE(w.torque.z, 0.5 * (1.0 + 1e-12)) << continuous;
+    }
+    EXPECT_NEAR(gate.last().force.y, 10.0, 1e-9) << continuous;
+    EXPECT_NEAR(gate.last().torque.z, 0.5, 1e-9) << continuous;
+    EXPECT_EQ(gate.fault(), gate_fault::none) << continuous;
+  }
+}
+
+// How long a device with a watchdog of its own goes on with what it was told last.
+TEST(output_gate, a_command_is_valid_for_as_long_as_was_said_and_no_longer) {
+  for (const std::int64_t hold_ns : {ms, 7 * ms, 20 * ms}) {
+    output_gate gate(plain(), hold_ns);
+    for (int i = 0; i < 5; ++i) {
+      const device_command c = gate.pass(i * ms, {}, want({1, 0, 0}));
+      EXPECT_EQ(c.valid_until_ns, i * ms + hold_ns);
+      EXPECT_EQ(c.frame, wrench_frame::device_base);
+      EXPECT_EQ(c.sequence, static_cast<std::uint64_t>(i) + 1U);
+    }
+  }
+  output_gate by_default(plain());
+  EXPECT_EQ(by_default.pass(3 * ms, {}, want({1, 0, 0})).valid_until_ns, 23 * ms);
+}
+
 TEST(output_gate, warms_with_its_time_constant) {
   gate_limits l = plain();
   l.thermal_time_s = 2.0;
@@ -273,6 +387,39 @@ TEST(output_gate, low_pass_takes_its_time_and_nothing_of_what_is_not_finite) {
       EXPECT_TRUE(is_finite(fresh.pass(i * ms, {}, want({i == 10 ? bad : 1.0, 0, 0})).on_hand));
     }
     EXPECT_EQ(fresh.fault(), gate_fault::not_finite);
+  }
+}
+
+// Force and torque pass the same filter: the torque's part of the way is the force's, in every tick.
+TEST(output_gate, low_passes_the_torque_as_the_force) {
+  gate_limits l = plain();
+  l.force_slew_n_per_s = l.torque_slew_n_m_per_s = 1e5;
+  output_gate gate(l, 20 * ms, 10.0);
+  for (int i = 0; i <= 30; ++i) {
+    const wrench w = gate.pass(i * ms, {}, want({0, 6, 0}, {0, 0.3, 0})).on_hand;
+    EXPECT_NEAR(w.torque.y, 0.05 * w.force.y, 1e-15) << i;
+    if (i == 16) {
+      EXPECT_NEAR(w.torque.y, 0.3 * (1.0 - std::exp(-16.0e-3 * 2.0 * 3.14159265 * 10.0)), 0.0075);
+    }
+  }
+}
+
+// What is no ordinary number is found as it came, and stays nowhere: cleared in the same tick, the gate follows again.
+TEST(output_gate, a_low_pass_keeps_nothing_of_what_shut_the_gate) {
+  for (const double bad : {nan_value, infinity, 2e150, -2e150}) {
+    for (int axis = 0; axis < 6; ++axis) {
+      output_gate gate(plain(), 20 * ms, 10.0);
+      static_cast<void>(gate.pass(0, {}, want(vec3(0.0))));
+      device_command c = want(vec3(0.0));
+      (axis < 3 ? c.on_hand.force[axis] : c.on_hand.torque[axis - 3]) = bad;
+      EXPECT_TRUE(is_zero(gate.pass(ms, {}, c).on_hand));
+      ASSERT_EQ(gate.fault(), gate_fault::not_finite) << bad << ' ' << axis;
+      ASSERT_TRUE(gate.clear());
+      const wrench w = gate.pass(2 * ms, {}, want({6, 0, 0}, {0, 0.3, 0})).on_hand;
+      EXPECT_EQ(gate.fault(), gate_fault::none) << bad << ' ' << axis;
+      EXPECT_GT(w.force.x, 0.0);
+      EXPECT_GT(w.torque.y, 0.0);
+    }
   }
 }
 

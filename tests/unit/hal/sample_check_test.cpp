@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -74,6 +75,24 @@ TEST(sample_check, finds_a_jump_and_a_spin) {
   EXPECT_EQ(check.judge(4 * ms, status::ok, good(4 * ms, 0.01)), sample_verdict::accepted);
   check.restart();
   EXPECT_EQ(check.judge(5 * ms, status::ok, good(5 * ms, 0.5)), sample_verdict::accepted);
+}
+
+// 10 m/s and 100 rad/s by default, over the time between two stamps, and never over less than a millisecond.
+TEST(sample_check, a_jump_begins_where_a_hand_ends) {
+  for (const std::int64_t apart_ns : {std::int64_t{0}, ms / 2, ms, 5 * ms}) {
+    const double most_s = std::max(1e-3, static_cast<double>(apart_ns) * 1e-9);
+    for (const double share : {0.99, 1.01}) {
+      const sample_verdict due = share < 1.0 ? sample_verdict::accepted : sample_verdict::jump;
+      sample_check moved;
+      ASSERT_EQ(moved.judge(0, status::ok, good(0)), sample_verdict::accepted);
+      EXPECT_EQ(moved.judge(apart_ns, status::ok, good(apart_ns, share * 10.0 * most_s)), due) << apart_ns;
+      sample_check turned;
+      ASSERT_EQ(turned.judge(0, status::ok, good(0)), sample_verdict::accepted);
+      device_sample s = good(apart_ns);
+      s.T_dh.rotation = exp_rotation({0.0, share * 100.0 * most_s, 0.0});
+      EXPECT_EQ(turned.judge(apart_ns, status::ok, s), due) << apart_ns;
+    }
+  }
 }
 
 TEST(sample_check, is_exhausted_by_rejections_in_a_row_only) {

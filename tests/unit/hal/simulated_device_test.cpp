@@ -141,6 +141,24 @@ TEST(simulated_device, faults_on_a_command_that_no_gate_would_send) {
   EXPECT_EQ(e.write(0, world), status::not_finite);
 }
 
+// What no gate would send is cut down to what the device states of itself, force and torque apart, direction kept.
+TEST(simulated_device, puts_out_no_more_than_it_states) {
+  simulated_config c = still_hand();
+  c.capabilities.peak_force_n = 5.0;
+  c.capabilities.peak_torque_n_m = 0.5;
+  simulated_device d = armed(c);
+  device_sample s;
+  ASSERT_EQ(d.read(0, s), status::ok);
+  for (const double times : {0.5, 1.0, 3.0, 1e300}) {
+    const wrench wanted{times * vec3(3, 0, 4), times * vec3(0, -0.3, 0.4)};
+    ASSERT_EQ(d.write(0, {wanted, wrench_frame::device_base, 20 * ms, 1}), status::ok);
+    wrench w;
+    ASSERT_EQ(d.applied(0, w), status::ok);
+    EXPECT_LT(glm::length(w.force - std::min(times, 1.0) * vec3(3, 0, 4)), 1e-14) << times;
+    EXPECT_LT(glm::length(w.torque - std::min(times, 1.0) * vec3(0, -0.3, 0.4)), 1e-15) << times;
+  }
+}
+
 TEST(simulated_device, quantises_and_delays) {
   simulated_config c;
   c.motion = {.direction_d = {1, 0, 0}, .depth_m = 0.1};
@@ -207,6 +225,23 @@ TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
   }
   EXPECT_NEAR(before.x, 1.8, 1e-9);
   EXPECT_NEAR(before.y, 2.4, 1e-9);
+}
+
+TEST(simulated_device, motors_hold_their_own_torque_and_its_slew) {
+  simulated_config config = still_hand();
+  config.actuator = {.peak_torque_n_m = 0.03, .torque_slew_n_m_per_s = 10.0};
+  simulated_device dev = armed(config);
+  vec3 before{0.0};
+  for (std::int64_t t = 0; t < 20'000'000; t += 50'000) {
+    device_sample in;
+    ASSERT_EQ(dev.read(t, in), status::ok);
+    const wrench told{vec3(0.0), {0.0, 0.06, -0.08}};
+    ASSERT_EQ(dev.write(t, {told, wrench_frame::device_base, t + 20 * ms, 1}), status::ok);
+    EXPECT_LE(glm::length(dev.put_out().torque - before), 0.0005 + 1e-12);
+    before = dev.put_out().torque;
+  }
+  EXPECT_NEAR(before.y, 0.018, 1e-12);
+  EXPECT_NEAR(before.z, -0.024, 1e-12);
 }
 
 TEST(simulated_device, motors_warm_up_and_derate) {
