@@ -2,6 +2,7 @@
 # results_test.sh SOURCE-FOLDER: what tools/dev/results.sh makes of planted consoles and logs of CTest.
 set -uo pipefail
 source "$1/tools/dev/results.sh"
+source "$1/tools/dev/nightly.sh"
 cd "$(mktemp -d)" || exit
 trap 'rm -rf "$PWD"' EXIT
 failed=0
@@ -91,6 +92,17 @@ closing_lines /dev/null > /dev/null && is "status of nothing" 0 1
 is "skips" "$(tell_skipped first second third)" "skipped: d: no bus"
 is "a build's own count" "$(count_results first)" "3 passed, 0 failed, 2 skipped"
 is "a line that is no result" "$(echo rubbish | cat first - > torn && closing_lines torn | tail -n 1)" "3 passed, 1 failed"
+
+# A DISABLED_ case that no program ran.
+mkdir -p sources
+printf 'TEST(a, DISABLED_one) {}\nTEST_P(b,\n       DISABLED_three) {}\n' > sources/a.cpp
+printf 'TYPED_TEST(c, DISABLED_two) {}\nTEST(d, ordinary) {}\n' > sources/b.hpp
+row passed "p a.DISABLED_one" "" > ran
+{ row passed "p x/c/0.DISABLED_two/3" "" && row failed "p x/b.DISABLED_three/1" ""; } >> ran
+is "every disabled case ran" "$(all_ran sources ran && echo yes)" "yes"
+sed -i '1d' ran
+is "a disabled case did not run" "$(all_ran sources ran)" "DISABLED_one is in sources/, and no program ran it"
+all_ran sources ran > /dev/null && is "status of a case that did not run" 0 1
 
 # What a half of the matrix leaves has to fit the status it ended with.
 accounts_for 0 < first || is "passed" no yes
