@@ -128,6 +128,22 @@ TYPED_TEST(JointDrives, the_drives_own_fault_is_told_with_its_code) {
   EXPECT_EQ(r.peer.enables(), 1);
 }
 
+TYPED_TEST(JointDrives, the_first_cause_of_a_fault_stays) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  r.feeding = false;
+  ASSERT_TRUE(r.run_until(drive_state::fault, 100 * ms));
+  const drive_fault first = r.drive.fault();
+  r.peer.fail(static_cast<std::uint8_t>(TypeParam::broken.told));
+  r.run(30 * ms);
+  r.peer.position_rad = 6.0;
+  r.run(30 * ms);
+  EXPECT_STREQ(r.drive.fault().what, first.what);
+  EXPECT_EQ(r.drive.fault().code, first.code);
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+}
+
 TYPED_TEST(JointDrives, a_cleared_fault_leads_to_idle_and_not_to_torque) {
   rig<TypeParam> r;
   ASSERT_TRUE(r.go(10.0));
