@@ -128,6 +128,22 @@ TYPED_TEST(JointDrives, the_drives_own_fault_is_told_with_its_code) {
   EXPECT_EQ(r.peer.enables(), 1);
 }
 
+TYPED_TEST(JointDrives, the_first_cause_of_a_fault_stays) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  r.feeding = false;
+  ASSERT_TRUE(r.run_until(drive_state::fault, 100 * ms));
+  const drive_fault first = r.drive.fault();
+  r.peer.fail(static_cast<std::uint8_t>(TypeParam::broken.told));
+  r.run(30 * ms);
+  r.peer.position_rad = 6.0;
+  r.run(30 * ms);
+  EXPECT_STREQ(r.drive.fault().what, first.what);
+  EXPECT_EQ(r.drive.fault().code, first.code);
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+}
+
 TYPED_TEST(JointDrives, a_cleared_fault_leads_to_idle_and_not_to_torque) {
   rig<TypeParam> r;
   ASSERT_TRUE(r.go(10.0));
@@ -205,6 +221,55 @@ TYPED_TEST(JointDrives, a_drive_that_falls_silent_gets_no_torque) {
   EXPECT_EQ(r.drive.state(), drive_state::fault);
   EXPECT_FALSE(r.peer.enabled());
   EXPECT_EQ(r.peer.enables(), 1);
+}
+
+TYPED_TEST(JointDrives, a_drive_that_is_quiet_gets_no_torque_until_it_is_heard_again) {
+  const std::int64_t quiet_ns = TypeParam::options(geared()).joint.quiet_ns;
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  r.peer.mute(true);
+  r.run(quiet_ns + 2 * ms);
+  r.last_on_wire_n_m = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    r.tick();
+    EXPECT_LE(std::fabs(r.last_on_wire_n_m), r.zero_error()) << TypeParam::name << " tick " << i;
+  }
+  r.peer.mute(false);
+  r.run(5 * ms);
+  EXPECT_EQ(r.drive.state(), drive_state::enabled) << r.drive.fault().what;
+  EXPECT_NEAR(r.last_on_wire_n_m, 10.0, r.drive.facts().torque_resolution_n_m * 1.01);
+}
+
+TYPED_TEST(JointDrives, a_drive_that_does_not_enable_ends_in_a_fault) {
+  rig<TypeParam> r;
+  ASSERT_TRUE(r.bring_up());
+  r.peer.mute(true);
+  ASSERT_TRUE(r.drive.enable(r.clock.now_ns()));
+  ASSERT_TRUE(r.run_until(drive_state::fault, 600 * ms)) << to_string(r.drive.state());
+  EXPECT_TRUE(r.why_contains("did not enable in time")) << r.drive.fault().what;
+  r.peer.mute(false);
+  r.run(300 * ms);
+  EXPECT_TRUE(r.is_limp());
+  EXPECT_EQ(r.drive.state(), drive_state::fault);
+}
+
+// 100 rad/s over a period and 5 ms of jitter: 0.6 rad of the joint, 3.6 rad of the shaft.
+TYPED_TEST(JointDrives, a_position_that_jumps_is_a_fault_and_one_that_moves_is_none) {
+  for (const double shaft_rad : {3.0, -3.0, 5.0, -5.0}) {
+    rig<TypeParam> r;
+    ASSERT_TRUE(r.go(10.0));
+    r.run(10 * ms);
+    r.peer.position_rad = shaft_rad;
+    r.run(25 * ms);  // some drives tell their position every few periods
+    if (std::fabs(shaft_rad) < 3.6) {
+      EXPECT_EQ(r.drive.state(), drive_state::enabled) << r.drive.fault().what;
+    } else {
+      EXPECT_EQ(r.drive.state(), drive_state::fault) << shaft_rad;
+      EXPECT_TRUE(r.why_contains("jumped")) << r.drive.fault().what;
+      EXPECT_TRUE(r.is_limp());
+    }
+  }
 }
 
 TYPED_TEST(JointDrives, a_reset_in_the_middle_does_not_bring_torque_back) {

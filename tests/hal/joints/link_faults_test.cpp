@@ -55,6 +55,24 @@ TYPED_TEST(LinkFaults, a_cut_link_leaves_no_torque) {
   }
 }
 
+// A bus that takes no frame is a fault in the same period, and the fault says what the bus said.
+TYPED_TEST(LinkFaults, a_bus_that_takes_nothing_is_a_fault_at_once) {
+  const std::pair<io_status, const char*> answers[] = {{io_status::down, "down"},
+                                                       {io_status::gone, "gone"},
+                                                       {io_status::too_short, "a part of a frame"},
+                                                       {io_status::refused, "cannot carry"},
+                                                       {io_status::failed, "sending failed"}};
+  for (const auto& [with, word] : answers) {
+    link_event cut = in_window(link_fault::answer, link_direction::to_device);
+    cut.with = with;
+    rig<TypeParam> r({.events = {cut}, .latency_ns = 100'000});
+    run_into_window(r);
+    r.run(2 * ms);
+    EXPECT_EQ(r.drive.state(), drive_state::fault) << word;
+    EXPECT_TRUE(r.why_contains(word)) << r.drive.fault().what;
+  }
+}
+
 // What spoils a part: torque within limits all the time, and either the session goes on or it ends as above.
 TYPED_TEST(LinkFaults, a_bad_link_never_brings_more_torque_than_asked_for) {
   for (const link_fault kind : {link_fault::lose, link_fault::delay, link_fault::reorder, link_fault::duplicate,
