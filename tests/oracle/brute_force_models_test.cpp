@@ -30,8 +30,8 @@ struct model_pair {
 };
 constexpr model_pair pairs[] = {{"block", "gear"}, {"file", "cad_part"}, {"hammer", "torus"}};
 
-// Of 900 poses with 1,086 contacts, with seeds that no test draws.
-constexpr std::uint64_t known_contacts = 1086, known_beyond = 9, known_disagreed = 9;
+// Of 600 poses, with seeds 1 and 2, which no day has.
+constexpr std::uint64_t known_contacts = 658, known_beyond = 0, known_disagreed = 0;
 
 void compare(std::uint64_t seed, int poses_per_pair) {
   oracle::print_heading();
@@ -78,8 +78,8 @@ std::vector<std::uint32_t> patch_near(const coarse_mesh& mesh, const pose& T, co
 
 // The shared potential knows no windows. Where it tells a single contact, its depth is that of the originals along its
 // direction, in a window about it.
-// Of 900 poses with 500 single contacts, with seeds that no test draws.
-constexpr std::uint64_t known_single = 500, known_single_beyond = 5;
+// Of 600 poses, with seeds 1 and 2, which no day has.
+constexpr std::uint64_t known_single = 413, known_single_beyond = 2;
 
 void compare_single(std::uint64_t seed, std::uint64_t poses_per_pair) {
   constexpr double half_window_m = 0.002;

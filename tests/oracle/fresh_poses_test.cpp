@@ -108,17 +108,17 @@ TEST(fresh_poses, DISABLED_notice_planted_faults_on_most_days) {
   for (const planted& fault : {nothing, turned, scaled, deaf, early, pulling}) {
     int days = 0;
     std::string first;
-    for (std::uint64_t day = 1000; day < 1010; ++day) {
+    for (std::uint64_t day = 1000; day < 1005; ++day) {
       const auto told = told_with(fault, day, approaches_a_day, known_benchmark_pairs.size());
       days += told.empty() ? 0 : 1;
       if (first.empty() && !told.empty()) first = told.back();
     }
-    std::printf("  %-30s noticed on %d of 10 days: %s\n", fault.name, days, first.c_str());
+    std::printf("  %-30s noticed on %d of 5 days: %s\n", fault.name, days, first.c_str());
     std::fflush(stdout);
     if (fault.plant == nothing.plant) {
       EXPECT_EQ(days, 0) << first;
     } else {
-      EXPECT_GE(days, 9) << fault.name;
+      EXPECT_GE(days, 4) << fault.name;
     }
   }
 }
