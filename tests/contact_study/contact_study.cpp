@@ -31,7 +31,7 @@ constexpr char usage[] =
     "  --shared-only    leave the paper's formulation out\n"
     "  --out DIR        where contacts.md and the pictures go (out/study)\n"
     "  --pictures-only  draw the pictures and stop\n"
-    "The real meshes are taken from the folder that the variable ASPERITY_MODELS names.\n";
+    "The real meshes are taken from the folder that ASPERITY_MODELS names, or ../shared/models.\n";
 
 struct arguments {
   study_options study;

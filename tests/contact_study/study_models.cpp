@@ -1,6 +1,5 @@
 #include "contact_study/study_models.hpp"
 
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "benchmark_models.hpp"
+#include "support/real_meshes.hpp"
 
 namespace asperity::contact_study {
 namespace {
@@ -32,15 +32,16 @@ void scale_to_diagonal(triangle_mesh& mesh, double diagonal_m) {
 }
 
 result<triangle_mesh> real_mesh(std::string_view name) {
-  const char* folder = std::getenv("ASPERITY_MODELS");
+  const fs::path folder = test_support::real_mesh_folder();
   for (const char* extension : {".ply", ".obj", ".stl"}) {
-    const fs::path file = fs::path(folder == nullptr ? "" : folder) / (std::string(name) + extension);
-    if (folder == nullptr || !fs::exists(file)) continue;
+    const fs::path file = folder / (std::string(name) + extension);
+    if (!fs::exists(file)) continue;
     result<triangle_mesh> mesh = io::load_mesh(file);
     if (mesh && !mesh->positions.empty()) scale_to_diagonal(*mesh, 0.16);
     return mesh;
   }
-  return error{error_code::io_failed, "ASPERITY_MODELS names no folder with the mesh " + std::string(name)};
+  return error{error_code::io_failed, "there is no mesh " + std::string(name) + " in " + folder.string() +
+                                          "; ASPERITY_MODELS names another folder"};
 }
 
 }  // namespace

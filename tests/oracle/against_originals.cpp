@@ -1,8 +1,10 @@
 #include "oracle/against_originals.hpp"
 
 #include <cstdio>
-#include <gtest/gtest.h>
+#include <stdexcept>
+#include <utility>
 
+#include "oracle/approach.hpp"
 #include "oracle/brute_force.hpp"
 #include "support/built_renderers.hpp"
 
@@ -17,84 +19,74 @@ triangle_mesh bare(const coarse_mesh& mesh) {
 
 }  // namespace
 
-vec3 random_direction(std::mt19937_64& rng) {
-  const double z = uniform(rng, -1.0, 1.0);
-  const double a = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double r = std::sqrt(1.0 - z * z);
-  return {r * std::cos(a), r * std::sin(a), z};
-}
-
-quat random_rotation(std::mt19937_64& rng) {
-  const double u = uniform(rng, 0.0, 1.0);
-  const double a = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double b = uniform(rng, 0.0, 2.0 * std::numbers::pi);
-  const double r = std::sqrt(1.0 - u);
-  const double s = std::sqrt(u);
-  return {s * std::cos(b), r * std::sin(a), r * std::cos(a), s * std::sin(b)};
-}
-
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());
   return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
-comparison compare_with_originals(const original_and_bake& a, const original_and_bake& b, int poses, std::uint64_t seed,
-                                  double steepest) {
-  comparison out;
+test_support::built_paper_renderer make_compared(const original_and_bake& a, const original_and_bake& b) {
   paper_settings settings;
   settings.depth.grid = comparison_grid;
   auto made = test_support::build_paper_renderer({a.model, {b.model}}, settings);
-  if (!made) {
-    ADD_FAILURE() << made.error().message;
-    return out;
-  }
-  out.rms_error_m = a.model->report.rms_error_m + b.model->report.rms_error_m;
-  const triangle_mesh bare_a = bare(a.model->mesh);
-  const triangle_mesh bare_b = bare(b.model->mesh);
+  if (!made) throw std::runtime_error(made.error().message);
+  return std::move(made).value();
+}
+
+std::vector<compared_contact> compare_contacts(test_support::built_paper_renderer& feel, const original_and_bake& a,
+                                               const original_and_bake& b, const pose& T_wa, double steepest,
+                                               int& disagreed) {
+  const triangle_mesh bare_a = bare(a.model->mesh), bare_b = bare(b.model->mesh);
   const std::array<pose, 1> fixed{};
-  std::mt19937_64 rng(seed);
-  for (int attempt = 0; out.poses < poses && attempt < 4 * poses; ++attempt) {
-    pose T_wa;
-    if (!touching_pose(*made, rng, T_wa)) continue;
-    ++out.poses;
-    tick t;
-    if (made->step({T_wa, fixed}, t) != status::ok) {
-      ADD_FAILURE() << "a pose that was found once is not found again";
+  std::vector<compared_contact> out;
+  tick t;
+  if (feel.step({T_wa, fixed}, t) != status::ok) throw std::runtime_error("a tick failed");
+  for (std::size_t i = 0; i < t.contacts.size(); ++i) {
+    const contact& c = t.contacts[i];
+    const penetration& p = t.depths[i];
+    const auto patch_a = feel.contacts().patch_a(c), patch_b = feel.contacts().patch_b(c);
+    const auto truth = measure_brute_force({&a.full, &a.model->mesh, patch_a, T_wa, reach(a)},
+                                           {&b.full, &b.model->mesh, patch_b, {}, reach(b)}, c.window, comparison_grid,
+                                           comparison_refinement);
+    if (has(p.flags, depth_flag::no_overlap) || truth.samples == 0) {
+      disagreed += has(p.flags, depth_flag::no_overlap) != (truth.samples == 0);
       continue;
     }
-    for (std::size_t i = 0; i < t.contacts.size(); ++i) {
-      const contact& c = t.contacts[i];
-      const penetration& p = t.depths[i];
-      const auto truth = measure_brute_force({&a.full, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
-                                             {&b.full, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)},
-                                             c.window, comparison_grid, comparison_refinement);
-      if (has(p.flags, depth_flag::no_overlap) || truth.samples == 0) {
-        out.disagreed += has(p.flags, depth_flag::no_overlap) != (truth.samples == 0);
-        continue;
-      }
+    const auto along_n = [&](double slope) { return std::hypot(1.0, std::min(slope, steepest)); };
+    const auto untextured =
+        measure_brute_force({&bare_a, &a.model->mesh, patch_a, T_wa, reach(a)},
+                            {&bare_b, &b.model->mesh, patch_b, {}, reach(b)}, c.window, comparison_grid, 1);
+    // What the grid misses of the originals themselves, and the bakes' own largest errors.
+    out.push_back({p.depth_m, truth.dense.depth_m, truth.grid.depth_m, untextured.grid.depth_m,
+                   (truth.dense.depth_m - truth.grid.depth_m) +
+                       along_n(truth.dense.slope_a) * a.model->report.max_error_m +
+                       along_n(truth.dense.slope_b) * b.model->report.max_error_m});
+  }
+  return out;
+}
+
+comparison compare_with_originals(const original_and_bake& a, const original_and_bake& b, int poses, std::uint64_t seed,
+                                  double steepest) {
+  comparison out;
+  out.rms_error_m = a.model->report.rms_error_m + b.model->report.rms_error_m;
+  auto feel = make_compared(a, b);
+  approach_sampler sampler("contacts of " + a.name + " on " + b.name, a.full, b.full);
+  for (; out.poses < poses; ++out.poses) {
+    const approach on = sampler.draw(seed, static_cast<std::uint64_t>(out.poses));
+    const pose T_wa = on.pressed(sampler.between(0.0, 5e-4));
+    const auto found = compare_contacts(feel, a, b, T_wa, steepest, out.disagreed);
+    out.touching += found.empty() ? 0 : 1;
+    for (const compared_contact& c : found) {
       ++out.contacts;
-      const auto along_n = [&](double slope) { return std::hypot(1.0, std::min(slope, steepest)); };
-      // What the grid misses of the originals themselves, and the bakes' own largest errors.
-      const double bound = (truth.dense.depth_m - truth.grid.depth_m) +
-                           along_n(truth.dense.slope_a) * a.model->report.max_error_m +
-                           along_n(truth.dense.slope_b) * b.model->report.max_error_m;
-      const double error = std::fabs(p.depth_m - truth.dense.depth_m);
-      out.worst_share = std::max(out.worst_share, error / bound);
-      if (error > bound) {
+      out.worst_share = std::max(out.worst_share, c.error_m() / c.bound_m);
+      if (c.error_m() > c.bound_m) {
         ++out.beyond;
-        std::printf(
-            "    pose %d contact %zu: depth %.4f mm, originals %.4f mm, on the same grid %.4f mm; bound %.4f mm, "
-            "slopes %.2f and %.2f\n",
-            out.poses, i, p.depth_m * 1e3, truth.dense.depth_m * 1e3, truth.grid.depth_m * 1e3, bound * 1e3,
-            truth.dense.slope_a, truth.dense.slope_b);
+        std::printf("    pose %d: depth %.4f mm, originals %.4f mm, on the same grid %.4f mm; bound %.4f mm\n",
+                    out.poses, c.depth_m * 1e3, c.originals_m * 1e3, c.on_grid_m * 1e3, c.bound_m * 1e3);
       }
-      const auto untextured = measure_brute_force(
-          {&bare_a, &a.model->mesh, made->contacts().patch_a(c), T_wa, reach(a)},
-          {&bare_b, &b.model->mesh, made->contacts().patch_b(c), {}, reach(b)}, c.window, comparison_grid, 1);
-      out.errors_m.push_back(error);
-      out.on_grid_m.push_back(std::fabs(p.depth_m - truth.grid.depth_m));
-      out.untextured_m.push_back(std::fabs(untextured.grid.depth_m - truth.grid.depth_m));
+      out.errors_m.push_back(c.error_m());
+      out.on_grid_m.push_back(std::fabs(c.depth_m - c.on_grid_m));
+      out.untextured_m.push_back(std::fabs(c.untextured_m - c.on_grid_m));
     }
   }
   return out;

@@ -1,5 +1,6 @@
-// Contacts of two baked models, found by the library, and how far its depths are from those of the two originals in the
-// same windows: what the tests of benchmark models and of real meshes have in common.
+// Contacts of two baked models in the windows that the library's finder chose, and how far its depths are from those of
+// the two originals in the same windows. The poses are the sampler's (approach.hpp); see originals_agree.hpp for what
+// needs no word of the finder at all.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 #include "asperity/control/contact_loop.hpp"
 #include "asperity/model/triangle_mesh.hpp"
+#include "support/built_renderers.hpp"
 
 namespace asperity::oracle {
 
@@ -39,49 +41,10 @@ struct original_and_bake {
   return d;
 }
 
-[[nodiscard]] inline double uniform(std::mt19937_64& rng, double low, double high) {
-  return low + (high - low) * static_cast<double>(rng() >> 11) * 0x1p-53;
-}
-[[nodiscard]] vec3 random_direction(std::mt19937_64& rng);
-[[nodiscard]] quat random_rotation(std::mt19937_64& rng);
-
-/// A seeded pose at which the probe, coming from outside along a random direction with a random orientation, overlaps
-/// by some tenths of a millimetre.
-template <contact_renderer Renderer>
-bool touching_pose(Renderer& r, std::mt19937_64& rng, pose& T_wa) {
-  const textured_model& a = *r.scene().probe;
-  const textured_model& b = *r.scene().fixed.front();
-  const std::array<pose, 1> fixed{};
-  const quat rotation = random_rotation(rng);
-  const vec3 from = random_direction(rng);
-  const vec3 centre_b = 0.5 * (b.box.low + b.box.high);
-  const vec3 aside = glm::cross(from, random_direction(rng));
-  const vec3 target = centre_b + 0.3 * uniform(rng, 0.0, 1.0) * b.box.diagonal() * aside;
-  const vec3 centre_a = 0.5 * (a.box.low + a.box.high);
-  const double wanted = uniform(rng, 0.0, 0.0004);
-  const auto at = [&](double distance) { return pose{rotation, target + distance * from - rotation * centre_a}; };
-
-  tick t;
-  double outside = 0.5 * (a.box.diagonal() + b.box.diagonal()) + 0.4 * b.box.diagonal();
-  const double step = 0.02 * std::min(a.box.diagonal(), b.box.diagonal());
-  double inside = outside;
-  do {  // march in until the first overlap, so that a thin part is not jumped over
-    outside = inside;
-    inside -= step;
-    if (inside < -outside || r.step({at(inside), fixed}, t) != status::ok) return false;
-  } while (!(deepest(t) > wanted));
-  for (int i = 0; i < 12; ++i) {
-    const double middle = 0.5 * (inside + outside);
-    if (r.step({at(middle), fixed}, t) != status::ok) return false;
-    (deepest(t) > wanted ? inside : outside) = middle;
-  }
-  T_wa = at(inside);
-  return r.step({T_wa, fixed}, t) == status::ok && deepest(t) > 0.0;
-}
-
 /// What a pair of bodies came to.
 struct comparison {
   int poses = 0;
+  int touching = 0;  ///< poses with a contact that both sides see
   int contacts = 0;
   int beyond = 0;                    ///< further from the true depth than sampling and bakes explain
   int disagreed = 0;                 ///< contacts that one side sees and the other does not
@@ -95,8 +58,26 @@ struct comparison {
 inline constexpr int comparison_grid = 64;
 inline constexpr int comparison_refinement = 5;
 
-/// Compares contacts of the paper's renderer in that many seeded poses. A bake's error is a distance across the
-/// surface; along n a slope makes it longer. A wall, where that has no limit, counts as `steepest` (1: 45 degrees).
+/// One contact that both sides see.
+struct compared_contact {
+  double depth_m = 0.0;      ///< the library's
+  double originals_m = 0.0;  ///< on the finer grid
+  double on_grid_m = 0.0, untextured_m = 0.0;
+  double bound_m = 0.0;  ///< what sampling and bakes explain
+  [[nodiscard]] double error_m() const noexcept { return std::fabs(depth_m - originals_m); }
+};
+
+/// The paper's renderer with the grid of these comparisons.
+[[nodiscard]] test_support::built_paper_renderer make_compared(const original_and_bake& a, const original_and_bake& b);
+
+/// Every contact of the paper's renderer at a pose. A bake's error is a distance across the surface; along n a slope
+/// makes it longer. A wall, where that has no limit, counts as `steepest` (1: 45 degrees).
+/// @param disagreed raised by contacts that one side sees and the other does not
+[[nodiscard]] std::vector<compared_contact> compare_contacts(test_support::built_paper_renderer& feel,
+                                                             const original_and_bake& a, const original_and_bake& b,
+                                                             const pose& T_wa, double steepest, int& disagreed);
+
+/// Compares contacts at that many poses of the sampler, pressed on by up to half a millimetre.
 [[nodiscard]] comparison compare_with_originals(const original_and_bake& a, const original_and_bake& b, int poses,
                                                 std::uint64_t seed, double steepest = 1.0);
 

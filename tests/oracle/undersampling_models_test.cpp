@@ -8,6 +8,7 @@
 #include "asperity/render/exact_renderer.hpp"
 #include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
+#include "oracle/touching_pose.hpp"
 #include "support/built_renderers.hpp"
 
 namespace {
@@ -29,7 +30,7 @@ struct tally {
 tally undersampling(const std::string& probe_name, const std::string& fixed_name, std::uint64_t seed,
                     int poses_per_pair) {
   tally out;
-  const original_and_bake a = load_benchmark_body(probe_name), b = load_benchmark_body(fixed_name);
+  const original_and_bake &a = load_benchmark_body(probe_name), &b = load_benchmark_body(fixed_name);
   if (a.model == nullptr || b.model == nullptr) return out;
   const scene bodies{a.model, {b.model}};
   paper_settings settings;

@@ -1,13 +1,13 @@
 // The same small surfaces in every format and dialect.
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
 #include "asperity/io/mesh_file.hpp"
 #include "scratch_folder.hpp"
+#include "support/real_meshes.hpp"
 
 namespace asperity {
 namespace {
@@ -186,9 +186,10 @@ TEST(Mesh, LeavesOutVerticesThatNoTriangleUses) {
 }
 
 TEST(Mesh, RealModelsAreReadWhole) {
-  const char* set = std::getenv("ASPERITY_MODELS");
-  const std::filesystem::path folder = set == nullptr ? "" : set;
-  if (!std::filesystem::exists(folder / "igea.ply")) GTEST_SKIP() << "ASPERITY_MODELS names no folder with igea.ply";
+  const std::filesystem::path folder = test_support::real_mesh_folder();
+  for (const char* const file : {"igea.ply", "stanford-bunny.obj"}) {
+    if (const std::string why = test_support::why_without(file); !why.empty()) GTEST_SKIP() << why;
+  }
   const auto igea = io::load_mesh(folder / "igea.ply");
   ASSERT_TRUE(igea) << igea.error().message;
   EXPECT_EQ(igea->triangles.size(), 268686U);
