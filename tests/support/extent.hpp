@@ -2,9 +2,7 @@
 // labelled at_length, which ./dev check runs, take all of it.
 #pragma once
 
-#include <cstdint>
 #include <cstdlib>
-#include <ctime>
 #include <string_view>
 
 namespace asperity::test_support {
@@ -19,17 +17,6 @@ namespace asperity::test_support {
 template <class T>
 [[nodiscard]] T extent(T share, T all) {
   return at_length() ? all : share;
-}
-
-/// The seed of today's DISABLED_ cases: ASPERITY_SEED, or the date in UTC as yyyymmdd.
-[[nodiscard]] inline std::uint64_t seed_of_the_day() {
-  if (const char* const given = std::getenv("ASPERITY_SEED"); given != nullptr && *given != '\0') {
-    return std::strtoull(given, nullptr, 10);
-  }
-  const std::time_t now = std::time(nullptr);
-  std::tm day{};
-  gmtime_r(&now, &day);
-  return static_cast<std::uint64_t>((day.tm_year + 1900) * 10000 + (day.tm_mon + 1) * 100 + day.tm_mday);
 }
 
 }  // namespace asperity::test_support
