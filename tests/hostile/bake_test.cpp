@@ -39,7 +39,7 @@ bake_outcome bake_bytes(const mesh_format& format, const std::string& bytes, boo
                         const std::optional<triangle_mesh>& coarse = {}) {
   static const test_support::scratch_folder folder;
   bake_outcome out{error{error_code::bad_mesh, ""}, {}};
-  result<triangle_mesh> mesh = format.read(bytes, std::string("bake") + format.extension);
+  result<triangle_mesh> mesh = format.read(bytes, std::string("bake") + format.extension, {});
   if (const auto wrong = complaint(mesh)) {
     ADD_FAILURE() << format.name << ": " << *wrong;
   }

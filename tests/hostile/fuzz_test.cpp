@@ -35,7 +35,7 @@ struct mesh_format {
   const char* name;
   std::string good;
   std::size_t text_end;
-  result<triangle_mesh> (*read)(std::string_view, const std::filesystem::path&);
+  result<triangle_mesh> (*read)(std::string_view, const std::filesystem::path&, io::reading_watch);
   std::size_t least_kinds;
 };
 
@@ -59,7 +59,7 @@ TEST(Fuzz, PlainMeshes) {
       return mutated_mesh(bytes, end, random);
     };
     const tally t = fuzz(10'000 / share, 3, f.good, mutate,
-                         [&](const std::string& bytes) { return f.read(bytes, std::string("fuzz")); });
+                         [&](const std::string& bytes) { return f.read(bytes, std::string("fuzz"), {}); });
     t.print(f.name);
     EXPECT_GE(t.kinds(), f.least_kinds) << f.name;
     EXPECT_GT(t.loaded(), 0.05) << f.name;

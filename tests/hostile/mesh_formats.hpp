@@ -8,6 +8,7 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/triangle_mesh.hpp"
+#include "reading_watch.hpp"
 
 namespace asperity::hostile {
 
@@ -15,7 +16,7 @@ struct mesh_format {
   const char* name;
   const char* extension;
   std::string (*write)(const triangle_mesh&);  ///< positions and indices as they are, right or wrong
-  result<triangle_mesh> (*read)(std::string_view bytes, const std::filesystem::path& file);
+  result<triangle_mesh> (*read)(std::string_view bytes, const std::filesystem::path& file, io::reading_watch watch);
   bool indexed;  ///< vertices are shared; otherwise the reader joins those that lie in one place
   bool text;
 };

@@ -130,7 +130,8 @@ TEST(ReaderMemory, DISABLED_ARecordingOfShortCallsIsRefusedBeforeItFillsTheMemor
   std::printf("recording of 8 million calls: file %zu B, peak %.1f MB, %s\n", bytes.size(),
               1e-6 * static_cast<double>(got.peak_bytes), got.said.c_str());
   EXPECT_NE(got.said.find("so many calls in so few bytes"), std::string::npos) << got.said;
-  EXPECT_LE(got.peak_bytes, times_the_file * bytes.size() + plus_bytes + refusal_bytes);
+  // Its calls take four times the file and the constant at most, beside the file itself.
+  EXPECT_LE(got.peak_bytes, (times_the_file + 1) * bytes.size() + plus_bytes + refusal_bytes);
 }
 
 // The largest of every kind: minutes and gigabytes, for a nightly run.

@@ -53,6 +53,8 @@ struct tight_glb {
         {"scene", 0}};
   }
 
+  std::size_t json_beyond_words = 0;  // bytes by which the JSON chunk ends beside a multiple of four
+
   /// Adds to a whole number of the document.
   void move(const char* list, std::size_t i, const char* key, std::int64_t by) {
     json& field = document[list][i][key];
@@ -61,7 +63,7 @@ struct tight_glb {
 
   [[nodiscard]] std::string bytes() const {
     std::string text = document.dump();
-    text.resize((text.size() + 3) / 4 * 4, ' ');
+    text.resize((text.size() + 3) / 4 * 4 + json_beyond_words, ' ');
     std::string out = "glTF";
     const auto word = [&](std::size_t value, std::int64_t off_by = 0) {
       const auto w = static_cast<std::uint32_t>(static_cast<std::int64_t>(value) + off_by);
@@ -167,6 +169,14 @@ TEST(GltfBounds, LengthsOfTheContainerAreExact) {
     expect_refused([&](tight_glb& f) { f.json_off_by = by; }, "byte ", "JSON chunk");
     expect_refused([&](tight_glb& f) { f.bin_off_by = by; }, "byte ", "BIN chunk");
   }
+}
+
+TEST(GltfBounds, ChunksEndAtAMultipleOfFourBytes) {
+  for (const std::size_t beyond : {1U, 2U, 3U}) {
+    expect_refused([&](tight_glb& f) { f.json_beyond_words = beyond; }, "begins no JSON chunk that fits", "JSON");
+    expect_refused([&](tight_glb& f) { f.bin += std::string(beyond, '\0'); }, "begins no BIN chunk that fits", "BIN");
+  }
+  expect_whole([](tight_glb& f) { f.json_beyond_words = 4; }, "four more");
 }
 
 /// The file with positions this far apart, and nothing between the last one and the view's end.
