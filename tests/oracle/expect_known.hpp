@@ -61,13 +61,12 @@ inline void expect_still_or_better(judged_pair& pair, const known_defect& d) {
   EXPECT_LE(j.excess_m, 1.02 * d.excess_m + 1e-6) << "it has become worse";
 }
 
-/// Likewise for the contacts that the library's own finder tells at a pose.
-inline void expect_still_or_better(const known_pose& known, const original_and_bake& probe,
-                                   const original_and_bake& fixed) {
-  auto feel = make_compared(probe, fixed);
+/// Likewise for the contacts that the library's own finder tells at a pose, after whatever `feel` has felt before.
+inline void expect_still_or_better(test_support::built_paper_renderer& feel, const known_pose& known, const pose& T_wa,
+                                   const original_and_bake& probe, const original_and_bake& fixed) {
   double worst_m = -1.0;
   int ignored = 0;
-  for (const compared_contact& c : compare_contacts(feel, probe, fixed, known.T_wa, known.steepest, ignored)) {
+  for (const compared_contact& c : compare_contacts(feel, probe, fixed, T_wa, known.steepest, ignored)) {
     worst_m = std::max(worst_m, c.error_m() - c.bound_m);
     std::printf("  %s on %s, %s: depth %.3f mm, originals %.3f mm, bound %.3f mm\n", known.probe, known.fixed,
                 known.found_by, c.depth_m * 1e3, c.originals_m * 1e3, c.bound_m * 1e3);

@@ -1,6 +1,6 @@
 // What is known to be wrong with today's depth, counted at poses that the library had no part in (seed 1, which no day
-// has). The law of depth is to be replaced: until then these are its defects by name, not bounds. A test fails where one
-// becomes worse, and where one is gone: then its line goes too.
+// has). The law of depth is to be replaced: until then these are its defects by name, not bounds. A test fails where
+// one becomes worse, and where one is gone: then its line goes too.
 //
 // The causes behind most of them:
 // - shallow: the shared potential's depth ends with a cell's clearance and limit; pressed on, a contact gives way.
@@ -261,14 +261,20 @@ struct known_pose {
   double excess_m;  ///< beyond the bound, of the worst contact
 };
 inline const known_pose file_on_cad_part{
-    "file", "cad_part", "seed 52 of the sampler that asked the finder",
+    "file",
+    "cad_part",
+    "seed 52 of the sampler that asked the finder",
     {{0.28980306864046546, 0.44363215101733211, -0.49000998129141743, 0.69216682542945485},
      {-0.014369602449798638, 0.012713639838822463, 0.05927704959546954}},
-    1.0, 0.4985e-3};
+    1.0,
+    0.4985e-3};
 inline const known_pose bunny_on_igea{
-    "stanford-bunny", "igea", "pose 70 of seed 32 of the sampler that asked the finder",
+    "stanford-bunny",
+    "igea",
+    "pose 70 of seed 32 of the sampler that asked the finder",
     {{-0.52650254943863994, -0.30438157425211504, 0.76886673136985662, -0.19746106472682012},
      {-0.0038577844537357395, -0.08706643974452144, 0.039620197201438535}},
-    3.0, 0.2992e-3};
+    3.0,
+    0.2992e-3};
 
 }  // namespace asperity::oracle
