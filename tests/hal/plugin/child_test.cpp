@@ -305,6 +305,32 @@ TEST(child, a_hang_is_a_fault_within_the_stated_time_of_the_session) {
   EXPECT_LT(longest_ns, 500'000'000) << "a read() waited for the driver";
 }
 
+TEST(child, a_driver_that_is_slow_is_not_one_that_is_silent) {
+  // It takes two thirds of a millisecond for each command and is asked more often than that: no answer is in time.
+  broken_device b("slow_write", options_for("slow_write", child_pace::paced));
+  ASSERT_TRUE(b.device);
+  device_sample in;
+  const std::int64_t begin_ns = clock_ns();
+  std::uint64_t first = 0;
+  while (seconds_since(begin_ns) < 0.2) {
+    const std::int64_t now_ns = clock_ns();
+    static_cast<void>(b.device->read(now_ns, in));
+    static_cast<void>(b.device->write(now_ns, push(now_ns, {0.5, 0.0, 0.0})));
+    if (first == 0) first = in.sequence;
+  }
+  EXPECT_TRUE(may_put_out(b.device->state())) << b.device->fault_text();
+  EXPECT_GT(in.sequence, first + 10);
+  EXPECT_EQ(b.driver->what_happened(), "");
+}
+
+TEST(child, a_program_that_takes_its_time_before_the_first_command_is_not_silent) {
+  broken_device b("nothing", options_for("nothing", child_pace::paced));
+  std::this_thread::sleep_for(200ms);
+  device_sample in;
+  EXPECT_EQ(b.device->read(clock_ns(), in), status::ok);
+  EXPECT_EQ(b.device->state(), device_state::armed) << b.device->fault_text();
+}
+
 TEST(child, a_cleared_fault_starts_the_driver_anew_and_arms_nothing) {
   for (const char* way : {"crashes_later", "hangs_in_read"}) {
     SCOPED_TRACE(way);
