@@ -105,7 +105,6 @@ std::int32_t child_link::call(child_call what, call_answer& answer, const call_r
   }
   for (auto* text : {&answer.text, &answer.name, &answer.version, &answer.licence, &answer.vendor}) end_text(*text);
   answer.capabilities.struct_size = sizeof answer.capabilities;
-  answer.applied.struct_size = sizeof answer.applied;
   take_state(answer.stamp, answer.state);
   static_cast<void>(look());
   return answer.code;

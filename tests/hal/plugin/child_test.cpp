@@ -492,7 +492,7 @@ TEST(child, a_hostile_process_can_say_nothing_that_is_believed) {
   o.list_patience_ns = o.call_patience_ns = o.open_patience_ns = 80'000'000;
   int armed = 0;
   int measured = 0;
-  for (int seed = 0; seed < 7; ++seed) {
+  for (const int seed : {0, 2, 4, 6, 7, 8, 9}) {  // armed with the seventh call
     SCOPED_TRACE(seed);
     ::setenv("ASPERITY_HOSTILE_SEED", std::to_string(seed).c_str(), 1);
     const std::int64_t begin_ns = clock_ns();
