@@ -96,7 +96,8 @@ report examine(const kit_options& options, progress& shared) {
   r.found.begin("loading");
   shared.enter("asperity_driver_entry", "loading");
   plugin::load_failure failure{};
-  const std::shared_ptr<const plugin::driver_module> module = plugin::driver_module::load(options.driver, {}, failure);
+  const std::shared_ptr<const plugin::driver_module> module =
+      plugin::driver_module::load(options.driver, {}, failure, plugin::file_trust::as_named);
   look_at_loading(r.found, module == nullptr ? &failure : nullptr);
   if (module == nullptr) {
     r.found.skip_rest("the driver was not loaded");

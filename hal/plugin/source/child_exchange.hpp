@@ -30,12 +30,10 @@ enum class child_phase : std::uint32_t {
   close,
   read,
   write,
-  applied,
   fault_text,
-  provoke,
   ending,
 };
-inline constexpr std::uint32_t child_phase_count = 18;
+inline constexpr std::uint32_t child_phase_count = 16;
 
 /// What can be asked outside a tick.
 enum class child_call : std::uint32_t {
@@ -48,12 +46,10 @@ enum class child_call : std::uint32_t {
   arm,
   clear_fault,
   close,
-  applied,
   fault_text,
-  provoke,
   quit,
 };
-inline constexpr std::uint32_t child_call_count = 13;
+inline constexpr std::uint32_t child_call_count = 11;
 
 /// Asked in a tick. One struct with the newest of each kind, so that a measurement that is asked for never takes the
 /// place of a command that was not put out yet.
@@ -82,8 +78,7 @@ struct tick_answer {
 struct call_request {
   std::uint64_t number = 0;
   std::uint32_t call = 0;
-  std::uint32_t what = 0;  ///< of provoke()
-  std::int64_t now_ns = 0;
+  std::uint32_t reserved = 0;
   asperity_listing which{};
 };
 
@@ -94,15 +89,12 @@ struct call_answer {
   std::int32_t state = ASPERITY_STATE_ABSENT;
   std::uint32_t count = 0;     ///< of list()
   std::uint32_t maturity = 0;  ///< of the driver
-  std::uint32_t optional = 0;  ///< bits: 1 applied, 2 fault_text, 4 provoke
-  std::uint32_t reserved = 0;
   char text[ASPERITY_TEXT_SIZE] = "";
   char name[ASPERITY_TEXT_SIZE] = "";
   char version[ASPERITY_TEXT_SIZE] = "";
   char licence[ASPERITY_TEXT_SIZE] = "";
   char vendor[ASPERITY_TEXT_SIZE] = "";
   asperity_capabilities capabilities{};
-  asperity_applied applied{};
 };
 
 struct listed_item {
@@ -148,9 +140,7 @@ inline constexpr int child_driver_descriptor = 4;
                                                              "in close()",
                                                              "in read()",
                                                              "in write()",
-                                                             "in applied()",
                                                              "in fault_text()",
-                                                             "in provoke()",
                                                              "while its process ended"};
   const auto i = static_cast<std::uint32_t>(p);
   return i < child_phase_count ? names[i] : "in a call that does not exist";

@@ -105,7 +105,6 @@ std::int32_t child_link::call(child_call what, call_answer& answer, const call_r
   }
   for (auto* text : {&answer.text, &answer.name, &answer.version, &answer.licence, &answer.vendor}) end_text(*text);
   answer.capabilities.struct_size = sizeof answer.capabilities;
-  answer.applied.struct_size = sizeof answer.applied;
   take_state(answer.stamp, answer.state);
   static_cast<void>(look());
   return answer.code;
@@ -178,6 +177,15 @@ bool child_link::look() noexcept {
   if (a.stamp == answer_.stamp) return true;
   if (a.silences != silences_) give_up(trouble::program_silent);
   silences_ = a.silences;
+  // A late answer is one too: the driver is slow, and not silent.
+  if (a.reads != answer_.reads) {
+    unanswered_ = 0;
+    if (a.read_code == ASPERITY_OK) {
+      last_ = a.sample;
+      last_.struct_size = sizeof last_;
+      has_last_ = true;
+    }
+  }
   answer_ = a;
   take_state(a.stamp, a.state);
   return true;
@@ -204,12 +212,6 @@ std::int32_t child_link::read(std::int64_t now_ns, asperity_sample& out) noexcep
   ++request_.reads;
   post();
   if (wait([this] { return answer_.reads == request_.reads; })) {
-    unanswered_ = 0;
-    if (answer_.read_code == ASPERITY_OK) {
-      last_ = answer_.sample;
-      last_.struct_size = sizeof last_;
-      has_last_ = true;
-    }
     if (trouble_ != trouble::none) return ASPERITY_FAILED;
     if (answer_.read_code == ASPERITY_OK) abi::copy_out(last_, out);
     return answer_.read_code;
@@ -262,7 +264,7 @@ std::int32_t child_link::state() const noexcept {
 std::string child_link::what_happened() const {
   switch (trouble_) {
     case trouble::none:
-      return unanswered_ == 0 || process_ == nullptr
+      return unanswered_ < most_unanswered || process_ == nullptr
                  ? std::string()
                  : "the driver's process had not answered the last " + std::to_string(unanswered_) + " reads: it was " +
                        to_string(process_->phase());

@@ -101,6 +101,7 @@ bool child_server::answer_ticks() {
   if (writes) {
     const in_phase now(page_, child_phase::write);
     r.command.struct_size = sizeof r.command;
+    commanded_ = true;
     session_ns_ = r.write_ns;
     const bool ordinary = r.command.valid_until_ns > r.write_ns;
     hold_ns_ = ordinary ? std::min<std::int64_t>(longest_hold_ns, r.command.valid_until_ns - r.write_ns) : 0;
@@ -171,7 +172,7 @@ void child_server::answer(const call_request& r, call_answer& a) {
     }
     case child_call::arm: {
       const in_phase now(page_, child_phase::arm);
-      hold_ns_ = 20'000'000;
+      commanded_ = false;
       finish(a, device_->arm());
       break;
     }
@@ -245,7 +246,7 @@ void child_server::silence() noexcept {
 }
 
 void child_server::watch() {
-  if (page_.paced == 0 || !device_ || !may_put_out(device_->state())) return;
+  if (page_.paced == 0 || !commanded_ || !device_ || !may_put_out(device_->state())) return;
   const std::int64_t silent_ns = monotonic_ns() - heard_ns_;
   if (silent_ns <= hold_ns_) return;
   if (silent_ns > hold_ns_ + page_.disarm_after_ns) {

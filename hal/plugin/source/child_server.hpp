@@ -56,6 +56,7 @@ class child_server {
   bool quit_ = false;
   std::int64_t heard_ns_ = 0;    // CLOCK_MONOTONIC, when the program last asked for something in a tick
   std::int64_t session_ns_ = 0;  // its session clock then
+  bool commanded_ = false;       // since it was armed: before that it puts out zero, and a session may take its time
   std::int64_t hold_ns_ = 0;     // how long its last command was good for
 };
 
