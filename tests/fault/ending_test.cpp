@@ -100,7 +100,8 @@ TEST_F(ending, of_every_signal_is_at_rest) {
       felt.push_back(std::make_unique<running_command>(session("600", all[i].second), noted(all[i].second)));
     }
     for (std::size_t i = first; i < first + at_a_time; ++i) {
-      const auto& [number, name] = all[i];
+      const int number = all[i].first;
+      const std::string& name = all[i].second;
       running_command& one = *felt[i - first];
       SCOPED_TRACE(name);
       ASSERT_TRUE(one.wait_until([&] { return notes("pushes", name); })) << one.finish(0.0).err;
