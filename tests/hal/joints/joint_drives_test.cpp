@@ -364,6 +364,16 @@ TEST(MitDrive, a_reset_too_short_to_be_a_silence_shows_in_the_torque) {
   EXPECT_EQ(r.peer.enables(), 1);
 }
 
+TEST(MitDrive, feeds_the_drives_watchdog_with_the_applications_commands_only) {
+  rig<mit_kind> r;
+  ASSERT_TRUE(r.go(10.0));
+  r.run(20 * ms);
+  const std::uint64_t before = r.peer.frames();
+  r.feeding = false;
+  r.run(10 * ms);
+  EXPECT_LE(r.peer.frames(), before + 2);
+}
+
 TEST(MitDrive, a_limit_below_the_zero_of_the_wire_is_refused) {
   joint_drive_options o = geared();
   o.peak_torque_n_m = 0.02;  // 15 N m / 4095 * 6 is more
@@ -477,6 +487,19 @@ TEST(MoteusDrive, every_command_carries_its_watchdog_and_its_limit) {
   EXPECT_DOUBLE_EQ(r.peer.watchdog_s(), 0.02);
   EXPECT_LE(r.peer.most_torque_n_m() * 6.0, 20.0);
   EXPECT_NEAR(r.peer.most_torque_n_m() * 6.0, 20.0, 1e-5);
+}
+
+// Silent for longer than the drive's watchdog and shorter than the driver's own limits: the drive's word is passed on.
+TEST(MoteusDrive, an_expired_watchdog_is_told) {
+  joint_drive_options joint = geared();
+  joint.quiet_ns = joint.hold_ns = joint.silence_ns = 500 * ms;
+  rig<moteus_kind> r({}, moteus_kind::options(joint));
+  ASSERT_TRUE(r.go(10.0));
+  r.run(10 * ms);
+  r.clock.advance_ns(30 * ms);
+  ASSERT_TRUE(r.peer.watchdog_expired());
+  ASSERT_TRUE(r.run_until(drive_state::fault, 10 * ms));
+  EXPECT_TRUE(r.why_contains("watchdog expired")) << r.drive.fault().what;
 }
 
 TEST(MoteusDrive, the_drives_own_fault_is_not_wiped_out_before_it_is_cleared) {
