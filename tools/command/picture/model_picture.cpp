@@ -130,8 +130,8 @@ class page {
   void write_header() {
     const bake_report& r = model_.report;
     const vec3 size = 1e3 * (model_.box.high - model_.box.low);
-    sheet_.text(margin, 48.0, printable(model_.name.empty() ? "(no name)" : model_.name), 32.0,
-                sheet::weight::bold, sheet::anchor::start, page_width - 2.0 * margin);
+    sheet_.text(margin, 48.0, printable(model_.name.empty() ? "(no name)" : model_.name), 32.0, sheet::weight::bold,
+                sheet::anchor::start, page_width - 2.0 * margin);
     std::vector<std::string> facts{brief(size.x) + " \u00d7 " + brief(size.y) + " \u00d7 " + brief(size.z) + " mm"};
     if (r.full_triangles > 0) facts.push_back("original " + count(r.full_triangles) + " triangles");
     facts.push_back("coarse mesh " + count(model_.mesh.triangles.size()) + " triangles");
