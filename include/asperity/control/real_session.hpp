@@ -132,8 +132,9 @@ class real_session {
 
   // After the last ordinary tick: a stopped gate takes the wrench down at its slew rate, for 200 ms at the most.
   void wind_down() noexcept {
+    constexpr std::int64_t longest_ns = 200'000'000;
     device_.stop(stop_cause_.load(std::memory_order_relaxed));
-    for (std::int64_t i = 0; i < 200'000'000 / schedule_.device_period_ns && !device_.gate().at_rest(); ++i) {
+    for (const std::int64_t until_ns = clock_ns() + longest_ns; clock_ns() < until_ns && !device_.gate().at_rest();) {
       sleep_until(clock_ns() + schedule_.device_period_ns);
       static_cast<void>(device_.tick(clock_ns()));
     }
