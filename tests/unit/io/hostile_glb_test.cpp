@@ -119,6 +119,7 @@ TEST_F(HostileGlb, JsonThatExhaustsAParser) {
   expect_refused(with_extras("\"" + std::string(17 << 20, 'x') + "\""), "bytes of JSON");
   expect_refused(with_extras("1e999"), "does not parse");
   expect_refused(with_extras("\"\xff\xfe\""), "does not parse");
+  expect_refused(glb.bytes("{\"asset\":{}," + text.substr(1)), "the name 'asset' twice in one object");
   expect_refused(glb.bytes("[]"), "does not parse as an object");
   expect_refused(glb.bytes(text.substr(0, text.size() / 2)), "does not parse");
 }
@@ -138,6 +139,8 @@ TEST_F(HostileGlb, Buffers) {
                       [](e g) { g.json["bufferViews"][3]["byteOffset"] = 0xffffff0000U; });
   expect_edit_refused("bufferViews[1] lies outside", [](e g) { g.json["bufferViews"][1]["byteLength"] = 1U << 30; });
   expect_edit_refused("byteStride", [](e g) { g.json["bufferViews"][0]["byteStride"] = 7; });
+  // Three floats every eight bytes: each would begin within the one before.
+  expect_edit_refused("accessors[0] (count 24)", [](e g) { g.json["bufferViews"][0]["byteStride"] = 8; });
   expect_edit_refused("accessors[0] (count 1152921504606846976)",
                       [](e g) { g.json["accessors"][0]["count"] = 1ULL << 60; });
   expect_edit_refused("accessors[0] (count 25)", [](e g) { g.json["accessors"][0]["count"] = 25; });
