@@ -184,7 +184,11 @@ TEST_F(HostileGlb, Extension) {
   expect_edit_refused("bufferView is 99", [](e g) { g.haptic()["texture"]["bufferView"] = 99; });
   expect_edit_refused("is not a position", [](e g) { g.put(5, 3 * (24 * 4 + 4), NAN); });
   expect_edit_refused("texels of another kind", [](e g) { g.haptic()["texture"]["componentType"] = 5131; });
-  expect_edit_refused("row 0 takes more than the arrays hold", [](e g) { g.put(6, 0, std::uint32_t{0xffffffff}); });
+  for (const std::size_t column : {0U, 1U, 2U}) {
+    for (const std::uint32_t count : {0xffffffffU, 10'000U}) {
+      expect_edit_refused("row 0 takes more than the arrays hold", [&](e g) { g.put(6, column, count); });
+    }
+  }
   expect_edit_refused("leaves part of the arrays to no piece", [](e g) { g.put(6, 1, std::uint32_t{11}); });
   expect_edit_refused("four numbers for each piece", [](e g) { g.haptic()["pieces"]["count"] = 2; });
   expect_edit_refused("vertices entry 0 names vertex 8 of 8", [](e g) { g.put(7, 0, std::uint32_t{8}); });
