@@ -46,7 +46,8 @@ TEST(passivity_guard, damps_a_surplus_away_in_one_sample_where_it_can) {
   EXPECT_NEAR(guard.surplus_j(), 0.0, 1e-12);
 }
 
-// The same of a turn, and of both at once: each part is damped by its own inertia at the one rate that takes the sum out.
+// The same of a turn, and of both at once: each part is damped by its own inertia at the one rate that takes the sum
+// out.
 TEST(passivity_guard, damps_a_turn_as_it_damps_a_motion) {
   constexpr double inertia = 1e-3;
   constexpr double h = 1e-3;
