@@ -66,6 +66,22 @@ TEST(articulated_device, goes_through_its_life) {
   EXPECT_TRUE(dev.open());
 }
 
+// A controller that has left its bus takes frames and loses them: the arm stops in the same tick, and names the bus.
+TEST(articulated_device, a_bus_that_is_off_is_a_fault_at_once) {
+  constexpr std::int64_t from_ns = 4'000'000'000;  // bring-up is over by then
+  rig_options options{.with_plant = false};
+  options.scripts[1].events = {{.kind = link_fault::bus_off, .from_ns = from_ns, .until_ns = from_ns + 100 * tick_ns}};
+  arm_rig rig(std::move(options));
+  ASSERT_TRUE(rig.dev->open()) << rig.dev->fault_words();
+  ASSERT_LT(rig.clock.now_ns(), from_ns);
+  ASSERT_TRUE(rig.dev->arm()) << rig.dev->fault_words();
+  while (rig.clock.now_ns() < from_ns - 2 * tick_ns)
+    ASSERT_EQ(rig.tick({{1, 0, 0}, {}}), status::ok) << rig.dev->fault_words();
+  for (int i = 0; i < 4; ++i) static_cast<void>(rig.tick({{1, 0, 0}, {}}));
+  EXPECT_EQ(rig.dev->state(), device_state::fault);
+  EXPECT_NE(rig.dev->fault_words().find("bus 2"), std::string::npos) << rig.dev->fault_words();
+}
+
 TEST(articulated_device, measures_pose_and_velocity_of_the_handle) {
   arm_rig rig;
   ASSERT_TRUE(rig.dev->open());

@@ -1,4 +1,5 @@
 // CANopen frames against bytes written down from the documents, both ways, and against bytes that nobody ever meant.
+#include <cmath>
 #include <gtest/gtest.h>
 #include <initializer_list>
 #include <limits>
@@ -183,6 +184,20 @@ TEST(torque_encoder, golden_and_hostile) {
   EXPECT_EQ(encode_torque(1.0, 0.4, -5), 0);
   EXPECT_EQ(encode_torque(1e9, 0.4, 32767), 32767);
   EXPECT_EQ(encode_torque(-1e9, 0.4, 32767), -32767);
+}
+
+// Just below and at every thousandth: what it decodes to is never more than what was asked for, though the division
+// rounds up to a whole number now and then.
+TEST(torque_encoder, never_says_more_than_was_asked_for) {
+  for (const double rated_n_m : {0.1, 0.23, 0.4, 1.7, 33.0}) {
+    for (int n = 1; n <= 3000; ++n) {
+      const double exact = n * rated_n_m / 1000.0;
+      for (const double torque : {std::nextafter(exact, 0.0), exact}) {
+        ASSERT_LE(decode_torque(encode_torque(torque, rated_n_m, 3000), rated_n_m), torque) << n << " of " << rated_n_m;
+        ASSERT_GE(decode_torque(encode_torque(-torque, rated_n_m, 3000), rated_n_m), -torque) << n;
+      }
+    }
+  }
 }
 
 }  // namespace

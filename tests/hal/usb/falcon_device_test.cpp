@@ -143,6 +143,7 @@ TEST(falcon_device, puts_out_the_force_that_is_asked_for_and_only_when_armed) {
   const vec3 wanted{0.5, -1.0, 2.0};
   for (int i = 0; i < 20; ++i) ASSERT_EQ(rig.tick(wanted), status::ok);
   EXPECT_EQ(rig.peer.largest_applied(), 0);
+  EXPECT_EQ(rig.peer.light(), falcon_light::blue);  // green is for a device that may push
 
   ASSERT_TRUE(rig.device->arm());
   EXPECT_FALSE(rig.device->arm());
@@ -159,6 +160,23 @@ TEST(falcon_device, puts_out_the_force_that_is_asked_for_and_only_when_armed) {
   rig.clock.advance_ns(1'000'000);
   EXPECT_TRUE(rig.peer.at_rest());
   EXPECT_EQ(rig.device->state(), device_state::ready);
+}
+
+// Written to and never read: where the grip is now is not known, and the same force would take other torques there.
+TEST(falcon_device, puts_out_nothing_for_a_position_that_is_old) {
+  falcon_rig rig(awake_and_homed());
+  ASSERT_TRUE(rig.device->open());
+  ASSERT_TRUE(rig.device->arm());
+  const vec3 wanted{0.5, -1.0, 2.0};
+  for (int i = 0; i < 20; ++i) ASSERT_EQ(rig.tick(wanted), status::ok);
+  ASSERT_FALSE(rig.peer.at_rest());
+  const std::int64_t most_ns = falcon_config{}.silent_after_ns;
+  for (std::int64_t t = 0; t <= most_ns + 5'000'000; t += 1'000'000) {
+    rig.clock.advance_ns(1'000'000);
+    static_cast<void>(rig.device->write(rig.clock.now_ns(), rig.command(wanted)));
+  }
+  rig.clock.advance_ns(1'000'000);
+  EXPECT_TRUE(rig.peer.at_rest());
 }
 
 TEST(falcon_device, a_command_ends_when_its_time_is_over) {

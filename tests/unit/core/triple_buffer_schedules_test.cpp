@@ -102,6 +102,27 @@ class never_fresh : public stepped<T> {
   T exchange(T v, std::memory_order order) { return stepped<T>::exchange(static_cast<T>(v & 3), order); }
 };
 
+int loads = 0;
+int exchanges = 0;
+
+/// Counts what is done to it.
+template <class T>
+class counted {
+ public:
+  counted(T v) noexcept : value_(v) {}
+  T load(std::memory_order) const {
+    ++loads;
+    return value_;
+  }
+  T exchange(T v, std::memory_order) {
+    ++exchanges;
+    return std::exchange(value_, v);
+  }
+
+ private:
+  T value_;
+};
+
 struct halves {
   std::size_t first = 0, second = 0;
 };
@@ -200,6 +221,24 @@ TEST(triple_buffer_schedules, no_interleaving_tears_goes_back_or_loses_a_value) 
   EXPECT_EQ(v.stale, 0U);
   EXPECT_EQ(v.unsteady, 0U);
   EXPECT_EQ(v.lost, 0U);
+}
+
+// What the enumeration above rests on: a publish() that touched the shared byte twice could be interrupted in between.
+TEST(triple_buffer_schedules, publishing_is_one_access_to_what_is_shared) {
+  triple_buffer<halves, counted> buffer;
+  for (int i = 0; i < 8; ++i) {
+    loads = exchanges = 0;
+    buffer.publish();
+    EXPECT_EQ(loads, 0);
+    EXPECT_EQ(exchanges, 1);
+    if (i % 3 == 2) {
+      loads = exchanges = 0;
+      EXPECT_TRUE(buffer.refresh());
+      EXPECT_EQ(exchanges, 1);
+      EXPECT_FALSE(buffer.refresh());  // looks, and takes nothing
+      EXPECT_EQ(exchanges, 1);
+    }
+  }
 }
 
 TEST(triple_buffer_schedules, an_exchange_in_two_steps_tears) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -70,6 +71,38 @@ TEST_P(PlyBinary, ReadsEveryPropertyType) {
   }
   const scratch_folder folder;
   expect_square(io::load_mesh(folder.file("square.ply", bytes)));
+}
+
+// The upper half of the unsigned types and the lower one of the others: a sign too much or too few shows.
+TEST_P(PlyBinary, ReadsTheWholeRangeOfEveryInteger) {
+  const bool big = GetParam();
+  const auto read = [&](const std::string& type, auto most, auto least) {
+    std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                        "_endian 1.0\nelement vertex 3\nproperty " + type + " x\nproperty " + type +
+                        " y\nproperty float z\nelement face 1\nproperty list uchar uchar vertex_indices\nend_header\n";
+    for (int corner = 0; corner < 3; ++corner) {
+      append(bytes, corner == 1 ? most : least, big);
+      append(bytes, corner == 2 ? most : least, big);
+      append(bytes, 0.0F, big);
+    }
+    for (const int i : {3, 0, 1, 2}) append(bytes, static_cast<std::uint8_t>(i), big);
+    const scratch_folder folder;
+    const auto mesh = io::load_mesh(folder.file("range.ply", bytes));
+    ASSERT_TRUE(mesh) << type << ": " << mesh.error().message;
+    const auto high = static_cast<double>(most);
+    const auto low = static_cast<double>(least);
+    EXPECT_EQ(mesh->positions, (std::vector<vec3>{{low, low, 0}, {high, low, 0}, {low, high, 0}})) << type;
+  };
+  const auto read_all_of = [&](const std::string& type, auto zero) {
+    using limits = std::numeric_limits<decltype(zero)>;
+    read(type, limits::max(), limits::min());
+  };
+  read_all_of("char", std::int8_t{});
+  read_all_of("uchar", std::uint8_t{});
+  read_all_of("short", std::int16_t{});
+  read_all_of("ushort", std::uint16_t{});
+  read_all_of("int", std::int32_t{});
+  read_all_of("uint", std::uint32_t{});
 }
 
 INSTANTIATE_TEST_SUITE_P(ByteOrders, PlyBinary, ::testing::Bool(),

@@ -119,6 +119,7 @@ TEST_F(HostileGlb, JsonThatExhaustsAParser) {
   expect_refused(with_extras("\"" + std::string(17 << 20, 'x') + "\""), "bytes of JSON");
   expect_refused(with_extras("1e999"), "does not parse");
   expect_refused(with_extras("\"\xff\xfe\""), "does not parse");
+  expect_refused(glb.bytes("{\"asset\":{}," + text.substr(1)), "the name 'asset' twice in one object");
   expect_refused(glb.bytes("[]"), "does not parse as an object");
   expect_refused(glb.bytes(text.substr(0, text.size() / 2)), "does not parse");
 }
@@ -138,6 +139,8 @@ TEST_F(HostileGlb, Buffers) {
                       [](e g) { g.json["bufferViews"][3]["byteOffset"] = 0xffffff0000U; });
   expect_edit_refused("bufferViews[1] lies outside", [](e g) { g.json["bufferViews"][1]["byteLength"] = 1U << 30; });
   expect_edit_refused("byteStride", [](e g) { g.json["bufferViews"][0]["byteStride"] = 7; });
+  // Three floats every eight bytes: each would begin within the one before.
+  expect_edit_refused("accessors[0] (count 24)", [](e g) { g.json["bufferViews"][0]["byteStride"] = 8; });
   expect_edit_refused("accessors[0] (count 1152921504606846976)",
                       [](e g) { g.json["accessors"][0]["count"] = 1ULL << 60; });
   expect_edit_refused("accessors[0] (count 25)", [](e g) { g.json["accessors"][0]["count"] = 25; });
@@ -181,7 +184,11 @@ TEST_F(HostileGlb, Extension) {
   expect_edit_refused("bufferView is 99", [](e g) { g.haptic()["texture"]["bufferView"] = 99; });
   expect_edit_refused("is not a position", [](e g) { g.put(5, 3 * (24 * 4 + 4), NAN); });
   expect_edit_refused("texels of another kind", [](e g) { g.haptic()["texture"]["componentType"] = 5131; });
-  expect_edit_refused("row 0 takes more than the arrays hold", [](e g) { g.put(6, 0, std::uint32_t{0xffffffff}); });
+  for (const std::size_t column : {0U, 1U, 2U}) {
+    for (const std::uint32_t count : {0xffffffffU, 10'000U}) {
+      expect_edit_refused("row 0 takes more than the arrays hold", [&](e g) { g.put(6, column, count); });
+    }
+  }
   expect_edit_refused("leaves part of the arrays to no piece", [](e g) { g.put(6, 1, std::uint32_t{11}); });
   expect_edit_refused("four numbers for each piece", [](e g) { g.haptic()["pieces"]["count"] = 2; });
   expect_edit_refused("vertices entry 0 names vertex 8 of 8", [](e g) { g.put(7, 0, std::uint32_t{8}); });
