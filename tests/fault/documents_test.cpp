@@ -321,7 +321,7 @@ TEST_F(documents, run) {
                   "memory",       "rejected_samples", "lost_records", "fault",
                   "fault_record", "interrupted",      "recording",    "plot",
                   "units",        "device_recording", "replay",       "real_time",
-                  "signal"});
+                  "signal",       "driver_fault",     "rates"});
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
   EXPECT_EQ(d["interrupted"], false);

@@ -27,6 +27,8 @@ class ending : public command_test {
             block,
             "--device",
             "noting",
+            "--in-process",
+            "noting_driver",
             "--seconds",
             seconds,
             "--probe-pose",

@@ -266,7 +266,7 @@ TEST(device_recording, is_not_read_on_where_nobody_wants_it) {
   bytes += e.end();
   int asked = 0;
   ASSERT_TRUE(decode(bytes, [&] { return ++asked > 0; }));
-  EXPECT_GE(asked, 12);  // of its calls, and of the bytes of its check sum
+  EXPECT_GE(asked, 4);  // once in 65,536 calls; the check sum goes along with them
   for (const int stop_at : {1, 3, asked - 1}) {
     int again = 0;
     const auto ended = decode(bytes, [&] { return ++again < stop_at; });
