@@ -111,8 +111,10 @@ int command_line::run(int argc, const char* const* argv) {
     const result<answer> done = action_(common_);
     if (!done) {
       const bool cancelled = done.error().code == error_code::cancelled && interrupted();
-      return fail(to_string(done.error().code), done.error().message, common_.json,
-                  cancelled ? exit_interrupted() : exit_failed);
+      // What was cancelled deep inside does not know by whom.
+      const bool says_so = done.error().message.starts_with("interrupted");
+      return fail(to_string(done.error().code), (cancelled && !says_so ? "interrupted: " : "") + done.error().message,
+                  common_.json, cancelled ? exit_interrupted() : exit_failed);
     }
     std::string out;
     if (common_.json) {

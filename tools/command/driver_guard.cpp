@@ -53,8 +53,8 @@ std::string what_of_the_device(const driver_watch& watch) {
 }  // namespace
 
 driver_guard::driver_guard(const driver_watch& watch, std::function<void(const std::string&)> abandon,
-                           driver_limits limits)
-    : watch_(watch), abandon_(std::move(abandon)), limits_(limits), thread_([this] { look(); }) {}
+                           driver_limits most)
+    : watch_(watch), abandon_(std::move(abandon)), limits_(most), thread_([this] { look(); }) {}
 
 driver_guard::~driver_guard() {
   {
