@@ -87,7 +87,6 @@ class device_loop {
     const std::int64_t now_ns = now_ns_;
     const bool expired = now_ns > valid_until_ns_;
     const wrench held = expired && goes_silent_ ? wrench{} : gate_.last();
-    if (expired) gate_.rest();
     device_sample seen = last_seen_;
     const sample_verdict verdict = check_.judge(now_ns, device_->read(now_ns, seen), seen);
     if (verdict == sample_verdict::accepted) last_seen_ = seen;

@@ -130,7 +130,8 @@ class output_gate {
       : limits_(sane(limits)), hold_ns_(hold_ns), time_constant_s_(time_constant_s(cut_off_hz)) {}
 
   /// What may leave at now_ns of the wanted command. `seen` goes to the flight recorder only.
-  /// The answer is valid for hold_ns: a device with a watchdog falls to zero that long after the last tick.
+  /// The answer is valid for hold_ns: a device with a watchdog falls to zero that long after the last tick, and after
+  /// such a gap the slew begins at zero.
   [[nodiscard]] device_command pass(std::int64_t now_ns, const device_sample& seen,
                                     const device_command& wanted) noexcept {
     const double dt = advance(now_ns);
@@ -249,14 +250,17 @@ class output_gate {
     return smooth_;
   }
 
-  // The last wrench warmed the motors for as long as it was held; after that they cooled. @return what the slew may use
+  // The last wrench warmed the motors for as long as it was held; after that they cooled, and what comes begins at
+  // zero. @return what the slew may use
   [[nodiscard]] double advance(std::int64_t now_ns) noexcept {
     const double passed_s = started_ ? std::max(0.0, static_cast<double>(now_ns - last_ns_) * 1e-9) : 0.0;
+    const bool expired = started_ && now_ns > last_ns_ && now_ns - last_ns_ > hold_ns_;
     started_ = true;
     last_ns_ = now_ns;
     const double held_s = std::min(passed_s, static_cast<double>(std::max<std::int64_t>(0, hold_ns_)) * 1e-9);
     heat(last_, held_s);
     heat({}, passed_s - held_s);
+    if (expired) last_ = smooth_ = {};
     return std::min(passed_s, longest_step_s);
   }
 

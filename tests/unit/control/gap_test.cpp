@@ -201,6 +201,27 @@ TEST(gap, counts_as_silence_of_the_application) {
   EXPECT_EQ(r.loop.gate().fault(), gate_fault::watchdog);
 }
 
+// The device let go of an expired command, so the next one begins at nothing.
+TEST(gap, lets_the_gate_begin_at_zero) {
+  for (const std::int64_t gap_ms : {20, 21, 500}) {
+    output_gate gate({.peak_force_n = 10.0,
+                      .continuous_force_n = 10.0,
+                      .force_slew_n_per_s = 100.0,
+                      .peak_torque_n_m = 1.0,
+                      .continuous_torque_n_m = 1.0,
+                      .torque_slew_n_m_per_s = 100.0});
+    device_command out;
+    const wrench wanted{{10.0, 0.0, 0.0}, vec3(0.0)};
+    for (std::int64_t t = 0; t <= 200; ++t) {
+      out = gate.pass(t * ms, {}, {wanted, wrench_frame::device_base, t * ms, 0});
+    }
+    ASSERT_NEAR(out.on_hand.force.x, 10.0, 1e-9);
+    const std::int64_t t = 200 + gap_ms;
+    out = gate.pass(t * ms, {}, {wanted, wrench_frame::device_base, t * ms, 0});
+    EXPECT_NEAR(out.on_hand.force.x, gap_ms > 20 ? 0.4 : 10.0, 1e-9) << gap_ms;  // 100 N/s over 4 ms
+  }
+}
+
 // The motors are warm from what they held, however late the next tick comes.
 TEST(gap, does_not_let_the_motors_grow_hotter_than_allowed) {
   for (const std::int64_t gap_ms : {1, 7, 19, 40}) {
