@@ -33,6 +33,7 @@ json rates_json(const rate_report& r) {
           {"lapses", r.lapses},
           {"longest_gap", seconds(r.longest_gap_ns)},
           {"contact_lapses", r.contact_lapses},
+          {"surprises", r.surprises},
           {"oldest_contact", seconds(r.oldest_contact_ns)},
           {"lowest_scale", r.lowest_scale},
           {"silent", seconds(r.silent_ns)}};

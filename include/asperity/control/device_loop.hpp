@@ -99,8 +99,8 @@ class device_loop {
     rate_verdict rates;
     if (placed_) {
       if (accepted) guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0));
-      static_cast<void>(shared_->contacts.refresh());
-      rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), caught_up_);
+      const bool surprised = take_contact(now_ns);
+      rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), caught_up_, surprised);
       probe_status = move_probe(dt_s, accepted, rates);
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
@@ -205,7 +205,25 @@ class device_loop {
     return contact.answer == status::not_ready ? rate_monitor::no_contact : now_ns - contact.time_ns;
   }
 
+  // The newest contact. @return whether it finds the probe where it went while the one before was old, or none was
+  // there
+  [[nodiscard]] bool take_contact(std::int64_t now_ns) noexcept {
+    const linear_contact& contact = shared_->contacts.front();
+    const pose& at = probe_.state().T_wc;
+    const std::int64_t age_ns = now_ns - (contact.answer == status::not_ready ? placed_ns_ : contact.time_ns);
+    if (age_ns <= rates_.limits().surprise_age_ns) {
+      static_cast<void>(shared_->contacts.refresh());
+      return false;
+    }
+    const wrench before = evaluate(contact, at).on_probe_w;
+    if (!shared_->contacts.refresh()) return false;
+    const wrench change = evaluate(shared_->contacts.front(), at).on_probe_w - before;
+    return glm::length(change.force) > rates_.limits().surprise_n ||
+           glm::length(change.torque) > rates_.limits().surprise_n_m;
+  }
+
   void place(const device_sample& s) noexcept {
+    placed_ns_ = now_ns_;
     target_T_wc_ = config_.map.to_world(s.T_dh) * T_hc_;
     target_velocity_w_ = {};
     probe_.reset(target_T_wc_);
@@ -310,6 +328,7 @@ class device_loop {
   device_sample last_seen_{};
   bool started_ = false;
   bool placed_ = false;
+  std::int64_t placed_ns_ = 0;
   bool caught_up_ = true;  // the target is where the hand is
   std::int64_t last_clock_ns_ = 0;
   std::int64_t now_ns_ = 0;    // the loop's time: the clock's steps forward, summed up

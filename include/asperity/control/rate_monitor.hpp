@@ -30,6 +30,12 @@ struct rate_limits {
   double most_lapses = 5.0;                      ///< more lapses than this in a short time shut the gate ...
   std::int64_t lapse_memory_ns = 1'000'000'000;  ///< ... of which one is forgotten in each such time
 
+  /// A contact that takes the place of one older than this, and pushes by so much otherwise at the probe's pose, finds
+  /// the probe where it went blindly. It throws the probe out, which the hand must not feel.
+  std::int64_t surprise_age_ns = 25'000'000;
+  double surprise_n = 0.5;
+  double surprise_n_m = 0.02;
+
   double catch_up_m_per_s =
       1.0;  ///< after a lapse the probe returns to the hand at this speed, so that contacts follow
   double catch_up_rad_per_s = 2.5;
@@ -41,6 +47,7 @@ struct rate_report {
   std::uint64_t lost_periods = 0;      ///< nominal periods without a tick of their own; 0 where no period is known
   std::uint64_t lapses = 0;            ///< gaps after which the last command had expired
   std::uint64_t contact_lapses = 0;    ///< times that the contact in use grew too old to be felt
+  std::uint64_t surprises = 0;         ///< contacts that found the probe where it went blindly
   std::int64_t longest_gap_ns = 0;     ///< between two ticks
   std::int64_t oldest_contact_ns = 0;  ///< age of the oldest contact that was in use
   double worst_lost_share = 0.0;       ///< of the device periods, over rate_limits::share_time_ns
@@ -61,7 +68,7 @@ struct rate_verdict {
 ///
 /// A lapse is a gap after which the last command had expired, or a contact older than contact_ageing allows. Behind it
 /// the probe is not where the hand is, and a spring as long as the hand's way in the gap would pull. So nothing is put
-/// out until the probe has returned to the hand and ticks were punctual for settle_ns.
+/// out until the probe has returned to the hand and ticks were punctual for settle_ns. A surprise is treated alike.
 /// @rt safe: fixed cost
 class rate_monitor {
  public:
@@ -76,8 +83,9 @@ class rate_monitor {
   /// @param expired the last command was no longer valid when this tick came
   /// @param contact_age_ns of the contact in use, or no_contact
   /// @param caught_up the probe's target was at the hand at the end of the tick before
-  [[nodiscard]] rate_verdict judge(std::int64_t gap_ns, bool expired, std::int64_t contact_age_ns,
-                                   bool caught_up) noexcept {
+  /// @param surprised the contact in use is new, and the probe will be thrown by it
+  [[nodiscard]] rate_verdict judge(std::int64_t gap_ns, bool expired, std::int64_t contact_age_ns, bool caught_up,
+                                   bool surprised = false) noexcept {
     rate_verdict out;
     const bool contact_lapsed = contact_age_ns >= ageing_.hold_ns + ageing_.fade_ns;
     ++report_.ticks;
@@ -87,7 +95,8 @@ class rate_monitor {
     contact_lapsed_ = contact_lapsed;
     take_share(gap_ns);
 
-    if (expired || contact_lapsed) {
+    report_.surprises += surprised ? 1U : 0U;
+    if (expired || contact_lapsed || surprised) {
       settling_ = true;
       quiet_ns_ = 0;
     } else if (settling_ && caught_up) {

@@ -57,6 +57,14 @@ TEST(stalls, of_today_hold_as_well) {
   run_stalls({1'000'000 * fresh_seed("stalls", std::to_string(count) + " sessions"), count});
 }
 
+// Sessions that once broke a bound. 20261122000741: touches fall into gaps of 80 ms of the contact thread, and the
+// contact that came threw the probe out, which was felt.
+TEST(stalls, that_once_broke_a_bound_hold) {
+  for (const std::uint64_t seed : {std::uint64_t{20261122000741}}) {
+    EXPECT_EQ(stall_checks(make_stall_scenario(seed)).run().broken, "");
+  }
+}
+
 TEST(stalls, DISABLED_in_many_sessions_of_today) {
   run_stalls({1'000'000 * fresh_seed("stalls", "100,000 sessions") + 100'000, 100'000});
 }

@@ -124,6 +124,27 @@ TEST(gap, of_a_device_without_a_watchdog_is_booked) {
   EXPECT_NEAR(r.loop.guard().delivered_j() - booked_j, glm::dot(held_n, way), 1e-12);
 }
 
+// The hand enters the wall while the contact thread stands still for less than a lapse: the probe sinks in with it. The
+// contact that comes then throws the probe out, and the hand must not feel that.
+TEST(gap, of_contacts_at_a_touch_is_not_felt_as_a_blow) {
+  const hand_script hand{.above_m = 0.002, .depth_m = 0.003, .press_hz = 1.5, .scrub_m = 0.0, .turn_rad = 0.0};
+  for (const std::int64_t gap_ms : {10, 30, 60, 95}) {
+    test_support::analytic_wall stiff;
+    stiff.stiffness_n_per_m = 5000.0;
+    wall_rig r(hand, strong(), {}, stiff);
+    double most_n = 0.0;
+    for (std::int64_t t = 0; t < 600; ++t) {
+      // The surface is touched after 145 ms; 1.4 N are felt at the deepest point, after 333 ms.
+      if (t < 140 || t >= 140 + gap_ms) static_cast<void>(r.contact.tick(t * ms));
+      static_cast<void>(r.loop.tick(t * ms));
+      most_n = std::max(most_n, r.force_n());
+    }
+    EXPECT_LT(most_n, 1.7) << gap_ms;
+    EXPECT_EQ(r.loop.rates().report().surprises, gap_ms > 25 ? 1U : 0U) << gap_ms;
+    EXPECT_EQ(r.loop.gate().fault(), gate_fault::none);
+  }
+}
+
 // A plate 4 mm thick, felt from whichever side is nearer.
 struct thin_plate {
   std::array<contact, 1> contacts{};
