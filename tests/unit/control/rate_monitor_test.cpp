@@ -95,6 +95,15 @@ TEST(rate_monitor, fades_with_the_share_of_periods_left_out_and_then_shuts) {
   EXPECT_NEAR(static_cast<double>(m.report().lost_periods), 2.0 / 3.0 * 2560.0, 30.0);
 }
 
+// Ticks that came too early are no provision for later ones.
+TEST(rate_monitor, gives_no_credit_for_early_ticks) {
+  rate_monitor m(at_1_khz());
+  EXPECT_EQ(tick_for(m, 2'000 * ms, ms / 2).scale, 1.0);
+  const shut_at end = tick_until_shut(m, 10.0, [](int) { return 3 * ms; });
+  EXPECT_EQ(end.fault, gate_fault::overloaded);
+  EXPECT_NEAR(end.after_s, 2.56, 0.03);
+}
+
 TEST(rate_monitor, judges_no_share_without_a_period) {
   rate_monitor m;
   EXPECT_EQ(tick_for(m, 5'000 * ms, 10 * ms).scale, 1.0);
