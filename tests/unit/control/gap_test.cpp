@@ -184,6 +184,33 @@ TEST(gap, does_not_carry_the_probe_through_a_plate) {
   }
 }
 
+// The same of a turn: the hand turns by half a radian in the gap, and the probe comes after slowly.
+TEST(gap, does_not_whirl_the_probe_round) {
+  const hand_script hand{.above_m = 0.5, .depth_m = -0.5, .scrub_m = 0.0, .turn_rad = 0.8, .turn_hz = 0.5};
+  wall_rig r(hand);
+  r.run(0, 700);
+  ASSERT_GT(std::fabs(hand.angle_rad(940 * ms) - hand.angle_rad(699 * ms)), 0.45);
+  double most_rad_per_s = 0.0;
+  for (std::int64_t t = 940; t < 1000; ++t) {
+    r.tick(t * ms);
+    most_rad_per_s = std::max(most_rad_per_s, glm::length(r.loop.probe().state().velocity_w.angular));
+  }
+  EXPECT_LT(most_rad_per_s, 5.0);
+  EXPECT_GT(most_rad_per_s, 1.0) << "the probe did not come after the hand";
+}
+
+// Whoever has seen the fault and clears it begins anew: the probe is placed at the hand, and lateness is over.
+TEST(gap, is_forgotten_with_the_fault) {
+  wall_rig r(pressing());
+  r.run(0, 1150);
+  r.tick(1450 * ms);
+  ASSERT_EQ(r.loop.gate().fault(), gate_fault::stalled);
+  ASSERT_TRUE(r.loop.clear_fault());
+  ASSERT_TRUE(r.dev.arm());
+  r.run(1451, 1480);
+  EXPECT_GT(r.force_n(), 0.5);
+}
+
 // In free space the coupling drags the probe along, and no more than that may be felt when ticks come late.
 TEST(gap, does_not_add_to_the_drag_of_a_free_probe) {
   const auto most_n = [](std::int64_t gap_ms) {
