@@ -85,12 +85,13 @@ result<workshop> open_workshop(const order& o, unsigned worker) {
 
 class campaign {
  public:
-  campaign(const order& o, std::vector<planned> todo, ledger& book) : order_(o), todo_(std::move(todo)), book_(&book) {}
+  campaign(const order& o, std::vector<planned> chosen, ledger& book)
+      : order_(o), chosen_(std::move(chosen)), book_(&book) {}
 
   // @return whether every trial came to an outcome
   bool run() {
     std::vector<std::thread> workers;
-    const auto jobs = std::min<std::size_t>(order_.jobs, todo_.size());
+    const auto jobs = std::min<std::size_t>(order_.jobs, chosen_.size());
     for (unsigned i = 0; i < jobs; ++i) workers.emplace_back([this, i] { work(i); });
     for (std::thread& w : workers) w.join();
     return !failed_;
@@ -101,8 +102,8 @@ class campaign {
     result<workshop> shop = open_workshop(order_, worker);
     if (!shop) return fail(shop.error());
     std::set<std::string> sound;
-    for (std::size_t i = take(); i < todo_.size(); i = take()) {
-      const bug& b = todo_[i].what;
+    for (std::size_t i = take(); i < chosen_.size(); i = take()) {
+      const bug& b = chosen_[i].what;
       for (const std::string& test : b.tests) {
         if (!sound.insert(test).second) continue;
         const result<double> seconds = try_sound(*shop, test);
@@ -114,17 +115,17 @@ class campaign {
       if (!became) return fail(became.error());
       const std::lock_guard lock(mutex_);
       ++done_;
-      std::printf("%zu/%zu %-9s %5.1f s  %s  %s %s\n", done_, todo_.size(), to_string(became->answer), became->seconds,
-                  b.name.c_str(), became->test.c_str(), became->how.c_str());
+      std::printf("%zu/%zu %-9s %5.1f s  %s  %s %s\n", done_, chosen_.size(), to_string(became->answer),
+                  became->seconds, b.name.c_str(), became->test.c_str(), became->how.c_str());
       std::fflush(stdout);
-      const result<void> kept = book_->add(b.name, todo_[i].digest, *became);
+      const result<void> kept = book_->add(b.name, chosen_[i].digest, *became);
       if (!kept) std::fprintf(stderr, "%s\n", kept.error().message.c_str());
     }
   }
 
   std::size_t take() {
     const std::lock_guard lock(mutex_);
-    return failed_ ? todo_.size() : next_++;
+    return failed_ ? chosen_.size() : next_++;
   }
 
   template <class... Values>
@@ -141,7 +142,7 @@ class campaign {
   }
 
   order order_;
-  std::vector<planned> todo_;
+  std::vector<planned> chosen_;
   ledger* book_;
   std::mutex mutex_;
   std::size_t next_ = 0;
@@ -180,14 +181,14 @@ int run(const order& o) {
   ledger book(o.work / "results.tsv");
   if (o.list) return print_list(*all, o, book), 0;
 
-  std::vector<planned> todo;
+  std::vector<planned> chosen;
   for (const planned& p : *all) {
     const outcome* const known = book.find(p.what.name, p.digest);
     const bool kept = known != nullptr && known->answer == verdict::caught && !o.again;
-    if (is_wanted(p.what, o.wanted) && !kept) todo.push_back(p);
+    if (is_wanted(p.what, o.wanted) && !kept) chosen.push_back(p);
   }
-  std::printf("%zu of %zu bugs to plant\n", todo.size(), all->size());
-  if (!campaign(o, todo, book).run()) return 2;
+  std::printf("%zu of %zu bugs to plant\n", chosen.size(), all->size());
+  if (!campaign(o, chosen, book).run()) return 2;
 
   std::vector<finding> findings;
   for (const planned& p : *all) {

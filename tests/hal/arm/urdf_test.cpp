@@ -241,10 +241,10 @@ TEST(urdf, masses_and_limits_that_no_arm_has_are_refused) {
 TEST(urdf, messages_show_names_and_never_obey_them) {
   const std::string odd = "\x1b[2J&#10;\xe2\x80\xae";
   std::string s = two_links();
-  s.replace(s.find("name=\"shoulder\""), 15, "name=\"" + odd + std::string(5000, 'x') + "\"");
+  s.replace(s.find("name=\"shoulder\""), 15, "name=\"" + odd + std::string(5000, 'n') + "\"");
   s.replace(s.find("effort=\"12\""), 11, "effort=\"-12\"");
   const std::string said = why(s);
-  EXPECT_NE(said.find("joint \\x1b[2J\\n\\u{202e}xxx"), std::string::npos) << said;
+  EXPECT_NE(said.find("joint \\x1b[2J\\n\\u{202e}nnn"), std::string::npos) << said;
   EXPECT_LT(said.size(), 400U);
 }
 
