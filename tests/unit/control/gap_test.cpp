@@ -9,7 +9,7 @@
 #include <asperity/control/device_loop.hpp>
 
 #include "simulation/stall/scripted_device.hpp"
-#include "unit/control/analytic_wall.hpp"
+#include "unit/control/wall_session.hpp"
 
 namespace gap_test {
 
@@ -70,6 +70,59 @@ TEST(gap, of_a_valid_command_goes_on) {
   EXPECT_GT(r.force_n(), 0.8 * before_n);
   EXPECT_EQ(r.loop.rates().report().lapses, 0U);
   EXPECT_NEAR(r.loop.guard().delivered_j(), r.dev.work().renewed_j, 1e-12);
+}
+
+// A device that is where it is put, and keeps what it is told.
+struct placed_device {
+  using policy_tag = device_tag;
+  pose T_dh{};
+  device_command told{};
+  device_capabilities stated = simulated_config{}.capabilities;
+
+  [[nodiscard]] const device_capabilities& capabilities() const noexcept { return stated; }
+  [[nodiscard]] device_state state() const noexcept { return device_state::active; }
+  [[nodiscard]] result<void> open() { return {}; }
+  [[nodiscard]] result<void> arm() { return {}; }
+  [[nodiscard]] result<void> clear_fault() { return {}; }
+  status disarm() noexcept { return status::ok; }
+  void close() noexcept {}
+  [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
+    in.T_dh = T_dh;
+    in.host_time_ns = in.device_time_ns = now_ns;
+    ++in.sequence;
+    in.valid = sample_field::position | sample_field::rotation;
+    return status::ok;
+  }
+  [[nodiscard]] status write(std::int64_t, const device_command& out) noexcept {
+    told = out;
+    return status::ok;
+  }
+};
+
+// A tick that comes late moves the probe by longest_step_ns at most: the hand's way since then is no leap of the probe.
+TEST(gap, of_a_late_tick_is_a_tick_of_the_longest_step) {
+  const auto after = [](std::int64_t silence_ns) {
+    placed_device dev;
+    exchange shared;
+    std::vector<session_record> log;
+    control_config control;
+    control.longest_step_ns = 5 * ms;
+    device_loop<placed_device, test_support::keep_all> loop(dev, control, vec3(0.0), shared,
+                                                            test_support::keep_all{&log});
+    EXPECT_EQ(loop.tick(0), status::ok);
+    dev.T_dh.position = {0.0, 0.01, 0.0};
+    EXPECT_EQ(loop.tick(silence_ns), status::ok);
+    EXPECT_EQ(dev.told.on_hand.force, log.back().on_hand_d.force);
+    EXPECT_EQ(dev.told.valid_until_ns, silence_ns + 20 * ms);
+    return log.back();
+  };
+  const session_record due = after(5 * ms);
+  EXPECT_LT(due.on_hand_d.force.y, -0.1);
+  for (const std::int64_t late_ns : {6 * ms, 12 * ms, 20 * ms}) {
+    const session_record late = after(late_ns);
+    EXPECT_EQ(late.T_wa.position, due.T_wa.position) << late_ns;
+    EXPECT_EQ(late.on_hand_d.force, due.on_hand_d.force) << late_ns;
+  }
 }
 
 TEST(gap, of_an_expired_command_is_silent_unbooked_and_ends_in_a_ramp) {
