@@ -189,7 +189,7 @@ TEST(device_loop, a_silent_application_shuts_the_gate_and_ticks_alone_do_not_fee
 TEST(device_loop, a_loop_that_goes_away_leaves_no_force_behind) {
   simulated_device dev(pressing_hand());
   {
-    virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, rig::opened(dev), {});
+    virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, wall_session::opened(dev), {});
     static_cast<void>(session.run_until(1000 * ms));
     ASSERT_GT(glm::length(session.device().gate().last().force), 1.0);
     ASSERT_EQ(dev.state(), device_state::active);
@@ -248,7 +248,7 @@ TEST(device_loop, a_lost_probe_pulls_at_nothing) {
   simulated_device dev(pressing_hand());
   std::vector<session_record> log;
   virtual_session<breaking_renderer, simulated_device, keep_all> session(
-      {{}, &broken}, {{pose{}}, vec3(0.0)}, rig::opened(dev), control_config{}, {}, keep_all{&log});
+      {{}, &broken}, {{pose{}}, vec3(0.0)}, wall_session::opened(dev), control_config{}, {}, keep_all{&log});
   static_cast<void>(session.run_until(1000 * ms));
   ASSERT_GT(force_of(log.back()), 1.0);
   broken = true;
