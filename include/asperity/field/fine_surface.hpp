@@ -1,0 +1,111 @@
+// The fine surface of a textured model in pieces of a chosen size: coarse triangles, cut up and moved by the texture.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "asperity/model/textured_model.hpp"
+
+namespace asperity::detail {
+
+/// A piece of the fine surface, body frame, counter-clockwise seen from outside.
+using fine_triangle = std::array<vec3, 3>;
+
+/// The texture's point for a coarse surface point; that point itself where the texture has none.
+[[nodiscard]] inline vec3 fine_point(const haptic_texture& texture, const vec2& uv, const vec3& coarse_b) {
+  const vec3 p = texture.sample(uv);
+  return is_finite(p) ? p : coarse_b;
+}
+
+/// Cuts the coarse triangles until no edge is longer than `edge_m`, then moves every corner onto the fine surface.
+///
+/// Edges alone decide where to cut, so neighbours agree and there are no gaps but those of the texture's own seams. A
+/// sliver is cut along its length only.
+[[nodiscard]] inline std::vector<fine_triangle> cut_fine_surface(const textured_model& model, double edge_m) {
+  struct part {
+    std::array<vec3, 3> p;
+    std::array<vec2, 3> uv;
+  };
+  std::vector<fine_triangle> out;
+  std::vector<part> waiting;
+  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+    waiting.push_back({corners(model.mesh, t), model.mesh.triangles[t].uv});
+    while (!waiting.empty()) {
+      const part c = waiting.back();
+      waiting.pop_back();
+      std::array<bool, 3> cut{};
+      std::array<vec3, 3> m;
+      std::array<vec2, 3> n;
+      std::size_t cuts = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const vec3 e = c.p[(k + 1) % 3] - c.p[k];
+        cut[k] = glm::dot(e, e) > edge_m * edge_m;
+        cuts += cut[k] ? 1 : 0;
+        m[k] = 0.5 * (c.p[k] + c.p[(k + 1) % 3]);
+        n[k] = 0.5 * (c.uv[k] + c.uv[(k + 1) % 3]);
+      }
+      if (cuts == 0) {
+        fine_triangle& f = out.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) f[k] = fine_point(model.texture, c.uv[k], c.p[k]);
+      } else if (cuts == 3) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t l = (k + 2) % 3;
+          waiting.push_back({{c.p[k], m[k], m[l]}, {c.uv[k], n[k], n[l]}});
+        }
+        waiting.push_back({{m[0], m[1], m[2]}, {n[0], n[1], n[2]}});
+      } else {
+        // One long edge: two halves. Two: the corner between them, and the rest halved across.
+        std::size_t k = 0;
+        while (!cut[k] || (cuts == 2 && !cut[(k + 1) % 3])) ++k;
+        const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+        if (cuts == 1) {
+          waiting.push_back({{c.p[k], m[k], c.p[b]}, {c.uv[k], n[k], c.uv[b]}});
+          waiting.push_back({{m[k], c.p[a], c.p[b]}, {n[k], c.uv[a], c.uv[b]}});
+        } else {
+          waiting.push_back({{m[k], c.p[a], m[a]}, {n[k], c.uv[a], n[a]}});
+          waiting.push_back({{c.p[k], m[k], m[a]}, {c.uv[k], n[k], n[a]}});
+          waiting.push_back({{c.p[k], m[a], c.p[b]}, {c.uv[k], n[a], c.uv[b]}});
+        }
+      }
+    }
+  }
+  return out;
+}
+
+/// Calls visit(point) for points of the fine surface about `step_m` apart, spread evenly over every coarse triangle.
+template <class Visit>
+void for_each_fine_point(const textured_model& model, double step_m, Visit&& visit) {
+  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+    const auto c = corners(model.mesh, t);
+    const auto& uv = model.mesh.triangles[t].uv;
+    // Rows along the longest edge: a sliver gets one row, not thousands.
+    std::size_t k = 0;
+    double longest = -1.0;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const vec3 d = c[(e + 1) % 3] - c[e];
+      if (glm::dot(d, d) > longest) {
+        longest = glm::dot(d, d);
+        k = e;
+      }
+    }
+    longest = std::sqrt(longest);
+    const vec3 n = area_normal(c);
+    const double altitude = longest > 0.0 ? std::sqrt(glm::dot(n, n)) / longest : 0.0;
+    const std::size_t a = k, b = (k + 1) % 3, top = (k + 2) % 3;
+    const auto rows = static_cast<std::size_t>(std::max(1.0, std::ceil(altitude / step_m)));
+    for (std::size_t r = 0; r < rows; ++r) {
+      const double v = (static_cast<double>(r) + 0.5) / static_cast<double>(rows);
+      const auto columns = static_cast<std::size_t>(std::max(1.0, std::ceil((1.0 - v) * longest / step_m)));
+      for (std::size_t i = 0; i < columns; ++i) {
+        const double u = (1.0 - v) * (static_cast<double>(i) + 0.5) / static_cast<double>(columns);
+        const vec2 at = (1.0 - u - v) * uv[a] + u * uv[b] + v * uv[top];
+        visit(fine_point(model.texture, at, (1.0 - u - v) * c[a] + u * c[b] + v * c[top]));
+      }
+    }
+  }
+}
+
+}  // namespace asperity::detail

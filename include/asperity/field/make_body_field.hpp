@@ -1,0 +1,147 @@
+// From a textured model to its depth field. Done once per model, when a renderer is made.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "asperity/core/status.hpp"
+#include "asperity/depth/surface_index.hpp"
+#include "asperity/depth/texture_scale.hpp"
+#include "asperity/field/body_field.hpp"
+#include "asperity/field/fill_distance.hpp"
+#include "asperity/field/fine_surface.hpp"
+#include "asperity/field/fit_relief.hpp"
+#include "asperity/field/inside_columns.hpp"
+#include "asperity/model/textured_model.hpp"
+
+namespace asperity {
+
+/// How finely a depth field is made. Lengths in metres, 0 for automatic.
+struct field_settings {
+  double pitch_m = 0.0;                   ///< of the smooth part; automatic: extent / 96, at most a third of thin parts
+  double relief_pitch_m = 0.0;            ///< of the relief; automatic: a texel, at most half the smooth part's pitch
+  double margin_m = 0.0;                  ///< of the grid around the body; automatic: 4 % of its diagonal
+  std::size_t most_nodes = 4'000'000;     ///< of the smooth part; 4 bytes each
+  std::size_t relief_bytes = 40'000'000;  ///< about what the relief may take; its pitch is raised to keep to it
+};
+
+namespace detail {
+
+/// A grid around a box.
+[[nodiscard]] inline coarse_grid lay_grid(const bounds& box, double margin_m, double pitch_m) {
+  coarse_grid out;
+  out.pitch_m = pitch_m;
+  // Two nodes beyond the margin: the spline needs them. No round number: faces of a box must not lie in nodes.
+  const double around = margin_m + 1.4142 * pitch_m;
+  out.low = box.low - around;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    out.nodes[k] = static_cast<std::size_t>(std::ceil((box.high[axis] - box.low[axis] + 2.0 * around) / pitch_m)) + 1;
+  }
+  return out;
+}
+
+[[nodiscard]] inline double nodes_of(const coarse_grid& grid) noexcept {
+  return static_cast<double>(grid.nodes[0]) * static_cast<double>(grid.nodes[1]) * static_cast<double>(grid.nodes[2]);
+}
+
+[[nodiscard]] inline bounds box_of(const std::vector<fine_triangle>& surface) {
+  bounds out{surface[0][0], surface[0][0]};
+  for (const fine_triangle& t : surface) {
+    for (const vec3& p : t) {
+      out.low = glm::min(out.low, p);
+      out.high = glm::max(out.high, p);
+    }
+  }
+  return out;
+}
+
+[[nodiscard]] inline double area_of(const std::vector<fine_triangle>& surface) {
+  double out = 0.0;
+  for (const fine_triangle& t : surface) out += 0.5 * glm::length(area_normal(t));
+  return out;
+}
+
+}  // namespace detail
+
+/// Makes the depth field of a model. Takes a fraction of a second, and allocates; not for a tick.
+/// @return invalid_argument where a setting is out of range; bad_texture where the model has no texture; bad_mesh where
+///         it has no surface or extent; limit_exceeded where the body is too thin for the nodes that it may have
+[[nodiscard]] inline result<body_field> make_body_field(const textured_model& model,
+                                                        const field_settings& settings = {}) {
+  for (const double length : {settings.pitch_m, settings.relief_pitch_m, settings.margin_m}) {
+    if (!(length >= 0.0 && std::isfinite(length))) {
+      return error{error_code::invalid_argument,
+                   "field settings: pitch_m, relief_pitch_m and margin_m must be finite lengths, or 0 for automatic"};
+    }
+  }
+  if (settings.most_nodes < 1000) {
+    return error{error_code::invalid_argument, "field settings: most_nodes must be 1000 or more"};
+  }
+  const std::string& name = model.name;
+  if (model.texture.width == 0 || model.texture.height == 0) {
+    return error{error_code::bad_texture, "model \"" + name + "\" has no haptic texture; bake it first"};
+  }
+  const vec3 size = model.box.high - model.box.low;
+  const double extent = std::max({size.x, size.y, size.z});
+  if (model.mesh.triangles.empty() || !(extent > 0.0) || !std::isfinite(extent)) {
+    return error{error_code::bad_mesh, "model \"" + name + "\" has no surface, or its box has no extent"};
+  }
+
+  body_field out;
+  const double first_pitch = settings.pitch_m > 0.0 ? settings.pitch_m : extent / 96.0;
+  std::vector<detail::fine_triangle> surface = detail::cut_fine_surface(model, first_pitch);
+  const bounds box = detail::box_of(surface);
+  out.thickness_m = detail::measure_thickness(surface, detail::lay_grid(box, 0.0, extent / 96.0));
+  double pitch = first_pitch;
+  if (!(settings.pitch_m > 0.0) && out.thickness_m > 0.0) pitch = std::min(pitch, out.thickness_m / 3.0);
+  const auto margin_at = [&](double p) {
+    return std::max(settings.margin_m > 0.0 ? settings.margin_m : 0.04 * box.diagonal(), 3.0 * p);
+  };
+  out.smooth = detail::lay_grid(box, margin_at(pitch), pitch);
+  while (detail::nodes_of(out.smooth) > static_cast<double>(settings.most_nodes)) {
+    pitch *= 1.02;
+    out.smooth = detail::lay_grid(box, margin_at(pitch), pitch);
+  }
+  if (out.thickness_m > 0.0 && out.thickness_m < 1.5 * pitch) {
+    return error{error_code::limit_exceeded,
+                 "model \"" + name + "\" has walls " + std::to_string(1e3 * out.thickness_m) +
+                     " mm thick, and a grid that shows them needs more nodes than most_nodes = " +
+                     std::to_string(settings.most_nodes) + "; raise most_nodes, or make the walls thicker"};
+  }
+  out.thinnest_resolved_m = 3.0 * pitch;
+  surface = detail::cut_fine_surface(model, 0.75 * pitch);
+  detail::fill_distance(surface, out.smooth);
+
+  const detail::surface_index index(model);
+  const double texel = detail::measure_texture(model, index).texel_m;
+  double fine = settings.relief_pitch_m;
+  if (!(fine > 0.0)) {
+    fine = 0.5 * pitch;
+    if (texel > 0.0) fine = std::min(fine, texel);
+    // About 2.6 layers of bricks along the surface.
+    fine =
+        std::max(fine, std::sqrt(2.6 * 16.0 * detail::area_of(surface) / static_cast<double>(settings.relief_bytes)));
+  }
+  surface = {};
+  out.fine.pitch_m = fine;
+  const double around = pitch + 4.0 * fine;
+  out.fine.low = box.low - around;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int axis = static_cast<int>(k);
+    const double nodes = std::ceil((box.high[axis] - box.low[axis] + 2.0 * around) / fine) + 1.0;
+    out.fine.bricks_along[k] = static_cast<std::size_t>(std::ceil(nodes / detail::relief_bricks::side));
+  }
+  detail::relief_fit fit(out.fine, out);
+  detail::for_each_fine_point(model, 0.7 * fine, [&](const vec3& p_b) { fit.add(p_b); });
+  fit.solve();
+  for (const detail::relief_bricks::brick& b : out.fine.bricks) {
+    for (const float c : b) out.largest_relief_m = std::max(out.largest_relief_m, std::fabs(static_cast<double>(c)));
+  }
+  return out;
+}
+
+}  // namespace asperity
