@@ -101,8 +101,8 @@ struct body_field {
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return smooth.heap_bytes() + fine.heap_bytes(); }
 
  private:
-  static constexpr double fade_none = 0.2;        // |grad S|^2 from which there is some relief, far from the surface
-  static constexpr double fade_full = 0.6;        // and all of it
+  static constexpr double fade_none = 0.4;        // |grad S|^2 from which there is some relief, far from the surface
+  static constexpr double fade_full = 0.8;        // and all of it
   static constexpr double to_node = 0.8661;       // from a point to its nearest node, in pitches: half of root 3
   static constexpr double distance_slack = 0.25;  // what swept distances may be wrong by, in pitches
 };

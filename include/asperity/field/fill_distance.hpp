@@ -37,7 +37,7 @@ namespace asperity::detail {
   return t[0] + vb * per_sum * ab + vc * per_sum * ac;
 }
 
-/// Distances by sweeping: nodes beside a triangle ask it, all others ask the nearest triangles of their neighbours.
+/// Distances by sweeping: nodes beside a triangle ask it, all others ask those that their neighbours are nearest to.
 class distance_sweep {
  public:
   distance_sweep(std::span<const fine_triangle> surface, const coarse_grid& grid)
@@ -74,22 +74,61 @@ class distance_sweep {
     }
   }
 
-  /// One pass over all nodes and back.
-  void sweep() {
-    const auto nx = static_cast<std::ptrdiff_t>(grid_.nodes[0]), ny = static_cast<std::ptrdiff_t>(grid_.nodes[1]);
-    const auto nz = static_cast<std::ptrdiff_t>(grid_.nodes[2]);
-    for (const std::ptrdiff_t way : {-1, 1}) {
-      for (std::ptrdiff_t n = 0; n < nx * ny * nz; ++n) {
-        const std::ptrdiff_t at = way < 0 ? n : nx * ny * nz - 1 - n;
-        const std::ptrdiff_t i = at % nx, j = at / nx % ny, k = at / (nx * ny);
-        const auto node = static_cast<std::size_t>(at);
-        const vec3 p = position(static_cast<std::size_t>(i), static_cast<std::size_t>(j), static_cast<std::size_t>(k));
-        // The thirteen neighbours that this pass has seen already.
-        for (std::ptrdiff_t o = 0; o < 13; ++o) {
-          const std::ptrdiff_t x = i - way * (o % 3 - 1), y = j - way * (o / 3 % 3 - 1), z = k - way * (o / 9 - 1);
-          if (x < 0 || y < 0 || z < 0 || x >= nx || y >= ny || z >= nz) continue;
-          const std::uint32_t t = nearest_[static_cast<std::size_t>((z * ny + y) * nx + x)];
-          if (t != none && t != nearest_[node]) ask(node, p, t);
+  /// Hands the nearest triangles on, by the distance of their middles alone: over all nodes and back.
+  void hand_on() {
+    const std::array<std::ptrdiff_t, 3> n{static_cast<std::ptrdiff_t>(grid_.nodes[0]),
+                                          static_cast<std::ptrdiff_t>(grid_.nodes[1]),
+                                          static_cast<std::ptrdiff_t>(grid_.nodes[2])};
+    beside_.resize(nearest_.size());
+    for (std::size_t i = 0; i < nearest_.size(); ++i) beside_[i] = nearest_[i] != none ? 1 : 0;
+    for (const std::ptrdiff_t way : {1, -1}) {
+      for (std::ptrdiff_t c = 0; c < n[2]; ++c) {
+        const std::ptrdiff_t k = way > 0 ? c : n[2] - 1 - c;
+        for (std::ptrdiff_t b = 0; b < n[1]; ++b) {
+          const std::ptrdiff_t j = way > 0 ? b : n[1] - 1 - b;
+          for (std::ptrdiff_t a = 0; a < n[0]; ++a) {
+            const std::ptrdiff_t i = way > 0 ? a : n[0] - 1 - a, at = (k * n[1] + j) * n[0] + i;
+            const auto node = static_cast<std::size_t>(at);
+            if (beside_[node] != 0) continue;
+            const vec3 p =
+                position(static_cast<std::size_t>(i), static_cast<std::size_t>(j), static_cast<std::size_t>(k));
+            // The thirteen neighbours that this pass has seen already.
+            for (std::ptrdiff_t o = 0; o < 13; ++o) {
+              const std::ptrdiff_t x = i + way * (o % 3 - 1), y = j + way * (o / 3 % 3 - 1), z = k + way * (o / 9 - 1);
+              if (x < 0 || y < 0 || z < 0 || x >= n[0] || y >= n[1] || z >= n[2]) continue;
+              const std::uint32_t t = nearest_[static_cast<std::size_t>((z * n[1] + y) * n[0] + x)];
+              if (t == none || t == nearest_[node]) continue;
+              const vec3 m = p - middle_[t].middle;
+              const auto d2 = static_cast<float>(glm::dot(m, m));
+              if (d2 >= distance_[node]) continue;
+              distance_[node] = d2;
+              nearest_[node] = t;
+            }
+          }
+        }
+      }
+    }
+  }
+
+  /// Of the triangles handed to a node and to those around it, the one that is nearest.
+  void ask_around() {
+    for (std::size_t i = 0; i < nearest_.size(); ++i) {
+      if (beside_[i] == 0) distance_[i] = std::numeric_limits<float>::max();
+    }
+    const auto [nx, ny, nz] = grid_.nodes;
+    for (std::size_t k = 0; k < nz; ++k) {
+      for (std::size_t j = 0; j < ny; ++j) {
+        for (std::size_t i = 0; i < nx; ++i) {
+          const std::size_t node = grid_.at(i, j, k);
+          if (beside_[node] != 0 || nearest_[node] == none) continue;
+          const vec3 p = position(i, j, k);
+          ask(node, p, nearest_[node]);
+          if (i > 0) ask_of(node, p, node - 1);
+          if (i + 1 < nx) ask_of(node, p, node + 1);
+          if (j > 0) ask_of(node, p, node - nx);
+          if (j + 1 < ny) ask_of(node, p, node + nx);
+          if (k > 0) ask_of(node, p, node - nx * ny);
+          if (k + 1 < nz) ask_of(node, p, node + nx * ny);
         }
       }
     }
@@ -121,6 +160,11 @@ class distance_sweep {
     return grid_.low + grid_.pitch_m * vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
   }
 
+  void ask_of(std::size_t node, const vec3& p, std::size_t other) noexcept {
+    const std::uint32_t t = nearest_[other];
+    if (t != none && t != nearest_[node]) ask(node, p, t);
+  }
+
   void ask(std::size_t node, const vec3& p, std::uint32_t t) noexcept {
     const ball& b = middle_[t];
     const vec3 m = p - b.middle;
@@ -138,14 +182,15 @@ class distance_sweep {
   std::vector<std::uint32_t> nearest_;
   std::vector<float> distance_;
   std::vector<ball> middle_;
+  std::vector<char> beside_;  // nodes that triangles have been asked by
 };
 
 /// Fills a grid with signed distances to a surface, positive inside.
 inline void fill_distance(std::span<const fine_triangle> surface, coarse_grid& grid) {
   distance_sweep sweep(surface, grid);
   sweep.ask_beside();
-  sweep.sweep();
-  sweep.sweep();
+  sweep.hand_on();
+  sweep.ask_around();
   grid.value = sweep.finish(vote_inside(surface, grid));
 }
 

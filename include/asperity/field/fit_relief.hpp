@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -16,8 +17,9 @@ namespace asperity::detail {
 ///
 /// A B-spline with samples as coefficients would smooth the texture away; the fit does not. It goes by simultaneous
 /// iteration (SIRT: residuals, averaged at the nodes by their weights, correct the coefficients), with Chebyshev's step
-/// lengths for wavelengths from three pitches up. Each point also counts one pitch above and below the surface along
-/// its normal, so that the relief does not change across the surface.
+/// lengths for wavelengths from three pitches up. Each point counts above and below the surface along its normal, so
+/// that the relief does not change across the surface.
+/// @source Gilbert, Iterative methods for the three-dimensional reconstruction of an object from projections, 1972
 class relief_fit {
  public:
   relief_fit(relief_bricks& out, const body_field& field) : out_(out), field_(field) {}
@@ -29,48 +31,70 @@ class relief_fit {
     const foot_and_fade foot = field_.foot(p_b, at);
     const double length = std::sqrt(glm::dot(at.slope, at.slope));
     if (!(length > 0.05) || !(foot.fade > 0.25)) return;
-    points_.push_back({glm::vec3(foot.foot_b), glm::vec3(out_.pitch_m / length * at.slope),
+    points_.push_back({glm::vec3(foot.foot_b), glm::vec3(off_surface * out_.pitch_m / length * at.slope),
                        static_cast<float>(-at.value_m / foot.fade)});
   }
 
   void solve() {
     make_bricks();
-    std::vector<relief_bricks::brick> weight(out_.bricks.size(), relief_bricks::brick{}), sum;
-    for_each_place([&](const relief_bricks::place& at, double) noexcept {
-      relief_bricks::for_each_node(
-          at, [&](std::uint32_t b, std::size_t n, double w) noexcept { weight[b][n] += static_cast<float>(w); });
-    });
-    for (const double step : {1.6, 1.05, 3.3, 1.0}) {
-      sum.assign(out_.bricks.size(), relief_bricks::brick{});
-      for_each_place([&](const relief_bricks::place& at, double wanted) noexcept {
-        double rest = wanted;
-        relief_bricks::for_each_node(at, [&](std::uint32_t b, std::size_t n, double w) noexcept {
-          rest -= w * static_cast<double>(out_.bricks[b][n]);
-        });
-        relief_bricks::for_each_node(
-            at, [&](std::uint32_t b, std::size_t n, double w) noexcept { sum[b][n] += static_cast<float>(w * rest); });
+    work_.assign(out_.bricks.size() * relief_bricks::nodes_per_brick, {});
+    for_each_place([&](const relief_bricks::place& at, float wanted) noexcept {
+      relief_bricks::for_each_node(at, [&](std::uint32_t b, std::size_t n, double w) noexcept {
+        node& x = work_[b * relief_bricks::nodes_per_brick + n];
+        x.weight += static_cast<float>(w);
+        x.sum += static_cast<float>(w) * wanted;
       });
-      for (std::size_t b = 1; b < sum.size(); ++b) {
-        for (std::size_t n = 0; n < relief_bricks::nodes_per_brick; ++n) {
-          if (weight[b][n] > 0.0F) out_.bricks[b][n] += static_cast<float>(step) * sum[b][n] / weight[b][n];
-        }
+    });
+    correct(1.48F);
+    for (const float step : {1.05F, 2.54F}) {
+      for_each_place([&](const relief_bricks::place& at, float wanted) noexcept {
+        std::array<node*, 27> nodes;
+        std::array<float, 27> weights;
+        std::size_t i = 0;
+        float rest = wanted;
+        relief_bricks::for_each_node(at, [&](std::uint32_t b, std::size_t n, double w) noexcept {
+          nodes[i] = &work_[b * relief_bricks::nodes_per_brick + n];
+          weights[i] = static_cast<float>(w);
+          rest -= weights[i] * nodes[i]->value;
+          ++i;
+        });
+        for (i = 0; i < 27; ++i) nodes[i]->sum += weights[i] * rest;
+      });
+      correct(step);
+    }
+    for (std::size_t b = 1; b < out_.bricks.size(); ++b) {
+      for (std::size_t n = 0; n < relief_bricks::nodes_per_brick; ++n) {
+        out_.bricks[b][n] = work_[b * relief_bricks::nodes_per_brick + n].value;
       }
     }
+    work_ = {};
   }
 
  private:
+  static constexpr double off_surface = 0.6;  // pitches: reaches all nodes within two pitches of the surface
+
   struct point {
-    glm::vec3 foot_b, pitch_along_n;
+    glm::vec3 foot_b, along_n;
     float relief_m;
   };
+  struct node {
+    float value = 0.0F, weight = 0.0F, sum = 0.0F;
+  };
+
+  void correct(float step) noexcept {
+    for (node& x : work_) {
+      if (x.weight > 0.0F) x.value += step * x.sum / x.weight;
+      x.sum = 0.0F;
+    }
+  }
 
   template <class Visit>
   void for_each_place(Visit&& visit) const {
     relief_bricks::place at;
     for (const point& p : points_) {
-      for (int side = -1; side <= 1; ++side) {
-        const vec3 q(p.foot_b + static_cast<float>(side) * p.pitch_along_n);
-        if (out_.find(q, at)) visit(at, static_cast<double>(p.relief_m));
+      for (const float side : {-1.0F, 1.0F}) {
+        const vec3 q(p.foot_b + side * p.along_n);
+        if (out_.find(q, at)) visit(at, p.relief_m);
       }
     }
   }
@@ -79,8 +103,8 @@ class relief_fit {
     out_.bricks.assign(1, relief_bricks::brick{});
     out_.index.assign(out_.bricks_along[0] * out_.bricks_along[1] * out_.bricks_along[2], 0);
     for (const point& p : points_) {
-      for (int side = -1; side <= 1; ++side) {
-        const vec3 q = (vec3(p.foot_b + static_cast<float>(side) * p.pitch_along_n) - out_.low) / out_.pitch_m + 0.5;
+      for (const float side : {-1.0F, 1.0F}) {
+        const vec3 q = (vec3(p.foot_b + side * p.along_n) - out_.low) / out_.pitch_m + 0.5;
         std::size_t first[3], last[3];
         bool known = true;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -109,6 +133,7 @@ class relief_fit {
   relief_bricks& out_;
   const body_field& field_;
   std::vector<point> points_;
+  std::vector<node> work_;
 };
 
 }  // namespace asperity::detail

@@ -22,7 +22,7 @@ namespace asperity {
 /// How finely a depth field is made. Lengths in metres, 0 for automatic.
 struct field_settings {
   double pitch_m = 0.0;                   ///< of the smooth part; automatic: extent / 96, at most a third of thin parts
-  double relief_pitch_m = 0.0;            ///< of the relief; automatic: a texel, at most half the smooth part's pitch
+  double relief_pitch_m = 0.0;            ///< of the relief; automatic: a texel, at most a third of the pitch above
   double margin_m = 0.0;                  ///< of the grid around the body; automatic: 4 % of its diagonal
   std::size_t most_nodes = 4'000'000;     ///< of the smooth part; 4 bytes each
   std::size_t relief_bytes = 40'000'000;  ///< about what the relief may take; its pitch is raised to keep to it
@@ -120,7 +120,7 @@ namespace detail {
   const double texel = detail::measure_texture(model, index).texel_m;
   double fine = settings.relief_pitch_m;
   if (!(fine > 0.0)) {
-    fine = 0.5 * pitch;
+    fine = pitch / 3.0;
     if (texel > 0.0) fine = std::min(fine, texel);
     // About 2.6 layers of bricks along the surface.
     fine =
@@ -136,7 +136,7 @@ namespace detail {
     out.fine.bricks_along[k] = static_cast<std::size_t>(std::ceil(nodes / detail::relief_bricks::side));
   }
   detail::relief_fit fit(out.fine, out);
-  detail::for_each_fine_point(model, 0.7 * fine, [&](const vec3& p_b) { fit.add(p_b); });
+  detail::for_each_fine_point(model, 0.8 * fine, [&](const vec3& p_b) { fit.add(p_b); });
   fit.solve();
   for (const detail::relief_bricks::brick& b : out.fine.bricks) {
     for (const float c : b) out.largest_relief_m = std::max(out.largest_relief_m, std::fabs(static_cast<double>(c)));
