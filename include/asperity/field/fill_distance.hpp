@@ -79,8 +79,15 @@ class distance_sweep {
     const std::array<std::ptrdiff_t, 3> n{static_cast<std::ptrdiff_t>(grid_.nodes[0]),
                                           static_cast<std::ptrdiff_t>(grid_.nodes[1]),
                                           static_cast<std::ptrdiff_t>(grid_.nodes[2])};
+    // A node within a pitch of a triangle was in its box: what it knows is exact. Beyond, a nearer triangle may have
+    // passed it by.
     beside_.resize(nearest_.size());
-    for (std::size_t i = 0; i < nearest_.size(); ++i) beside_[i] = nearest_[i] != none ? 1 : 0;
+    for (std::size_t i = 0; i < nearest_.size(); ++i) {
+      beside_[i] = static_cast<double>(distance_[i]) <= grid_.pitch_m ? 1 : 0;
+      if (beside_[i] != 0 || nearest_[i] == none) continue;
+      const vec3 m = position_of(i) - middle_[nearest_[i]].middle;
+      distance_[i] = static_cast<float>(glm::dot(m, m));
+    }
     for (const std::ptrdiff_t way : {1, -1}) {
       for (std::ptrdiff_t c = 0; c < n[2]; ++c) {
         const std::ptrdiff_t k = way > 0 ? c : n[2] - 1 - c;
@@ -140,8 +147,7 @@ class distance_sweep {
       bool inside = votes[n] > 0;
       if (votes[n] == 0 && nearest_[n] != none) {
         const fine_triangle& t = surface_[nearest_[n]];
-        const vec3 p =
-            position(n % grid_.nodes[0], n / grid_.nodes[0] % grid_.nodes[1], n / (grid_.nodes[0] * grid_.nodes[1]));
+        const vec3 p = position_of(n);
         inside = glm::dot(area_normal(t), p - closest_on_triangle(t, p)) < 0.0;
       }
       if (!inside) distance_[n] = -distance_[n];
@@ -158,6 +164,11 @@ class distance_sweep {
 
   [[nodiscard]] vec3 position(std::size_t i, std::size_t j, std::size_t k) const noexcept {
     return grid_.low + grid_.pitch_m * vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k));
+  }
+
+  [[nodiscard]] vec3 position_of(std::size_t node) const noexcept {
+    return position(node % grid_.nodes[0], node / grid_.nodes[0] % grid_.nodes[1],
+                    node / (grid_.nodes[0] * grid_.nodes[1]));
   }
 
   void ask_of(std::size_t node, const vec3& p, std::size_t other) noexcept {
@@ -182,7 +193,7 @@ class distance_sweep {
   std::vector<std::uint32_t> nearest_;
   std::vector<float> distance_;
   std::vector<ball> middle_;
-  std::vector<char> beside_;  // nodes that triangles have been asked by
+  std::vector<char> beside_;  // within a pitch of the surface
 };
 
 /// Fills a grid with signed distances to a surface, positive inside.

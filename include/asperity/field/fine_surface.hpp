@@ -43,7 +43,7 @@ using fine_triangle = std::array<vec3, 3>;
       for (std::size_t k = 0; k < 3; ++k) {
         const vec3 e = c.p[(k + 1) % 3] - c.p[k];
         cut[k] = glm::dot(e, e) > edge_m * edge_m;
-        cuts += cut[k] ? 1 : 0;
+        cuts += cut[k] ? 1U : 0U;
         m[k] = 0.5 * (c.p[k] + c.p[(k + 1) % 3]);
         n[k] = 0.5 * (c.uv[k] + c.uv[(k + 1) % 3]);
       }

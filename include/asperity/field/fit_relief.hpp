@@ -45,8 +45,8 @@ class relief_fit {
         x.sum += static_cast<float>(w) * wanted;
       });
     });
-    correct(1.48F);
-    for (const float step : {1.05F, 2.54F}) {
+    correct(1.816F);
+    for (const float step : {1.026F, 2.669F, 1.251F}) {
       for_each_place([&](const relief_bricks::place& at, float wanted) noexcept {
         std::array<node*, 27> nodes;
         std::array<float, 27> weights;
