@@ -1,13 +1,13 @@
 // The slower of the two rates: from the newest probe pose to a linear contact.
 #pragma once
 
-#include <algorithm>
 #include <concepts>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "asperity/control/exchange.hpp"
+#include "asperity/control/linearise.hpp"
 #include "asperity/render/renderer.hpp"
 
 namespace asperity {
@@ -28,14 +28,16 @@ struct scene_placement {
   [[nodiscard]] pose T_ac() const noexcept { return {quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}; }
 };
 
-/// Owns the renderer. One tick takes the newest probe pose, renders, and publishes W0, J, q0 and the time of q0.
+/// Owns the renderer. One tick takes the newest probe pose, renders, and publishes W0, J, the support planes, q0 and
+/// the time of q0.
 /// @tparam Renderer see contact_renderer
 template <contact_renderer Renderer>
 class contact_loop {
  public:
   /// @param shared outlives the loop
-  contact_loop(Renderer renderer, scene_placement placement, exchange& shared)
-      : renderer_(std::move(renderer)), placement_(std::move(placement)), shared_(&shared) {}
+  /// @param selection which support planes are handed on; selection_for() knows what fits a period
+  contact_loop(Renderer renderer, scene_placement placement, exchange& shared, const plane_selection& selection = {})
+      : renderer_(std::move(renderer)), placement_(std::move(placement)), shared_(&shared), selection_(selection) {}
 
   /// compute() and publish() in one.
   /// @return the renderer's answer; ok without work where no new pose came
@@ -53,7 +55,7 @@ class contact_loop {
     const timed_pose& at = shared_->poses.front();
     const pose T_wa = at.T_wc * inverse(placement_.T_ac());
     const status answer = renderer_.step({T_wa, placement_.T_wb}, last_);
-    linearise(answer, at, shared_->contacts.back());
+    linearise(last_, answer, at, selection_, shared_->contacts.back());
     pending_ = true;
     ++computed_;
     computed_at_ns_ = now_ns;
@@ -76,35 +78,10 @@ class contact_loop {
   [[nodiscard]] const scene_placement& placement() const noexcept { return placement_; }
 
  private:
-  void linearise(status answer, const timed_pose& at, linear_contact& out) const noexcept {
-    out = {};
-    out.T_wc = at.T_wc;
-    out.time_ns = at.time_ns;
-    out.answer = answer;
-    if (answer != status::ok && answer != status::capacity_reached) return;
-    if (!is_finite(last_.force.on_probe_w) || !is_finite(last_.force.stiffness)) {
-      out.answer = status::not_finite;
-      return;
-    }
-    out.on_probe_w = last_.force.on_probe_w;
-    out.stiffness = last_.force.stiffness;
-    out.dropped = static_cast<std::uint32_t>(last_.dropped_contacts);
-    vec3 direction{0.0};
-    double weight = 0.0;
-    for (std::size_t i = 0; i < std::min(last_.contacts.size(), last_.depths.size()); ++i) {
-      const double depth = last_.depths[i].depth_m;
-      if (!(depth > 0.0)) continue;
-      direction += depth * last_.contacts[i].window.n_ab_w;
-      weight += depth;
-      out.max_depth_m = std::max(out.max_depth_m, depth);
-      ++out.contacts;
-    }
-    if (weight > 0.0) out.direction_ab_w = direction / weight;
-  }
-
   Renderer renderer_;
   scene_placement placement_;
   exchange* shared_;
+  plane_selection selection_;
   asperity::tick last_{};
   bool pending_ = false;
   std::uint64_t computed_ = 0;

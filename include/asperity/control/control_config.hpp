@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/passivity_guard.hpp"
 #include "asperity/control/probe.hpp"
@@ -18,6 +19,7 @@ namespace asperity {
 struct control_config {
   probe_config probe{};
   coupling_config coupling{};
+  contact_law contact{};  ///< of support planes; a linear contact brings its own stiffness
   guard_config guard{};
   contact_ageing ageing{};  ///< how old a contact may be felt
   rate_limits rates{};      ///< how late the loops may be

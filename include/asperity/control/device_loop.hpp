@@ -9,10 +9,9 @@
 #include "asperity/control/control_config.hpp"
 #include "asperity/control/exchange.hpp"
 #include "asperity/control/passivity_guard.hpp"
-#include "asperity/control/probe.hpp"
+#include "asperity/control/probe_motion.hpp"
 #include "asperity/control/rate_monitor.hpp"
 #include "asperity/control/session_record.hpp"
-#include "asperity/control/virtual_coupling.hpp"
 #include "asperity/control/workspace_map.hpp"
 #include "asperity/hal/device.hpp"
 #include "asperity/hal/output_gate.hpp"
@@ -59,8 +58,7 @@ class device_loop {
         shared_(&shared),
         observer_(std::move(observer)),
         check_(config.samples),
-        coupling_(config.coupling, config.probe.mass_kg, mean_inertia(config.probe)),
-        probe_(config.probe),
+        motion_(config.probe, config.coupling, config.contact, config.substeps),
         guard_(guard_for(config.guard, dev.capabilities())),
         rates_(config.rates, config.ageing),
         gate_(tighter(limits_of(dev.capabilities()), config.limits), command_valid_ns, config.low_pass_hz),
@@ -93,14 +91,14 @@ class device_loop {
     unobserved_s_ += static_cast<double>(gap_ns) * 1e-9;
 
     const bool accepted = verdict == sample_verdict::accepted;
-    if (accepted && !placed_) place(last_seen_);
+    if (accepted && !placed_) place();
     status probe_status = status::not_ready;
     guard_action guarded;
     rate_verdict rates;
     if (placed_) {
       if (accepted) guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0));
       const bool surprised = take_contact(now_ns);
-      rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), caught_up_, surprised);
+      rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
       probe_status = move_probe(dt_s, accepted, rates);
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
@@ -124,7 +122,7 @@ class device_loop {
       static_cast<void>(device_->disarm());
     }
     if (placed_) {
-      shared_->poses.back() = {probe_.state().T_wc, now_ns};
+      shared_->poses.back() = {motion_.probe().state().T_wc, now_ns};
       shared_->poses.publish();
     }
     report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);
@@ -133,8 +131,10 @@ class device_loop {
 
   [[nodiscard]] const output_gate& gate() const noexcept { return gate_; }
   [[nodiscard]] const passivity_guard& guard() const noexcept { return guard_; }
-  [[nodiscard]] const asperity::probe& probe() const noexcept { return probe_; }
-  [[nodiscard]] const virtual_coupling& coupling() const noexcept { return coupling_; }
+  [[nodiscard]] const asperity::probe& probe() const noexcept { return motion_.probe(); }
+  [[nodiscard]] const virtual_coupling& coupling() const noexcept { return motion_.coupling(); }
+  /// What the contact did to the probe in the last tick, plane by plane.
+  [[nodiscard]] const contact_solution& pressed() const noexcept { return motion_.pressed(); }
   [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
   [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
   [[nodiscard]] Observer& observer() noexcept { return observer_; }
@@ -151,16 +151,12 @@ class device_loop {
     guard_.reset();
     rates_.restart();
     placed_ = false;
-    touched_ = {};
+    motion_.forget_contact();
     beat_ns_ = now_ns_;
     return true;
   }
 
  private:
-  [[nodiscard]] static double mean_inertia(const probe_config& p) noexcept {
-    return (p.inertia_kg_m2[0][0] + p.inertia_kg_m2[1][1] + p.inertia_kg_m2[2][2]) / 3.0;
-  }
-
   [[nodiscard]] static guard_config guard_for(guard_config g, const device_capabilities& c) noexcept {
     if (!(g.mass_kg > 0.0) && !(g.inertia_kg_m2 > 0.0)) {
       g.mass_kg = c.moving_mass_kg;
@@ -209,56 +205,32 @@ class device_loop {
   // there
   [[nodiscard]] bool take_contact(std::int64_t now_ns) noexcept {
     const linear_contact& contact = shared_->contacts.front();
-    const pose& at = probe_.state().T_wc;
     const std::int64_t age_ns = now_ns - (contact.answer == status::not_ready ? placed_ns_ : contact.time_ns);
     if (age_ns <= rates_.limits().surprise_age_ns) {
       static_cast<void>(shared_->contacts.refresh());
       return false;
     }
-    const wrench before = evaluate(contact, at).on_probe_w;
+    const wrench before = motion_.push_of(contact);
     if (!shared_->contacts.refresh()) return false;
-    const wrench change = evaluate(shared_->contacts.front(), at).on_probe_w - before;
+    const wrench change = motion_.push_of(shared_->contacts.front()) - before;
     return glm::length(change.force) > rates_.limits().surprise_n ||
            glm::length(change.torque) > rates_.limits().surprise_n_m;
   }
 
-  void place(const device_sample& s) noexcept {
+  [[nodiscard]] pose pose_of_sample() const noexcept { return config_.map.to_world(last_seen_.T_dh) * T_hc_; }
+
+  void place() noexcept {
     placed_ns_ = now_ns_;
-    target_T_wc_ = config_.map.to_world(s.T_dh) * T_hc_;
-    target_velocity_w_ = {};
-    probe_.reset(target_T_wc_);
+    motion_.place(pose_of_sample());
     guard_.reset();
     placed_ = true;
-    caught_up_ = true;
   }
 
-  // Where the target goes in this period: evenly from its last pose to the newest one. A step of the target at the
-  // beginning of the period would be felt as a jerk by a probe that runs at several times the device's rate. After a
-  // lapse the target returns to the hand no faster than contacts can follow; without contacts it stays.
+  // After a lapse the target returns to the hand no faster than contacts can follow; without contacts it stays.
   [[nodiscard]] status move_probe(double dt_s, bool accepted, const rate_verdict& rates) noexcept {
-    const linear_contact& contact = shared_->contacts.front();
-    const pose from = target_T_wc_;
-    if (accepted) target_T_wc_ = config_.map.to_world(last_seen_.T_dh) * T_hc_;
-    vec6 way = pose_difference(target_T_wc_, from);
-    caught_up_ = true;
-    if (const double part = part_allowed(way, dt_s, rates); part < 1.0) {
-      caught_up_ = false;
-      way = part * way;
-      target_T_wc_ = {glm::normalize(exp_rotation(way.angular) * from.rotation), from.position + way.linear};
-    }
-    touched_ = evaluate(contact, probe_.state().T_wc);
-    if (!(dt_s > 0.0)) return status::ok;
-
-    target_velocity_w_ = to_twist((1.0 / dt_s) * way);
-    const int substeps = std::max(1, config_.substeps);
-    for (int i = 1; i <= substeps; ++i) {
-      const double part = static_cast<double>(i) / substeps;
-      const pose target{exp_rotation(part * way.angular) * from.rotation, from.position + part * way.linear};
-      const status s = probe_.step(dt_s / substeps, coupling_, target, target_velocity_w_, touched_);
-      touched_ = evaluate(contact, probe_.state().T_wc);
-      if (s != status::ok) return s;
-    }
-    return status::ok;
+    const pose wanted_T_wc = accepted ? pose_of_sample() : motion_.target();
+    const double part = part_allowed(motion_.way_to(wanted_T_wc), dt_s, rates);
+    return motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front());
   }
 
   [[nodiscard]] double part_allowed(const vec6& way, double dt_s, const rate_verdict& rates) const noexcept {
@@ -272,10 +244,8 @@ class device_loop {
   }
 
   [[nodiscard]] wrench wrench_on_hand() const noexcept {
-    const probe_state& p = probe_.state();
-    const wrench on_probe = coupling_.on_probe(target_T_wc_, target_velocity_w_, p.T_wc, p.velocity_w);
     const pose T_wh = config_.map.to_world(last_seen_.T_dh);
-    return config_.map.to_device(-1.0 * on_probe, target_T_wc_.position, T_wh.position);
+    return config_.map.to_device(motion_.on_hand_w(), motion_.target().position, T_wh.position);
   }
 
   void report(std::int64_t now_ns, sample_verdict verdict, status probe_status, const guard_action& guarded,
@@ -284,19 +254,21 @@ class device_loop {
     session_record r;
     r.time_ns = now_ns;
     r.T_dh = last_seen_.T_dh;
-    r.T_wa_target = target_T_wc_ * T_ca_;
-    r.T_wa = probe_.state().T_wc * T_ca_;
+    r.T_wa_target = motion_.target() * T_ca_;
+    r.T_wa = motion_.probe().state().T_wc * T_ca_;
     r.on_hand_d = sent;
-    r.on_probe_w = touched_.on_probe_w;
+    r.on_probe_w = motion_.touched().on_probe_w;
     r.max_depth_m = contact.max_depth_m;
     r.contacts = contact.contacts;
+    r.planes = static_cast<std::uint32_t>(contact.planes.size());
+    r.unbalanced_n = motion_.pressed().residual_n;
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
     r.guard_alpha_per_s = guarded.alpha_per_s;
     r.guard_scale = guarded.scale;
     r.rate_scale = rates.scale;
-    r.pulling = touched_.pulling;
+    r.pulling = motion_.touched().pulling;
     r.sample = verdict;
     r.contact_status = contact.answer;
     r.probe_status = probe_status;
@@ -318,8 +290,7 @@ class device_loop {
   exchange* shared_;
   Observer observer_;
   sample_check check_;
-  virtual_coupling coupling_;
-  asperity::probe probe_;
+  probe_motion motion_;
   passivity_guard guard_;
   rate_monitor rates_;
   output_gate gate_;
@@ -329,7 +300,6 @@ class device_loop {
   bool started_ = false;
   bool placed_ = false;
   std::int64_t placed_ns_ = 0;
-  bool caught_up_ = true;  // the target is where the hand is
   std::int64_t last_clock_ns_ = 0;
   std::int64_t now_ns_ = 0;    // the loop's time: the clock's steps forward, summed up
   double unobserved_s_ = 0.0;  // time since the guard saw a pose
@@ -338,9 +308,6 @@ class device_loop {
   std::uint64_t beats_ = 0;   // of the application, as last seen ...
   std::int64_t beat_ns_ = 0;  // ... to change at this time
   bool heard_ = false;
-  pose target_T_wc_{};
-  twist target_velocity_w_{};
-  contact_evaluation touched_{};
 };
 
 }  // namespace asperity

@@ -1,4 +1,4 @@
-// What the contact thread hands to the device thread: a wrench that knows how it changes.
+// What the contact thread hands to the device thread: a wrench that knows how it changes, and planes that only push.
 #pragma once
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "asperity/control/support_plane.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
@@ -15,6 +16,7 @@ namespace asperity {
 /// Contact wrench on the probe, linear in the probe's pose: W(q) = W0 + J (q - q0). World axes, torque about c_A.
 /// The probe's frame c here has its origin in the centre of mass c_A and the body's axes.
 /// Held instead of linearised, a wrench one period late is unstable above 70 N/m at 100 Hz; with J no limit was found.
+/// Where the renderer knows support planes they are the contact, gaps included, and W0 and J are for reports.
 /// @source spec section 4
 struct linear_contact {
   wrench on_probe_w{};  ///< W0, N and N m
@@ -27,6 +29,7 @@ struct linear_contact {
   std::uint32_t contacts = 0;         ///< contacts with depth > 0 at q0
   std::uint32_t dropped = 0;          ///< contacts that did not fit
   status answer = status::not_ready;  ///< what the renderer answered at q0
+  support_planes planes{};            ///< at q0; empty where the renderer knows none or nothing is near
 };
 
 /// How long a contact may be felt. An older one goes on holding the probe, and nothing is put out.

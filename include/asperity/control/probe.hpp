@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/pose.hpp"
@@ -39,13 +40,15 @@ struct probe_energy {
   double numerical_j = 0.0;  ///< energy that the implicit step took out: the work done minus the kinetic energy gained
 };
 
-/// Rigid body under coupling, linear contact and an external wrench.
+/// Rigid body under coupling, contact and an external wrench.
 ///
-/// One implicit Euler step of length h solves
+/// One implicit Euler step of length h against a linear contact solves
 ///   (M/h + B + h (K - J)) dv = f_coupling + W_contact + f_ext + h (J - K) v
 /// with K, B of the coupling and J of the contact. M, K, B are positive and J is negative semidefinite, so the matrix
-/// is positive definite and the step is stable for any stiffness. The gyroscopic torque, which would break the
-/// symmetry, is left out: for a 10 g tool at a hand's 10 rad/s it is about 1 mN m.
+/// is positive definite and the step is stable for any stiffness. Against support planes J is zero and W_contact is
+/// the push of the planes at the end of the step (solve_contact), which is stable for any stiffness as well.
+/// The gyroscopic torque, which would break the symmetry, is left out: for a 10 g tool at a hand's 10 rad/s it is about
+/// 1 mN m.
 /// @source spec section 4
 class probe {
  public:
@@ -69,27 +72,41 @@ class probe {
     const mat6 inertia = inertia_w();
 
     mat6 a = (1.0 / h_s) * inertia - h_s * contact.stiffness;
-    vec6 stretch_rate;  // h K v, what the springs lose while the probe moves at its old speed
-    for (std::size_t i = 0; i < 6; ++i) {
-      const double k = i < 3 ? coupling.stiffness_n_per_m() : coupling.stiffness_n_m_per_rad();
-      const double b = i < 3 ? coupling.damping_n_s_per_m() : coupling.damping_n_m_s_per_rad();
-      a(i, i) += b + h_s * k;
-      stretch_rate[i] = h_s * k * v[i];
-    }
+    const vec6 stretch_rate = add_coupling(h_s, coupling, v, a);
     const vec6 load = coupled + touched + to_vec6(external_w) + h_s * (contact.stiffness * v) - stretch_rate;
 
     vec6 dv;
-    if (!solve(a, load, dv) || !plausible(v + dv)) {
-      state_.velocity_w = {};
-      return status::not_finite;
-    }
+    if (!solve(a, load, dv) || !plausible(v + dv)) return stop();
     const vec6 now = v + dv;
-    book(h_s, coupling, inertia, v, now, coupled, touched, contact.stiffness);
+    book(h_s, coupling, inertia, v, now, coupled, touched + h_s * (contact.stiffness * now));
     energy_.by_external_j += h_s * dot(to_vec6(external_w), now);
+    move(h_s, now);
+    return status::ok;
+  }
 
-    state_.velocity_w = to_twist(now);
-    state_.T_wc.position += h_s * now.linear;
-    state_.T_wc.rotation = glm::normalize(exp_rotation(h_s * now.angular) * state_.T_wc.rotation);
+  /// The same against support planes, as they were told at T_wc0.
+  /// @param out which planes pushed, and how hard
+  /// @return ok | not_finite (as above). A solver that ran out of passes is ok and tells its residual.
+  /// @pre check(law)   @rt safe: at most law.most_passes passes
+  [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
+                                      const twist& target_velocity_w, const support_planes& planes, const pose& T_wc0,
+                                      const contact_law& law, contact_solution& out,
+                                      const wrench& external_w = {}) noexcept {
+    const vec6 v = to_vec6(state_.velocity_w);
+    const vec6 coupled = to_vec6(coupling.on_probe(target_T_wc, target_velocity_w, state_.T_wc, state_.velocity_w));
+    const mat6 inertia = inertia_w();
+
+    mat6 a = (1.0 / h_s) * inertia;
+    const vec6 stretch_rate = add_coupling(h_s, coupling, v, a);
+    const vec6 load = coupled + to_vec6(external_w) - stretch_rate;
+    out = solve_contact(a, load, v, h_s, planes, pose_difference(state_.T_wc, T_wc0), law);
+    if (!out.solved || !is_finite(out.on_probe_w) || !plausible(out.velocity)) {
+      out = {};
+      return stop();
+    }
+    book(h_s, coupling, inertia, v, out.velocity, coupled, to_vec6(out.on_probe_w));
+    energy_.by_external_j += h_s * dot(to_vec6(external_w), out.velocity);
+    move(h_s, out.velocity);
     return status::ok;
   }
 
@@ -119,16 +136,40 @@ class probe {
     return out;
   }
 
+  // The coupling's part of the step's matrix. @return h K v, what the springs lose while the probe moves at its old
+  // speed
+  [[nodiscard]] static vec6 add_coupling(double h_s, const virtual_coupling& coupling, const vec6& v,
+                                         mat6& a) noexcept {
+    vec6 stretch_rate;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double k = i < 3 ? coupling.stiffness_n_per_m() : coupling.stiffness_n_m_per_rad();
+      const double b = i < 3 ? coupling.damping_n_s_per_m() : coupling.damping_n_m_s_per_rad();
+      a(i, i) += b + h_s * k;
+      stretch_rate[i] = h_s * k * v[i];
+    }
+    return stretch_rate;
+  }
+
+  [[nodiscard]] status stop() noexcept {
+    state_.velocity_w = {};
+    return status::not_finite;
+  }
+
+  void move(double h_s, const vec6& now) noexcept {
+    state_.velocity_w = to_twist(now);
+    state_.T_wc.position += h_s * now.linear;
+    state_.T_wc.rotation = glm::normalize(exp_rotation(h_s * now.angular) * state_.T_wc.rotation);
+  }
+
   // The wrenches at the end of the step are the ones that the implicit equation balances: with them the book closes.
   void book(double h_s, const virtual_coupling& coupling, const mat6& inertia, const vec6& before, const vec6& after,
-            const vec6& coupled, const vec6& touched, const mat6& stiffness) noexcept {
+            const vec6& coupled, const vec6& touched_end) noexcept {
     vec6 coupled_end = coupled;
     for (std::size_t i = 0; i < 6; ++i) {
       const double k = i < 3 ? coupling.stiffness_n_per_m() : coupling.stiffness_n_m_per_rad();
       const double b = i < 3 ? coupling.damping_n_s_per_m() : coupling.damping_n_m_s_per_rad();
       coupled_end[i] -= b * (after[i] - before[i]) + h_s * k * after[i];
     }
-    const vec6 touched_end = touched + h_s * (stiffness * after);
     energy_.by_coupling_j += h_s * dot(coupled_end, after);
     energy_.by_contact_j += h_s * dot(touched_end, after);
     const vec6 dv = after - before;

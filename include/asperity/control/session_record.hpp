@@ -23,6 +23,8 @@ struct session_record {
   wrench on_probe_w{};              ///< contact wrench on the probe, about its centre of mass
   double max_depth_m = 0.0;         ///< deepest contact of the contact in use
   std::uint32_t contacts = 0;       ///< contacts with depth > 0 in it
+  std::uint32_t planes = 0;         ///< support planes of it
+  double unbalanced_n = 0.0;        ///< residual of the contact solver in the last substep; 0 without planes
   std::int64_t contact_age_ns = 0;  ///< age of the contact in use; 0 before the first
   double delivered_j = 0.0;         ///< energy delivered to the hand since the start
   double surplus_j = 0.0;           ///< what the passivity guard acts on

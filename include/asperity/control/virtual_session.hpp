@@ -30,7 +30,7 @@ class virtual_session {
   virtual_session(Renderer feel, scene_placement placement, Device& dev, const control_config& config,
                   const virtual_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
-        contact_(std::move(feel), placement, shared_),
+        contact_(std::move(feel), placement, shared_, selection_for(schedule.contact_period_ns)),
         device_(dev, with_period(config, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
                 std::move(observer)),
         next_contact_ns_(schedule.start_ns),

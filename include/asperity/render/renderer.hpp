@@ -11,17 +11,19 @@
 #include "asperity/collision/concept.hpp"
 #include "asperity/core/memory.hpp"
 #include "asperity/depth/concept.hpp"
+#include "asperity/depth/support_plane.hpp"
 #include "asperity/force/concept.hpp"
 
 namespace asperity {
 
 /// What one tick found. The spans point into the renderer and live until its next step.
 struct tick {
-  contact_force force{};                ///< on the probe; zero where the status is not ok or capacity_reached
-  vec3 centre_of_mass_w{0.0};           ///< c_A, the point the torque is about
-  std::span<const contact> contacts;    ///< what the finder reported
-  std::span<const penetration> depths;  ///< one per contact
-  std::size_t dropped_contacts = 0;     ///< contacts that did not fit: raise contact_limits
+  contact_force force{};                  ///< on the probe; zero where the status is not ok or capacity_reached
+  vec3 centre_of_mass_w{0.0};             ///< c_A, the point the torque is about
+  std::span<const contact> contacts;      ///< what the finder reported
+  std::span<const penetration> depths;    ///< one per contact
+  std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
+  std::span<const support_plane> planes;  ///< gaps included; empty where depth backend and force model know none
 };
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
@@ -89,6 +91,11 @@ class basic_renderer {
       force_.describe(told_.contacts, told_.depths);
       out.contacts = told_.contacts.contacts();
       out.depths = std::span(told_.depths).first(told_.contacts.size());
+    }
+    if constexpr (tells_support_planes<Depth>) {
+      out.planes = depth_.support_planes();
+    } else if constexpr (tells_support_planes<Force>) {
+      out.planes = force_.support_planes();
     }
     return found;
   }

@@ -1,0 +1,48 @@
+// From what a renderer found at one probe pose to what the device thread is handed.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "asperity/control/exchange.hpp"
+#include "asperity/control/plane_selection.hpp"
+#include "asperity/render/renderer.hpp"
+
+namespace asperity {
+
+/// W0, J and the support planes of one tick, at the pose and time that it was rendered for. Where the renderer could
+/// not answer, or told a number that is not finite, the contact is empty and carries the status: the wrench goes to
+/// zero.
+/// @param answer of the renderer, to this pose
+/// @rt safe
+inline void linearise(const tick& found, status answer, const timed_pose& at, const plane_selection& selection,
+                      linear_contact& out) noexcept {
+  out = {};
+  out.T_wc = at.T_wc;
+  out.time_ns = at.time_ns;
+  out.answer = answer;
+  if (answer != status::ok && answer != status::capacity_reached) return;
+  if (!is_finite(found.force.on_probe_w) || !is_finite(found.force.stiffness) ||
+      select_planes(found.planes, selection, out.planes) == status::not_finite) {
+    out.answer = status::not_finite;
+    return;
+  }
+  out.on_probe_w = found.force.on_probe_w;
+  out.stiffness = found.force.stiffness;
+  out.dropped = static_cast<std::uint32_t>(found.dropped_contacts);
+  vec3 direction{0.0};
+  double weight = 0.0;
+  for (std::size_t i = 0; i < std::min(found.contacts.size(), found.depths.size()); ++i) {
+    const double depth = found.depths[i].depth_m;
+    if (!(depth > 0.0)) continue;
+    direction += depth * found.contacts[i].window.n_ab_w;
+    weight += depth;
+    out.max_depth_m = std::max(out.max_depth_m, depth);
+    ++out.contacts;
+  }
+  if (weight > 0.0) out.direction_ab_w = direction / weight;
+  for (const support_plane& p : out.planes) out.max_depth_m = std::max(out.max_depth_m, p.depth_m);
+}
+
+}  // namespace asperity

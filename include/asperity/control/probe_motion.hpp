@@ -1,0 +1,135 @@
+// The probe's way through one device period: its target moves evenly, the probe follows in substeps.
+#pragma once
+
+#include <algorithm>
+
+#include "asperity/control/contact_solver.hpp"
+#include "asperity/control/linear_contact.hpp"
+#include "asperity/control/probe.hpp"
+#include "asperity/control/virtual_coupling.hpp"
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+#include "asperity/core/status.hpp"
+
+namespace asperity {
+
+/// Probe and virtual coupling behind one handle.
+///
+/// A contact with support planes is solved for in every substep; one without is the linear wrench, evaluated at the
+/// probe's pose in every substep. A step of the target at the beginning of the period would be felt as a jerk by a
+/// probe that runs at several times the device's rate, so the target goes evenly from its last pose to the newest one.
+/// @rt safe: no allocation, lock, throw, print or clock
+class probe_motion {
+ public:
+  /// @param substeps of the probe in one period; at least one is made
+  /// @pre check(law)
+  probe_motion(const probe_config& body, const coupling_config& coupling, const contact_law& law, int substeps) noexcept
+      : law_(law),
+        substeps_(std::max(1, substeps)),
+        coupling_(coupling, body.mass_kg, mean_inertia(body)),
+        probe_(body) {}
+
+  /// Puts probe and target there, at rest.
+  void place(const pose& target_T_wc) noexcept {
+    target_T_wc_ = target_T_wc;
+    target_velocity_w_ = {};
+    probe_.reset(target_T_wc);
+    caught_up_ = true;
+  }
+
+  /// What the last contact did to the probe is forgotten; where the probe is, is not.
+  void forget_contact() noexcept {
+    touched_ = {};
+    pressed_ = {};
+  }
+
+  /// From the present target to another pose: translation (m) and rotation vector (rad), world axes.
+  [[nodiscard]] vec6 way_to(const pose& T_wc) const noexcept { return pose_difference(T_wc, target_T_wc_); }
+
+  /// One period of dt_s seconds, at whose end the target has gone `part` of its way to wanted_T_wc.
+  /// @param part 1: all of it, to the bit
+  /// @return ok | not_finite (the probe is left at rest where it was)
+  [[nodiscard]] status move(double dt_s, const pose& wanted_T_wc, double part, const linear_contact& contact) noexcept {
+    const pose from = target_T_wc_;
+    vec6 way = way_to(wanted_T_wc);
+    target_T_wc_ = wanted_T_wc;
+    caught_up_ = !(part < 1.0);
+    if (!caught_up_) {
+      way = part * way;
+      target_T_wc_ = {glm::normalize(exp_rotation(way.angular) * from.rotation), from.position + way.linear};
+    }
+    if (contact.planes.empty()) {
+      touched_ = evaluate(contact, probe_.state().T_wc);
+      pressed_ = {};
+    }
+    if (!(dt_s > 0.0)) return status::ok;
+
+    target_velocity_w_ = to_twist((1.0 / dt_s) * way);
+    for (int i = 1; i <= substeps_; ++i) {
+      const double passed = static_cast<double>(i) / substeps_;
+      const pose target{exp_rotation(passed * way.angular) * from.rotation, from.position + passed * way.linear};
+      if (const status s = substep(dt_s / substeps_, target, contact); s != status::ok) return s;
+    }
+    return status::ok;
+  }
+
+  /// What a contact pushes with at the probe's pose, as far as the coupling will come to feel it: the linear wrench, or
+  /// the wrench with which the coupling holds a resting probe that the planes have pushed out.
+  [[nodiscard]] wrench push_of(const linear_contact& contact) const noexcept {
+    if (contact.planes.empty()) return evaluate(contact, probe_.state().T_wc).on_probe_w;
+    mat6 springs;
+    for (std::size_t i = 0; i < 6; ++i) {
+      springs(i, i) = i < 3 ? coupling_.stiffness_n_per_m() : coupling_.stiffness_n_m_per_rad();
+    }
+    contact_law still = law_;
+    still.dissipation_s_per_m = 0.0;
+    const vec6 moved = pose_difference(probe_.state().T_wc, contact.T_wc);
+    return solve_contact(springs, {}, {}, 1.0, contact.planes, moved, still).on_probe_w;
+  }
+
+  /// What the hand feels of the coupling: minus its wrench on the probe, world axes, about target().position.
+  [[nodiscard]] wrench on_hand_w() const noexcept {
+    const probe_state& p = probe_.state();
+    return -1.0 * coupling_.on_probe(target_T_wc_, target_velocity_w_, p.T_wc, p.velocity_w);
+  }
+
+  /// Where the handle wants the probe's centre-of-mass frame, as far as the target has come.
+  [[nodiscard]] const pose& target() const noexcept { return target_T_wc_; }
+  /// Whether the target is where the handle is.
+  [[nodiscard]] bool caught_up() const noexcept { return caught_up_; }
+  /// Contact wrench on the probe at the end of the last period; against planes, that of its last substep.
+  [[nodiscard]] const contact_evaluation& touched() const noexcept { return touched_; }
+  /// The solution of the last substep; empty where the last contact had no planes.
+  [[nodiscard]] const contact_solution& pressed() const noexcept { return pressed_; }
+  [[nodiscard]] const asperity::probe& probe() const noexcept { return probe_; }
+  [[nodiscard]] const virtual_coupling& coupling() const noexcept { return coupling_; }
+
+ private:
+  [[nodiscard]] static double mean_inertia(const probe_config& p) noexcept {
+    return (p.inertia_kg_m2[0][0] + p.inertia_kg_m2[1][1] + p.inertia_kg_m2[2][2]) / 3.0;
+  }
+
+  [[nodiscard]] status substep(double h_s, const pose& target, const linear_contact& contact) noexcept {
+    if (contact.planes.empty()) {
+      const status s = probe_.step(h_s, coupling_, target, target_velocity_w_, touched_);
+      touched_ = evaluate(contact, probe_.state().T_wc);
+      return s;
+    }
+    const status s =
+        probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, contact.planes, contact.T_wc, law_, pressed_);
+    touched_ = {pressed_.on_probe_w, {}, false};
+    return s;
+  }
+
+  contact_law law_;
+  int substeps_;
+  virtual_coupling coupling_;
+  asperity::probe probe_;
+  pose target_T_wc_{};
+  twist target_velocity_w_{};
+  bool caught_up_ = true;
+  contact_evaluation touched_{};
+  contact_solution pressed_{};
+};
+
+}  // namespace asperity

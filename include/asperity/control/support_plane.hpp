@@ -1,0 +1,18 @@
+// The few support planes that the contact thread hands to the device thread.
+#pragma once
+
+#include <cstddef>
+
+#include "asperity/core/fixed_vector.hpp"
+#include "asperity/depth/support_plane.hpp"
+
+namespace asperity {
+
+/// Most support planes that a contact carries. A rigid body that rests needs six at most; the others are those that it
+/// meets next when it tilts or slides.
+inline constexpr std::size_t most_support_planes = 16;
+
+/// Support planes of one contact; dropped() tells how many more were wanted than it could keep.
+using support_planes = fixed_vector<support_plane, most_support_planes>;
+
+}  // namespace asperity

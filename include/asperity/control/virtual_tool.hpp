@@ -1,0 +1,95 @@
+// The virtual tool by itself: for programs that call a renderer's step() and have a loop of their own.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "asperity/control/linearise.hpp"
+#include "asperity/control/plane_selection.hpp"
+#include "asperity/control/probe_motion.hpp"
+#include "asperity/core/pose.hpp"
+#include "asperity/render/renderer.hpp"
+
+namespace asperity {
+
+/// What a virtual tool is made of.
+struct virtual_tool_config {
+  probe_config probe{};
+  coupling_config coupling{};
+  contact_law contact{};
+  plane_selection selection{};   ///< selection_for() the period in which ticks are rendered
+  pose T_ha{};                   ///< the probe's body frame on the handle
+  vec3 centre_of_mass_a{0.0};    ///< c_A in the probe's body frame, m (textured_model::mass)
+  int substeps = 8;              ///< of the probe in one call
+  double longest_step_s = 0.02;  ///< a longer pause advances the probe by this much only
+};
+
+/// Probe, virtual coupling and contact behind a handle, for one thread:
+///
+///     virtual_tool tool({.probe = solid_probe(model->mass), .centre_of_mass_a = model->mass.centre_of_mass});
+///     tool.place(T_wh);
+///     for (;;) {                                       // one pass per device period
+///       const status s = renderer.step({tool.T_wa(), T_wb}, found);
+///       send(tool.follow(read_handle(), period_s, found, s));
+///     }
+///
+/// It limits no force and watches no clock: what leaves should pass an output_gate, as a device_loop's wrench does.
+class virtual_tool {
+ public:
+  /// @pre check(config.contact), check(config.selection)
+  explicit virtual_tool(const virtual_tool_config& config) noexcept
+      : config_(config),
+        T_hc_(config.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), config.centre_of_mass_a}),
+        T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), config.centre_of_mass_a})),
+        motion_(config.probe, config.coupling, config.contact, config.substeps) {}
+
+  /// Puts the probe where the handle is, at rest.
+  /// @pre is_valid(T_wh)
+  void place(const pose& T_wh) noexcept {
+    motion_.forget_contact();
+    motion_.place(T_wh * T_hc_);
+  }
+
+  /// Pose of the probe's body frame: where the next tick is to be rendered.
+  [[nodiscard]] pose T_wa() const noexcept { return motion_.probe().state().T_wc * T_ca_; }
+
+  /// Lets the probe follow the handle for dt_s seconds against what a renderer found.
+  /// @param T_wh the handle's pose now
+  /// @param found rendered at T_wa() as it was before this call
+  /// @param answer of the renderer; a contact of one that could not answer is empty
+  /// @return wrench on the hand, world axes, about the handle's origin; zero where last() is not ok
+  /// @rt safe
+  [[nodiscard]] wrench follow(const pose& T_wh, double dt_s, const tick& found, status answer = status::ok) noexcept {
+    return follow(T_wh, dt_s, found, answer, T_wa());
+  }
+
+  /// The same for a tick that was rendered earlier, at T_wa_then.
+  [[nodiscard]] wrench follow(const pose& T_wh, double dt_s, const tick& found, status answer,
+                              const pose& T_wa_then) noexcept {
+    if (!is_valid(T_wh) || !is_valid(T_wa_then) || !std::isfinite(dt_s)) {
+      last_ = status::invalid_pose;
+      return {};
+    }
+    linearise(found, answer, {T_wa_then * inverse(T_ca_), 0}, config_.selection, contact_);
+    last_ = motion_.move(std::min(dt_s, config_.longest_step_s), T_wh * T_hc_, 1.0, contact_);
+    const wrench felt = transport(motion_.on_hand_w(), motion_.target().position, T_wh.position);
+    if (last_ == status::ok && !is_finite(felt)) last_ = status::not_finite;
+    return last_ == status::ok ? felt : wrench{};
+  }
+
+  /// How the last follow() ended: ok | invalid_pose | not_finite. What the contact told is in contact().answer.
+  [[nodiscard]] status last() const noexcept { return last_; }
+  /// What the last follow() was held by.
+  [[nodiscard]] const linear_contact& contact() const noexcept { return contact_; }
+  [[nodiscard]] const probe_motion& motion() const noexcept { return motion_; }
+
+ private:
+  virtual_tool_config config_;
+  pose T_hc_;
+  pose T_ca_;
+  probe_motion motion_;
+  linear_contact contact_{};
+  status last_ = status::not_ready;
+};
+
+}  // namespace asperity
