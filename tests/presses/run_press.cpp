@@ -43,6 +43,9 @@ press_result run_press(const step_function& step, const press_touch& touch, cons
     last_way_w = found.direction_w;
     return found;
   };
+  const auto leads_elsewhere = [&](const way_out& exit, double d) {
+    return exit.way_m < rules.held_elsewhere * d || glm::dot(exit.direction_w, touch.out_w) < rules.same_way;
+  };
   const auto steps = static_cast<int>(std::floor(touch.press_m / rules.step_m + 1e-9));
   for (int i = 1; i <= steps; ++i) {
     const double d = i * rules.step_m;
@@ -60,8 +63,13 @@ press_result run_press(const step_function& step, const press_touch& touch, cons
       bool elsewhere = false;
       // A rule that is broken already is not asked again.
       if ((weak && !out.weak.found) || (falls && !out.falls.found) || (pulls && !out.pulls.found)) {
-        const way_out exit = exit_at(d);
-        elsewhere = exit.way_m < rules.held_elsewhere * d;
+        way_out exit = exit_at(d);
+        elsewhere = leads_elsewhere(exit, d);
+        if (!elsewhere) {
+          const way_out next = exit_at(rules.ahead * d);
+          elsewhere = leads_elsewhere(next, rules.ahead * d);
+          if (elsewhere) exit.direction_w = next.direction_w;
+        }
         const auto note = [&](breach& b, bool broken, double at_least) {
           if (broken && !b.found) b = {true, d, along, at_least};
         };

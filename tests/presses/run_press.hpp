@@ -25,8 +25,9 @@ struct press_rules {
   double weak_share = 0.5;   ///< the force is at least this share of k d
   double fall_share = 0.95;  ///< and of the largest force so far
   double pull_n = 0.1;       ///< the force against the press is never less than minus this
-  double held_elsewhere = 0.95;  ///< where the shortest way out is less than this share of d, another part of the
-                                 ///< surface holds the probe, and the force follows that way
+  /// Where the shortest way out is less than this share of d, or leads another way than the cosine below, another part
+  /// of the surface holds the probe, and the force follows that way. A law may change over so far ahead of the tie.
+  double held_elsewhere = 0.95, same_way = 0.9, ahead = 1.1;
 };
 
 /// One breach of a rule.
