@@ -95,16 +95,37 @@ vec3 face_normal(const corners3& t) {
   return length > 0.0 ? n / length : vec3(0.0);
 }
 
-/// The least of b's height minus a's over all lines along z that cross both triangles.
-void touch(const corners3& a, const corners3& b, first_touch& best) {
-  std::array<double, 3> w;
-  // What is met lies above, so that its normal points down.
-  const auto keep = [&](double way, const vec3& point, const vec3& normal) {
+/// The first touch so far, and the first one of a vertex with a face.
+struct touch_so_far {
+  first_touch best;
+  double by_face_m = infinity;
+  vec3 face{0.0};
+
+  void keep(double way, const vec3& point, const vec3& normal) {
+    // What is met lies above, so that its normal points down.
     if (way < best.way_m) best = {way, point, normal.z > 0.0 ? -normal : normal};
-  };
+  }
+  void keep_face(double way, const vec3& point, const vec3& normal) {
+    keep(way, point, normal);
+    if (way >= by_face_m) return;
+    by_face_m = way;
+    face = normal.z > 0.0 ? -normal : normal;
+  }
+  /// A vertex on an edge within a flat face touches both: the face says which way is out.
+  [[nodiscard]] first_touch found() const {
+    constexpr double same_m = 1e-9;
+    return by_face_m < best.way_m + same_m ? first_touch{best.way_m, best.point, face} : best;
+  }
+};
+
+/// The least of b's height minus a's over all lines along z that cross both triangles.
+void touch(const corners3& a, const corners3& b, touch_so_far& so_far) {
+  std::array<double, 3> w;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (crosses(a[i], b, 2, w)) keep(along(b, w, 2) - a[i].z, {a[i].x, a[i].y, along(b, w, 2)}, face_normal(b));
-    if (crosses(b[i], a, 2, w)) keep(b[i].z - along(a, w, 2), b[i], face_normal(a));
+    if (crosses(a[i], b, 2, w)) {
+      so_far.keep_face(along(b, w, 2) - a[i].z, {a[i].x, a[i].y, along(b, w, 2)}, face_normal(b));
+    }
+    if (crosses(b[i], a, 2, w)) so_far.keep_face(b[i].z - along(a, w, 2), b[i], face_normal(a));
     for (std::size_t j = 0; j < 3; ++j) {
       const vec3 &p = a[i], &q = b[j], u = a[(i + 1) % 3] - p, v = b[(j + 1) % 3] - q;
       const double det = u.x * v.y - u.y * v.x;
@@ -112,7 +133,7 @@ void touch(const corners3& a, const corners3& b, first_touch& best) {
       const double s = ((q.x - p.x) * v.y - (q.y - p.y) * v.x) / det;
       const double r = ((q.x - p.x) * u.y - (q.y - p.y) * u.x) / det;
       if (s >= 0.0 && s <= 1.0 && r >= 0.0 && r <= 1.0) {
-        keep(q.z + r * v.z - p.z - s * u.z, q + r * v, glm::normalize(glm::cross(u, v)));
+        so_far.keep(q.z + r * v.z - p.z - s * u.z, q + r * v, glm::normalize(glm::cross(u, v)));
       }
     }
   }
@@ -327,7 +348,7 @@ double placed_mesh::crossing_along(const vec3& p, const vec3& direction, double 
 }
 
 first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept {
-  first_touch best;
+  touch_so_far so_far;
   // The least way that the boxes allow; infinite where no line along z meets both.
   const auto least = [&](std::uint32_t i, std::uint32_t j) {
     const auto &m = a.nodes_[i], &n = b.nodes_[j];
@@ -338,7 +359,7 @@ first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept {
     const auto &m = a.nodes_[i], &n = b.nodes_[j];
     if (m.count > 0 && n.count > 0) {
       for (std::uint32_t s = m.first; s < m.first + m.count; ++s) {
-        for (std::uint32_t t = n.first; t < n.first + n.count; ++t) touch(a.corners_of(s), b.corners_of(t), best);
+        for (std::uint32_t t = n.first; t < n.first + n.count; ++t) touch(a.corners_of(s), b.corners_of(t), so_far);
       }
       return;
     }
@@ -347,11 +368,11 @@ first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept {
                                                                 cut_a ? std::pair{m.right, j} : std::pair{i, n.right}};
     if (least(next[1].first, next[1].second) < least(next[0].first, next[0].second)) std::swap(next[0], next[1]);
     for (const auto& [k, l] : next) {
-      if (least(k, l) < best.way_m) again(again, k, l);
+      if (least(k, l) < so_far.best.way_m) again(again, k, l);
     }
   };
   if (least(0, 0) < infinity) look(look, 0, 0);
-  return best;
+  return so_far.found();
 }
 
 double surface_distance(const placed_mesh& a, const placed_mesh& b, double shift_z, double at_most) noexcept {

@@ -112,8 +112,12 @@ result<const press_body*> press_shelf::get(const std::string& name) {
     }
     body.full = std::move(full).value();
     body.model = std::make_shared<const textured_model>(std::move(model).value());
+  } else if (!solids_) {
+    auto full = test_support::make_press_solid(name, test_support::fineness::fine);
+    if (!full) return full.error();
+    body.full = std::move(full).value();
   } else {
-    auto solid = test_support::bake_press_solid(name, solids_, baked / "presses");
+    auto solid = test_support::bake_press_solid(name, *solids_, baked / "presses");
     if (!solid) return solid.error();
     body.full = std::move(solid->full);
     body.model = std::move(solid->model);

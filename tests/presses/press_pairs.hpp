@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,9 +30,9 @@ struct press_pair {
 struct press_body {
   std::string name;
   triangle_mesh full;
-  model_ptr model;
-  /// How far the model's surface lies from the original at most, as its bake has measured.
-  [[nodiscard]] double error_m() const { return model->report.max_error_m; }
+  model_ptr model;  ///< none where only the original was asked for
+  /// How far the model's surface lies from the original at most, as its bake has measured; 0 without a model.
+  [[nodiscard]] double error_m() const { return model == nullptr ? 0.0 : model->report.max_error_m; }
 };
 
 /// Why a body cannot be had, in a sentence, where it is a scan that is not on this machine; otherwise empty.
@@ -40,14 +41,15 @@ struct press_body {
 /// Bodies by name, each made or read once.
 class press_shelf {
  public:
-  /// @param solids how solids become models; benchmark models and scans are taken as their own tests baked them
-  explicit press_shelf(press_bake solids) : solids_(solids) {}
+  /// @param solids how solids become models, or nothing for originals alone; benchmark models and scans are taken as
+  ///               their own tests baked them
+  explicit press_shelf(std::optional<press_bake> solids) : solids_(solids) {}
 
   /// @return io_failed where a file is missing, with what makes it; invalid_argument where the name is unknown
   [[nodiscard]] result<const press_body*> get(const std::string& name);
 
  private:
-  press_bake solids_;
+  std::optional<press_bake> solids_;
   std::map<std::string, press_body> made_;
 };
 

@@ -8,9 +8,9 @@ namespace {
 
 constexpr int whole_sphere = 400;  // directions, 10 degrees apart
 constexpr double first_angle_rad = 0.1;
-constexpr double last_angle_rad = 0.003;
-constexpr int round_the_best = 8;
-constexpr double gain = 0.998;  // a direction counts as better from here on
+constexpr double last_angle_rad = 0.001;
+constexpr int round_the_best = 12;
+constexpr double gain = 0.999;  // a direction counts as better from here on, round the best
 
 /// Evenly spread on the sphere.
 vec3 spread(int i, int n) {
@@ -56,7 +56,7 @@ way_out exit_search::true_exit(const pose& T_wa, const vec3& guess_w) {
   // From a length at which the direction parts them down to the least by halves.
   const auto shorten = [&](const vec3& direction, double parting_m) {
     double low = 0.0, high = parting_m;
-    while (high - low > 5e-4 * high) {
+    while (high - low > 2e-4 * high) {
       const double middle = 0.5 * (low + high);
       (apart_at(T_wa.position + middle * direction) ? high : low) = middle;
     }

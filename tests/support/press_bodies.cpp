@@ -122,7 +122,7 @@ triangle_mesh groove(double longest) {
   constexpr std::array<double, 5> x{-30.0 * mm, -15.0 * mm, 0.0, 15.0 * mm, 30.0 * mm};
   constexpr std::array<double, 5> top{10.0 * mm, 10.0 * mm, -5.0 * mm, 10.0 * mm, 10.0 * mm};
   constexpr double bottom = -20.0 * mm, side = 30.0 * mm;
-  const std::size_t along = parts(2.0 * side, longest), across = parts(15.0 * mm, longest),
+  const std::size_t along = parts(2.0 * side, longest), across = parts(15.0 * mm * std::numbers::sqrt2, longest),
                     up = parts(30.0 * mm, longest);
   welder out;
   const auto at = [&](std::size_t i, double y, bool upper) { return vec3(x[i], y, upper ? top[i] : bottom); };

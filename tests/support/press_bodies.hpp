@@ -42,7 +42,7 @@ enum class fineness : std::uint8_t {
 
 /// How a solid becomes a model.
 enum class press_bake : std::uint8_t {
-  own_coarse,  ///< the plain mesh is its own coarse mesh, so that the texture has nothing to say but rounding
+  own_coarse,  ///< the plain mesh is its own coarse mesh, so that the texture has next to nothing to say
   simplified,  ///< the library simplifies the fine mesh to 600 triangles
 };
 
