@@ -70,8 +70,8 @@ session_result press_session(render_function render, const press_touch& touch, c
     const vec3 p = now.T_wa * point_a;
     if (!fixed.contains(p)) continue;
     const double depth = fixed.distance_to(p);
-    const double further = fixed.distance_to(p + rules.looks_across_m * touch.out_w);
-    out.passed = further - depth > far_side * rules.looks_across_m;
+    const vec3 back = p + rules.looks_across_m * touch.out_w;
+    out.passed = fixed.contains(back) && fixed.distance_to(back) - depth > far_side * rules.looks_across_m;
     if (!out.passed) out.deepest_m = std::max(out.deepest_m, depth);
   }
   if (!out.passed && !originals.apart(now.T_wa)) {

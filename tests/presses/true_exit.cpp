@@ -8,9 +8,9 @@ namespace {
 
 constexpr int whole_sphere = 400;  // directions, 10 degrees apart
 constexpr double first_angle_rad = 0.1;
-constexpr double last_angle_rad = 0.001;
+constexpr double last_angle_rad = 2e-4;
 constexpr int round_the_best = 12;
-constexpr double gain = 0.999;  // a direction counts as better from here on, round the best
+constexpr double gain = 0.9995;  // a direction counts as better from here on, round the best
 
 /// Evenly spread on the sphere.
 vec3 spread(int i, int n) {
@@ -76,15 +76,23 @@ way_out exit_search::true_exit(const pose& T_wa, const vec3& guess_w) {
   }
   if (!(best.way_m < infinity)) best.way_m = 2.0 * farthest_m_;
   for (int i = 0; i < whole_sphere; ++i) static_cast<void>(try_better(spread(i, whole_sphere)));
+  // Where the body is held by several faces the best direction lies in a narrow valley: each ring of trials is turned
+  // against the last one, and an angle is given up after two rings without gain.
+  double phase = 0.0;
+  int without_gain = 0;
   for (double angle = first_angle_rad; angle > last_angle_rad;) {
     const vec3 axis = best.direction_w;
     const vec3 u = any_orthogonal(axis), v = glm::cross(axis, u);
     bool better = false;
+    phase += 0.618;
     for (int i = 0; i < round_the_best && !better; ++i) {
-      const double a = 2.0 * std::numbers::pi * (i + 0.37 * angle / first_angle_rad) / round_the_best;
+      const double a = 2.0 * std::numbers::pi * (i + phase) / round_the_best;
       better = try_better(glm::normalize(axis + std::tan(angle) * (std::cos(a) * u + std::sin(a) * v)));
     }
-    if (!better) angle *= 0.5;
+    without_gain = better ? 0 : without_gain + 1;
+    if (without_gain < 2) continue;
+    without_gain = 0;
+    angle *= 0.5;
   }
   return best;
 }
