@@ -66,10 +66,16 @@ session_result press_session(render_function render, const press_touch& touch, c
       out.ended_early = true;
       return out;
     }
-    out.largest_n = std::max(out.largest_n, glm::length(now.on_hand_d.force));
+    out.last_n = glm::length(now.on_hand_d.force);
+    out.largest_n = std::max(out.largest_n, out.last_n);
     const vec3 p = now.T_wa * point_a;
     if (!fixed.contains(p)) continue;
     const double depth = fixed.distance_to(p);
+    const double least_n = rules.weak_share * rules.stiffness_n_per_m * (depth - rules.allowance_m);
+    if (!out.gave_way && glm::length(now.on_probe_w.force) < least_n) {
+      out.gave_way = true;
+      out.gave_way_at_n = out.largest_n;
+    }
     const vec3 back = p + rules.looks_across_m * touch.out_w;
     out.passed = fixed.contains(back) && fixed.distance_to(back) - depth > far_side * rules.looks_across_m;
     if (!out.passed) out.deepest_m = std::max(out.deepest_m, depth);
@@ -105,28 +111,37 @@ result<session_row> press_sessions(const press_pair& pair, const press_body& pro
 }
 
 void print_session_heading(std::FILE* to) {
-  std::fprintf(to, "%-14s %-14s %4s | %6s %-22s | %-18s | %-16s | %s\n", "probe", "fixed", "n", "passes",
-               "at N of hand p0 p50", "largest N p50 p100", "deepest mm p100", "ended early, s a session");
+  std::fprintf(to, "%-13s %-14s %3s | %-26s | %-26s | %-5s | %-18s | %-17s | %s\n", "probe", "fixed", "n",
+               "passes    at N p0    p50", "gives way  at N p0    p50", "slips", "largest N p50 p100",
+               "at end N p0   p50", "deepest mm; early; s a session");
 }
 
 void print_row(std::FILE* to, const session_row& row) {
-  std::vector<double> at, largest, deepest;
-  int passed = 0, early = 0;
+  std::vector<double> passed_at, gave_way_at, largest, last, deepest;
+  int early = 0, slipped = 0;
   for (const session_result& s : row.sessions) {
-    if (s.passed) at.push_back(s.passed_at_n);
+    slipped += !s.passed && s.last_n < 0.5 * session_rules{}.hand_n ? 1 : 0;
+    if (s.passed) passed_at.push_back(s.passed_at_n);
+    if (s.gave_way) gave_way_at.push_back(s.gave_way_at_n);
     largest.push_back(s.largest_n);
+    last.push_back(s.last_n);
     deepest.push_back(1e3 * s.deepest_m);
-    passed += s.passed ? 1 : 0;
     early += s.ended_early ? 1 : 0;
   }
-  std::fprintf(to, "%-14s %-14s %4zu | %6d ", row.probe.c_str(), row.fixed.c_str(), row.sessions.size(), passed);
-  if (at.empty()) {
-    std::fprintf(to, "%11s %10s", "-", "-");
-  } else {
-    std::fprintf(to, "%11.2f %10.2f", oracle::percentile(at, 0.0), oracle::percentile(at, 0.5));
-  }
-  std::fprintf(to, "  | %8.2f %9.2f | %16.2f | %d, %.1f\n", oracle::percentile(largest, 0.5),
-               oracle::percentile(largest, 1.0), oracle::percentile(deepest, 1.0), early,
+  const auto forces = [&](const std::vector<double>& at) {
+    std::fprintf(to, " | %6zu ", at.size());
+    if (at.empty()) {
+      std::fprintf(to, "%10s %8s", "-", "-");
+    } else {
+      std::fprintf(to, "%10.2f %8.2f", oracle::percentile(at, 0.0), oracle::percentile(at, 0.5));
+    }
+  };
+  std::fprintf(to, "%-13s %-14s %3zu", row.probe.c_str(), row.fixed.c_str(), row.sessions.size());
+  forces(passed_at);
+  forces(gave_way_at);
+  std::fprintf(to, " | %5d | %8.2f %9.2f | %8.2f %8.2f | %.1f; %d; %.1f\n", slipped, oracle::percentile(largest, 0.5),
+               oracle::percentile(largest, 1.0), oracle::percentile(last, 0.0), oracle::percentile(last, 0.5),
+               oracle::percentile(deepest, 1.0), early,
                row.seconds / std::max<double>(1.0, static_cast<double>(row.sessions.size())));
   std::fflush(to);
 }

@@ -24,20 +24,26 @@ struct session_rules {
   double stiffness_n_per_m = 2000.0;  ///< of the contact, which the hand's way allows for
   double before_m = 2e-4;             ///< way from the first touch back along the approach where the session begins
   double ramp_s = 0.8, hold_s = 0.2;
+  double weak_share = 0.5;
+  double allowance_m = 1e-3;     ///< of the depth, for the models' errors and the motion between two ticks
   double looks_across_m = 2e-5;  ///< step of the difference that says which side of a body is the nearer one
 };
 
 struct session_result {
-  bool passed = false;       ///< the probe went past half way through, or ended on the far side
-  double passed_at_n = 0.0;  ///< largest force on the hand until then
-  double largest_n = 0.0;    ///< on the hand, of the whole session
-  double deepest_m = 0.0;    ///< of the probe's touching point within the fixed original, until it passed
-  bool ended_early = false;  ///< the gate shut, or a tick could not be rendered
+  bool passed = false;         ///< the probe went past half way through, or ended on the far side
+  double passed_at_n = 0.0;    ///< largest force on the hand until then
+  bool gave_way = false;       ///< somewhere the contact pushed by less than half of what its depth asks for
+  double gave_way_at_n = 0.0;  ///< largest force on the hand until then
+  double largest_n = 0.0;      ///< on the hand, of the whole session
+  double last_n = 0.0;         ///< on the hand, at the end
+  double deepest_m = 0.0;      ///< of the probe's touching point within the fixed original, until it passed
+  bool ended_early = false;    ///< the gate shut
 };
 
 /// One session of one touch; it ends where the probe has passed. Whether it has is asked of the originals: the point of
 /// the probe that touched first is followed in every device tick, and has passed where the fixed body's nearest surface
-/// faces the way of the press; at the end the shortest way out of the whole probe is asked for.
+/// faces the way of the press; at the end the shortest way out of the whole probe is asked for. The true depth of the
+/// bodies is at least that point's depth: the contact has given way where its force is less than weak_share k of it.
 /// @param centre_of_mass_a of the probe's model: the handle is there
 [[nodiscard]] session_result press_session(render_function render, const press_touch& touch,
                                            const vec3& centre_of_mass_a, const session_rules& rules, std::uint64_t seed,
@@ -54,6 +60,8 @@ struct session_row {
                                                  const press_body& fixed, std::uint64_t seed, int touches);
 
 void print_session_heading(std::FILE* to);
+/// One line. A session slips where the probe has not passed and the hand feels less than half of its force at the end:
+/// it went aside, which a round or narrow body allows.
 void print_row(std::FILE* to, const session_row& row);
 
 }  // namespace asperity::presses
