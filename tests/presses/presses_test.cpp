@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "presses/press_law.hpp"
+#include "presses/press_session.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 
@@ -263,6 +264,75 @@ TEST(presses_harness, lets_the_force_fall_with_the_true_depth_beyond_half_way) {
   EXPECT_TRUE(press_by_the_rim(20.0 * mm, 6.0 * mm, [](double, const vec3& force) {
                 return wrench{vec3(0.0, 0.0, -std::fabs(force.z)), vec3(0.0)};
               }).pulls.found);
+}
+
+// ---- Sessions
+
+/// A hand that presses the ball on the slab's faces under a law made of a factor on the right force.
+std::vector<session_result> ball_on_slab_sessions(const std::function<double(double depth_m)>& factor, int count) {
+  static press_shelf shelf(std::nullopt);
+  const press_body &ball = *shelf.get("ball_10").value(), &slab = *shelf.get("slab").value();
+  const ball_and_box shapes = shapes_of(ball, slab);
+  session_rules rules;
+  rules.hand_n = 12.0;  // 6 mm deep: at 20 N it would be half way through the slab
+  exit_search originals(ball.full, slab.full);
+  touch_finder finder("a hand on the slab", ball.full, slab.full, [](const vec3&, const vec3& p) {
+    return std::fabs(p.z) > 9.99 * mm && std::fabs(p.x) < 20.0 * mm && std::fabs(p.y) < 20.0 * mm;
+  });
+  const std::uint64_t seed = fresh_seed("a hand on the slab", std::to_string(count) + " sessions");
+  std::vector<session_result> out;
+  for (int i = 0; i < count; ++i) {
+    const auto touch = finder.next(seed);
+    if (!touch) break;
+    out.push_back(press_session(
+        [&](const scene_pose& at, tick& t) {
+          const way_out exit = shapes.at(at.T_wa);
+          const double k = rules.stiffness_n_per_m * factor(exit.way_m);
+          t = {};
+          t.force.on_probe_w.force = k * exit.way_m * exit.direction_w;
+          if (exit.way_m > 0.0 && k > 0.0) {
+            set_block(t.force.stiffness, 0, 0, -k * glm::outerProduct(exit.direction_w, exit.direction_w));
+          }
+          return status::ok;
+        },
+        *touch, vec3(0.0), rules, seed + touch->index, originals));
+  }
+  return out;
+}
+
+TEST(press_session, a_right_law_holds_the_hand) {
+  const auto sessions = ball_on_slab_sessions([](double) { return 1.0; }, 3);
+  ASSERT_EQ(sessions.size(), 3U);
+  for (const session_result& s : sessions) {
+    EXPECT_FALSE(s.passed || s.gave_way || s.ended_early);
+    EXPECT_GT(s.last_n, 10.0);
+    EXPECT_LT(s.largest_n, 14.0);
+    EXPECT_NEAR(s.deepest_m, 6.0 * mm, 1.0 * mm);
+  }
+}
+
+TEST(press_session, a_saturating_law_lets_the_probe_through) {
+  const auto sessions = ball_on_slab_sessions(
+      [](double d) {
+        const double x4 = std::pow(d / (3.0 * mm), 4.0);
+        return (1.0 - x4) / ((1.0 + x4) * (1.0 + x4));
+      },
+      3);
+  ASSERT_EQ(sessions.size(), 3U);
+  for (const session_result& s : sessions) {
+    EXPECT_TRUE(s.passed);
+    EXPECT_TRUE(s.gave_way);
+    EXPECT_GT(s.gave_way_at_n, 1.0);
+    EXPECT_LT(s.passed_at_n, 4.0);
+  }
+}
+
+// It never pulls: it is less than half of what the depth asks for.
+TEST(press_session, a_law_that_softens_gives_way) {
+  for (const session_result& s : ball_on_slab_sessions([](double d) { return d > 2.0 * mm ? 0.3 : 1.0; }, 2)) {
+    EXPECT_TRUE(s.gave_way);
+    EXPECT_GT(s.gave_way_at_n, 2.0);
+  }
 }
 
 }  // namespace
