@@ -79,6 +79,7 @@ approach approach_sampler::draw(std::uint64_t seed, std::uint64_t index) {
   out.window.v_w = back * vec3(0.0, 1.0, 0.0);
   out.window.n_ab_w = back * vec3(0.0, 0.0, 1.0);
   out.touching = {glm::normalize(back * a), back * shift};
+  out.out_w = back * met.normal;
   return out;
 }
 

@@ -17,6 +17,7 @@ namespace asperity::oracle {
 struct approach {
   contact_window window;  ///< centred where the originals touch first; n_ab_w is the way of the probe; no size
   pose touching;          ///< of the probe at the first touch
+  vec3 out_w{0.0};        ///< out of the fixed body by the features that touch: first_touch::normal
 
   /// The probe pressed on by `way_m` from the first touch; drawn back where negative.
   [[nodiscard]] pose pressed(double way_m) const {

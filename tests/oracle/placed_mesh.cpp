@@ -88,24 +88,80 @@ void triangles_distance2(const corners3& a, const corners3& b, double& best) {
   }
 }
 
+/// Of a triangle's face, unit; zero where it has no area.
+vec3 face_normal(const corners3& t) {
+  const vec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+  const double length = glm::length(n);
+  return length > 0.0 ? n / length : vec3(0.0);
+}
+
+/// The first touch so far, and the first one of a vertex with a face.
+struct touch_so_far {
+  first_touch best;
+  double by_face_m = infinity;
+  vec3 face{0.0};
+
+  void keep(double way, const vec3& point, const vec3& normal) {
+    // What is met lies above, so that its normal points down.
+    if (way < best.way_m) best = {way, point, normal.z > 0.0 ? -normal : normal};
+  }
+  void keep_face(double way, const vec3& point, const vec3& normal) {
+    keep(way, point, normal);
+    if (way >= by_face_m) return;
+    by_face_m = way;
+    face = normal.z > 0.0 ? -normal : normal;
+  }
+  /// A vertex on an edge within a flat face touches both: the face says which way is out.
+  [[nodiscard]] first_touch found() const {
+    constexpr double same_m = 1e-9;
+    return by_face_m < best.way_m + same_m ? first_touch{best.way_m, best.point, face} : best;
+  }
+};
+
 /// The least of b's height minus a's over all lines along z that cross both triangles.
-void touch(const corners3& a, const corners3& b, first_touch& best) {
+void touch(const corners3& a, const corners3& b, touch_so_far& so_far) {
   std::array<double, 3> w;
-  const auto keep = [&](double way, const vec3& point) {
-    if (way < best.way_m) best = {way, point};
-  };
   for (std::size_t i = 0; i < 3; ++i) {
-    if (crosses(a[i], b, 2, w)) keep(along(b, w, 2) - a[i].z, {a[i].x, a[i].y, along(b, w, 2)});
-    if (crosses(b[i], a, 2, w)) keep(b[i].z - along(a, w, 2), b[i]);
+    if (crosses(a[i], b, 2, w)) {
+      so_far.keep_face(along(b, w, 2) - a[i].z, {a[i].x, a[i].y, along(b, w, 2)}, face_normal(b));
+    }
+    if (crosses(b[i], a, 2, w)) so_far.keep_face(b[i].z - along(a, w, 2), b[i], face_normal(a));
     for (std::size_t j = 0; j < 3; ++j) {
       const vec3 &p = a[i], &q = b[j], u = a[(i + 1) % 3] - p, v = b[(j + 1) % 3] - q;
       const double det = u.x * v.y - u.y * v.x;
       if (det == 0.0) continue;
       const double s = ((q.x - p.x) * v.y - (q.y - p.y) * v.x) / det;
       const double r = ((q.x - p.x) * u.y - (q.y - p.y) * u.x) / det;
-      if (s >= 0.0 && s <= 1.0 && r >= 0.0 && r <= 1.0) keep(q.z + r * v.z - p.z - s * u.z, q + r * v);
+      if (s >= 0.0 && s <= 1.0 && r >= 0.0 && r <= 1.0) {
+        so_far.keep(q.z + r * v.z - p.z - s * u.z, q + r * v, glm::normalize(glm::cross(u, v)));
+      }
     }
   }
+}
+
+/// Whether the segment from p to q goes through the triangle.
+bool goes_through(const vec3& p, const vec3& q, const corners3& t) {
+  const vec3 n = glm::cross(t[1] - t[0], t[2] - t[0]);
+  const double from = glm::dot(p - t[0], n), to = glm::dot(q - t[0], n);
+  if ((from > 0.0) == (to > 0.0) || from == to) return false;
+  const vec3 at = p + from / (from - to) * (q - p);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (glm::dot(glm::cross(t[(k + 1) % 3] - t[k], at - t[k]), n) < 0.0) return false;
+  }
+  return true;
+}
+
+bool triangles_cross(const corners3& a, const corners3& b) {
+  const auto on_one_side = [](const corners3& of, const corners3& t) {
+    const vec3 n = glm::cross(of[1] - of[0], of[2] - of[0]);
+    const double x = glm::dot(t[0] - of[0], n), y = glm::dot(t[1] - of[0], n), z = glm::dot(t[2] - of[0], n);
+    return (x > 0.0 && y > 0.0 && z > 0.0) || (x < 0.0 && y < 0.0 && z < 0.0);
+  };
+  if (on_one_side(a, b) || on_one_side(b, a)) return false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (goes_through(a[k], a[(k + 1) % 3], b) || goes_through(b[k], b[(k + 1) % 3], a)) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -246,8 +302,53 @@ double placed_mesh::crossing(double x, double y, double sign) const noexcept {
   return sign * best;
 }
 
+double placed_mesh::crossing_along(const vec3& p, const vec3& direction, double beyond) const noexcept {
+  double best = infinity;
+  // Where the ray enters a box; infinite where it misses it.
+  const auto enters = [&](std::uint32_t i) {
+    const node& n = nodes_[i];
+    double from = beyond, to = best;
+    for (int k = 0; k < 3; ++k) {
+      if (direction[k] == 0.0) {
+        if (p[k] < n.low[k] || p[k] > n.high[k]) return infinity;
+        continue;
+      }
+      const double x = (n.low[k] - p[k]) / direction[k], y = (n.high[k] - p[k]) / direction[k];
+      from = std::max(from, std::min(x, y) - 1e-12);
+      to = std::min(to, std::max(x, y) + 1e-12);
+    }
+    return from <= to ? from : infinity;
+  };
+  const auto look = [&](const auto& again, std::uint32_t index) -> void {
+    const node& n = nodes_[index];
+    if (n.count == 0) {
+      std::uint32_t near = index + 1, other = n.right;
+      if (enters(other) < enters(near)) std::swap(near, other);
+      if (enters(near) < infinity) again(again, near);
+      if (enters(other) < infinity) again(again, other);
+      return;
+    }
+    for (std::uint32_t t = n.first; t < n.first + n.count; ++t) {
+      const corners3 c = corners_of(t);
+      const vec3 normal = glm::cross(c[1] - c[0], c[2] - c[0]);
+      const double slope = glm::dot(direction, normal);
+      if (slope == 0.0) continue;
+      const double way = glm::dot(c[0] - p, normal) / slope;
+      if (way <= beyond || way >= best) continue;
+      const vec3 at = p + way * direction;
+      bool inside = true;
+      for (std::size_t k = 0; k < 3; ++k) {
+        inside = inside && glm::dot(glm::cross(c[(k + 1) % 3] - c[k], at - c[k]), normal) >= -1e-12 * squared(normal);
+      }
+      if (inside) best = way;
+    }
+  };
+  if (enters(0) < infinity) look(look, 0);
+  return best;
+}
+
 first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept {
-  first_touch best;
+  touch_so_far so_far;
   // The least way that the boxes allow; infinite where no line along z meets both.
   const auto least = [&](std::uint32_t i, std::uint32_t j) {
     const auto &m = a.nodes_[i], &n = b.nodes_[j];
@@ -258,7 +359,7 @@ first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept {
     const auto &m = a.nodes_[i], &n = b.nodes_[j];
     if (m.count > 0 && n.count > 0) {
       for (std::uint32_t s = m.first; s < m.first + m.count; ++s) {
-        for (std::uint32_t t = n.first; t < n.first + n.count; ++t) touch(a.corners_of(s), b.corners_of(t), best);
+        for (std::uint32_t t = n.first; t < n.first + n.count; ++t) touch(a.corners_of(s), b.corners_of(t), so_far);
       }
       return;
     }
@@ -267,11 +368,11 @@ first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept {
                                                                 cut_a ? std::pair{m.right, j} : std::pair{i, n.right}};
     if (least(next[1].first, next[1].second) < least(next[0].first, next[0].second)) std::swap(next[0], next[1]);
     for (const auto& [k, l] : next) {
-      if (least(k, l) < best.way_m) again(again, k, l);
+      if (least(k, l) < so_far.best.way_m) again(again, k, l);
     }
   };
   if (least(0, 0) < infinity) look(look, 0, 0);
-  return best;
+  return so_far.found();
 }
 
 double surface_distance(const placed_mesh& a, const placed_mesh& b, double shift_z, double at_most) noexcept {
@@ -301,6 +402,32 @@ double surface_distance(const placed_mesh& a, const placed_mesh& b, double shift
   };
   look(look, 0, 0);
   return std::sqrt(best);
+}
+
+bool surfaces_cross(const placed_mesh& a, const placed_mesh& b, const vec3& shift) noexcept {
+  const auto look = [&](const auto& again, std::uint32_t i, std::uint32_t j) -> bool {
+    const auto &m = a.nodes_[i], &n = b.nodes_[j];
+    const vec3 low = m.low + shift, high = m.high + shift;
+    if (low.x > n.high.x || n.low.x > high.x || low.y > n.high.y || n.low.y > high.y || low.z > n.high.z ||
+        n.low.z > high.z) {
+      return false;
+    }
+    if (m.count > 0 && n.count > 0) {
+      for (std::uint32_t s = m.first; s < m.first + m.count; ++s) {
+        corners3 moved = a.corners_of(s);
+        for (vec3& p : moved) p += shift;
+        for (std::uint32_t t = n.first; t < n.first + n.count; ++t) {
+          if (triangles_cross(moved, b.corners_of(t))) return true;
+        }
+      }
+      return false;
+    }
+    if (n.count > 0 || (m.count == 0 && squared(m.high - m.low) > squared(n.high - n.low))) {
+      return again(again, i + 1, j) || again(again, m.right, j);
+    }
+    return again(again, i, j + 1) || again(again, i, n.right);
+  };
+  return look(look, 0, 0);
 }
 
 double deepest_vertex(const placed_mesh& a, const placed_mesh& b, const vec3& shift) noexcept {

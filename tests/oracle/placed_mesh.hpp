@@ -17,6 +17,9 @@ namespace asperity::oracle {
 struct first_touch {
   double way_m = std::numeric_limits<double>::infinity();  ///< infinite where they pass each other by
   vec3 point{0.0};                                         ///< on the mesh that is met
+  /// Out of the mesh that is met, unit, by the features that touch: the face's normal where a vertex meets a face, the
+  /// cross product where two edges meet. Zero where nothing touches.
+  vec3 normal{0.0};
 };
 
 /// Triangles in a tree of boxes. The tree is cut once, in the body's frame; place() moves it.
@@ -38,6 +41,10 @@ class placed_mesh {
   /// Lowest crossing; infinity where there is none.
   [[nodiscard]] double lowest(double x, double y) const noexcept { return crossing(x, y, -1.0); }
 
+  /// Distance from p along a unit direction to the first crossing that is farther than `beyond`; infinite where there
+  /// is none.
+  [[nodiscard]] double crossing_along(const vec3& p, const vec3& direction, double beyond) const noexcept;
+
   [[nodiscard]] const std::vector<vec3>& points() const noexcept { return points_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const noexcept { return triangles_; }
 
@@ -46,6 +53,8 @@ class placed_mesh {
   friend first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept;
   /// Distance of two surfaces that do not cross, with `a` moved by `shift_z` along z. At most `at_most`.
   friend double surface_distance(const placed_mesh& a, const placed_mesh& b, double shift_z, double at_most) noexcept;
+  /// Whether any two triangles of the two surfaces cross, with `a` moved by `shift`. Coplanar ones do not count.
+  friend bool surfaces_cross(const placed_mesh& a, const placed_mesh& b, const vec3& shift) noexcept;
   /// Largest distance to b's surface of all vertices of `a`, moved by `shift` and inside b; 0 where none is inside.
   friend double deepest_vertex(const placed_mesh& a, const placed_mesh& b, const vec3& shift) noexcept;
 
@@ -71,6 +80,7 @@ class placed_mesh {
 [[nodiscard]] first_touch touch_along_z(const placed_mesh& a, const placed_mesh& b) noexcept;
 [[nodiscard]] double surface_distance(const placed_mesh& a, const placed_mesh& b, double shift_z,
                                       double at_most) noexcept;
+[[nodiscard]] bool surfaces_cross(const placed_mesh& a, const placed_mesh& b, const vec3& shift) noexcept;
 [[nodiscard]] double deepest_vertex(const placed_mesh& a, const placed_mesh& b, const vec3& shift) noexcept;
 
 /// How deep two bodies are in each other, from below: no motion shorter than this takes them apart.

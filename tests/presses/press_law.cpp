@@ -1,0 +1,84 @@
+#include "presses/press_law.hpp"
+
+#include <array>
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <utility>
+
+#include "support/built_renderers.hpp"
+
+namespace asperity::presses {
+namespace {
+
+using test_support::build_renderer;
+using test_support::built_renderer;
+
+wrench no_answer() {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  return {vec3(nan), vec3(nan)};
+}
+
+double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+}  // namespace
+
+press_law default_renderer_law() {
+  return {"default renderer",
+          [](const press_body& probe, const press_body& fixed, double stiffness_n_per_m) -> result<step_function> {
+            renderer_settings settings;
+            settings.shared.stiffness_n_per_m = stiffness_n_per_m;
+            result<built_renderer> made = build_renderer({probe.model, {fixed.model}}, settings);
+            if (!made) return made.error();
+            const auto feel = std::make_shared<built_renderer>(std::move(made).value());
+            return step_function([feel](const pose& T_wa) {
+              const std::array<pose, 1> T_wb{};
+              tick t;
+              const status s = feel->step({T_wa, T_wb}, t);
+              return s == status::ok || s == status::capacity_reached ? t.force.on_probe_w : no_answer();
+            });
+          }};
+}
+
+press_law true_exit_law() {
+  return {"true exit", [](const press_body& probe, const press_body& fixed, double k) -> result<step_function> {
+            const auto search = std::make_shared<exit_search>(probe.full, fixed.full);
+            return step_function([search, k](const pose& T_wa) {
+              const way_out exit = search->true_exit(T_wa, vec3(0.0, 0.0, 1.0));
+              return wrench{k * exit.way_m * exit.direction_w, vec3(0.0)};
+            });
+          }};
+}
+
+press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,
+                         const step_function& step, std::uint64_t seed, int touches, double step_m) {
+  using clock = std::chrono::steady_clock;
+  press_row row;
+  row.probe = pair.probe;
+  row.fixed = pair.fixed;
+  press_rules rules;
+  rules.step_m = step_m;
+  rules.allowance_m = probe.error_m() + fixed.error_m();
+  exit_search originals(probe.full, fixed.full);
+  touch_finder finder(pair.name(), probe.full, fixed.full, pair.region);
+  clock::duration stepping{};
+  const step_function timed = [&](const pose& T_wa) {
+    const auto start = clock::now();
+    const wrench w = step(T_wa);
+    stepping += clock::now() - start;
+    ++row.step_count;
+    return w;
+  };
+  for (int i = 0; i < touches; ++i) {
+    const auto start = clock::now();
+    const std::optional<press_touch> touch = finder.next(seed);
+    row.touch_s += seconds(clock::now() - start);
+    if (!touch) break;
+    row.longest_m = std::max(row.longest_m, touch->press_m);
+    row.presses.push_back(run_press(timed, *touch, rules, originals));
+  }
+  row.step_s = seconds(stepping);
+  return row;
+}
+
+}  // namespace asperity::presses

@@ -1,0 +1,132 @@
+// press_table: presses pairs of bodies under a contact law and prints a line for each pair; see usage below.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "presses/press_law.hpp"
+#include "presses/press_session.hpp"
+#include "support/fresh_seed.hpp"
+
+namespace {
+
+using namespace asperity;
+using namespace asperity::presses;
+
+constexpr char usage[] =
+    "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--step MM] [--own] [--sessions] [--dump]\n"
+    "  --law NAME    default (the default renderer) or exit (the originals' own true depth, slow)\n"
+    "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
+    "  --touches N   presses on each pair (24)\n"
+    "  --step MM     between two steps of a press (0.1)\n"
+    "  --own         solids are their own coarse meshes; otherwise they are simplified\n"
+    "  --sessions    a simulated hand presses with up to 20 N instead, through device and coupling\n"
+    "  --dump        every step of every press as well\n"
+    "The touches are those of the day; ASPERITY_SEED=N repeats a run. The benchmark models and the scans are taken "
+    "from\n"
+    "the build's test-models (ctest -R '_models' makes them), the scans' originals from ASPERITY_MODELS or\n"
+    "../shared/models.\n";
+
+struct arguments {
+  std::string law = "default";
+  std::vector<press_pair> pairs;
+  int touches = 24;
+  double step_m = 1e-4;
+  press_bake solids = press_bake::simplified;
+  bool sessions = false, dump = false;
+};
+
+press_pair pair_named(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  press_pair out{text.substr(0, colon), colon == std::string::npos ? "" : text.substr(colon + 1), {}};
+  for (const press_pair& p : press_pairs()) {
+    if (p.name() == out.name()) return p;
+  }
+  return out;
+}
+
+bool parse(int argc, char** argv, arguments& to) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    if (name == "--own") {
+      to.solids = press_bake::own_coarse;
+    } else if (name == "--sessions") {
+      to.sessions = true;
+    } else if (name == "--dump") {
+      to.dump = true;
+    } else if (i + 1 == argc) {
+      return false;
+    } else if (name == "--law") {
+      to.law = argv[++i];
+    } else if (name == "--pair") {
+      to.pairs.push_back(pair_named(argv[++i]));
+    } else if (name == "--touches") {
+      to.touches = std::atoi(argv[++i]);
+    } else if (name == "--step") {
+      to.step_m = 1e-3 * std::atof(argv[++i]);
+    } else {
+      return false;
+    }
+  }
+  if (to.pairs.empty()) to.pairs = press_pairs();
+  return to.touches > 0 && to.step_m > 0.0 && (to.law == "default" || to.law == "exit");
+}
+
+void dump(const press_row& row) {
+  for (std::size_t i = 0; i < row.presses.size(); ++i) {
+    for (const press_step& s : row.presses[i].steps) {
+      std::printf("    %zu %6.2f mm  F.n %8.3f N  |F| %8.3f N\n", i, s.way_m * 1e3, s.along_n, s.force_n);
+    }
+    if (!row.presses[i].good()) std::printf("    %s\n", in_words(row, i).c_str());
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  arguments asked;
+  if (!parse(argc, argv, asked)) {
+    std::fputs(usage, stderr);
+    return 2;
+  }
+  const press_law law = asked.law == "exit" ? true_exit_law() : default_renderer_law();
+  const std::uint64_t seed = test_support::fresh_seed("presses", std::to_string(asked.touches) + " touches a pair");
+  press_shelf shelf(asked.solids);
+  asked.sessions ? print_session_heading(stdout) : print_heading(stdout);
+  int failed = 0;
+  for (const press_pair& pair : asked.pairs) {
+    const auto start = std::chrono::steady_clock::now();
+    if (const std::string why = why_without_body(pair.probe) + why_without_body(pair.fixed); !why.empty()) {
+      std::printf("%s: skipped, %s\n", pair.name().c_str(), why.c_str());
+      continue;
+    }
+    const result<const press_body*> probe = shelf.get(pair.probe), fixed = shelf.get(pair.fixed);
+    if (!probe || !fixed) {
+      std::printf("%s: %s\n", pair.name().c_str(), (probe ? fixed.error() : probe.error()).message.c_str());
+      ++failed;
+      continue;
+    }
+    if (asked.sessions) {
+      const result<session_row> row = press_sessions(pair, **probe, **fixed, seed, asked.touches);
+      row ? print_row(stdout, *row) : static_cast<void>(std::printf("%s\n", row.error().message.c_str()));
+      failed += row ? 0 : 1;
+      continue;
+    }
+    const result<step_function> step = law.make(**probe, **fixed, press_rules{}.stiffness_n_per_m);
+    if (!step) {
+      std::printf("%s: %s\n", pair.name().c_str(), step.error().message.c_str());
+      ++failed;
+      continue;
+    }
+    const press_row row = press_one_pair(pair, **probe, **fixed, *step, seed, asked.touches, asked.step_m);
+    print_row(stdout, row);
+    if (asked.dump) dump(row);
+    std::fprintf(stderr, "%s: %.1f s, models within %.0f um of the originals\n", pair.name().c_str(),
+                 std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                 1e6 * ((*probe)->error_m() + (*fixed)->error_m()));
+  }
+  return failed == 0 ? 0 : 1;
+}
