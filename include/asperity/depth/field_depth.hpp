@@ -1,0 +1,122 @@
+// How deep samples lie in the other body's field: one support plane for a few neighbouring samples.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "asperity/collision/near_samples.hpp"
+#include "asperity/core/memory.hpp"
+#include "asperity/core/pose.hpp"
+#include "asperity/core/reserve_resident.hpp"
+#include "asperity/depth/concept.hpp"
+#include "asperity/depth/near_plane.hpp"
+#include "asperity/depth/support_plane.hpp"
+#include "asperity/field/field_scene.hpp"
+#include "asperity/model/scene.hpp"
+
+namespace asperity {
+
+/// Reads the field at every near sample and keeps the deepest of each leaf, with its slope, as a support plane. Edge
+/// across edge needs nothing of its own: the samples along one edge lie in the field of the other's body.
+///
+/// The field's way out is the shortest one of the point, whatever body the point belongs to. Beside a sharp edge that
+/// can be sideways, where the bodies would not slide apart. A sample therefore sinks, by up to 3 % of the smallest
+/// body's diagonal, as the way turns from where its own surface looks: the plane leaves without a step.
+/// A reading whose depth is -infinity stands for a leaf that has no plane.
+class field_depth {
+ public:
+  using policy_tag = depth_tag;
+  using found_type = near_samples;
+  using reading_type = near_plane;
+
+  /// @param bodies   the scene's, in its order
+  /// @param reach_m  gaps up to this are told, m
+  /// @param most     planes that a tick may tell: near_sample_limits::readings()
+  field_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most)
+      : bodies_(std::move(bodies)), centre_of_mass_a_(of.probe->mass.centre_of_mass), reach_m_(reach_m) {
+    detail::reserve_resident(told_, most);
+    constexpr double of_the_diagonal = 0.03;
+    double smaller_m = of.probe->box.diagonal();
+    for (const model_ptr& b : of.fixed) smaller_m = std::min(smaller_m, b->box.diagonal());
+    sinking_m_ = of_the_diagonal * smaller_m;
+  }
+
+  /// @return ok
+  /// @rt safe
+  [[nodiscard]] status measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
+    const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
+    told_.clear();
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const near_leaf& leaf = found.leaves()[i];
+      const field_body &A = *bodies_->probe, &B = *bodies_->fixed[leaf.body];
+      const pose T_ba = inverse(at.T_wb[leaf.body]) * at.T_wa;
+      out[i] = leaf.of_probe ? deepest(leaf, B.field, T_ba, at.T_wb[leaf.body].rotation, at.T_wa, 1.0, c_a_w)
+                             : deepest(leaf, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[leaf.body], -1.0, c_a_w);
+      if (out[i].plane.depth_m > -reach_m_ && told_.size() < told_.capacity()) told_.push_back(out[i].plane);
+    }
+    return status::ok;
+  }
+
+  /// The planes of the last measure(), gaps included.
+  [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return told_; }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(told_); }
+
+ private:
+  // How far a sample whose surface looks away from the direction that it would be pushed in may count: in full up to 35
+  // degrees beyond its cone, since relief leans, and not at all from 60 degrees on.
+  [[nodiscard]] static double facing_share(double cosine, double cone_rad) noexcept {
+    constexpr double full_rad = 35.0 * std::numbers::pi / 180.0, none_rad = 60.0 * std::numbers::pi / 180.0;
+    const double full = std::cos(std::min(cone_rad + full_rad, std::numbers::pi));
+    const double none = std::cos(std::min(cone_rad + none_rad, std::numbers::pi));
+    return full > none ? smoothstep((cosine - none) / (full - none)) : 1.0;
+  }
+
+  // Samples of X in the field of Y. The depth grows where X's point moves along the field's slope; where X is the fixed
+  // body, the probe's motion takes the field along, and the sign turns.
+  [[nodiscard]] near_plane deepest(const near_leaf& leaf, const body_field& in_y, const pose& T_yx,
+                                   const quat& rotation_wy, const pose& T_wx, double sign,
+                                   const vec3& c_a_w) const noexcept {
+    // Half way through a body no way out is shorter than another: a sample there holds nothing.
+    constexpr double least_slope = 0.05;
+    near_plane out;
+    vec3 slope_y(0.0), point_x(0.0);
+    const quat rotation_xy = glm::conjugate(T_yx.rotation);
+    for (const field_sample& s : leaf.samples()) {
+      const field_reading d = in_y.read(T_yx * vec3(s.position_b));
+      if (!(d.value_m > out.plane.depth_m)) continue;
+      const double squared = glm::dot(d.slope, d.slope);
+      if (!(squared > least_slope * least_slope)) continue;
+      const double facing = glm::dot(vec3(s.axis_b), rotation_xy * d.slope) / std::sqrt(squared);
+      const double depth_m = d.value_m - sinking_m_ * (1.0 - facing_share(facing, static_cast<double>(s.cone_rad)));
+      if (!(depth_m > out.plane.depth_m)) continue;
+      out.plane.depth_m = depth_m;
+      slope_y = d.slope;
+      point_x = vec3(s.position_b);
+    }
+    const double steep = std::sqrt(glm::dot(slope_y, slope_y));
+    if (!(steep > 0.0)) return out;
+    const vec3 slope_w = sign * (rotation_wy * slope_y);
+    out.point_w = T_wx * point_x;
+    out.plane.body = leaf.body;
+    out.plane.r_w = out.point_w - c_a_w;
+    out.plane.gradient = {slope_w, glm::cross(out.plane.r_w, slope_w)};
+    out.plane.n_ab_w = slope_w / steep;
+    return out;
+  }
+
+  std::shared_ptr<const field_scene> bodies_;
+  vec3 centre_of_mass_a_;
+  double reach_m_;
+  double sinking_m_ = 0.0;  // of a sample that looks away
+  std::vector<support_plane> told_;
+};
+
+static_assert(depth_backend<field_depth>);
+
+}  // namespace asperity

@@ -1,0 +1,62 @@
+// The renderer for control loops: depth fields, and support planes that hold the probe at the surface.
+#pragma once
+
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "asperity/collision/field_finder.hpp"
+#include "asperity/collision/near_samples.hpp"
+#include "asperity/depth/field_depth.hpp"
+#include "asperity/field/field_scene.hpp"
+#include "asperity/force/plane_springs.hpp"
+#include "asperity/render/renderer.hpp"
+
+namespace asperity {
+
+/// Tells the support planes of a pose, gaps included. A control loop that is given them cannot be pressed through a
+/// body: its device thread keeps the probe on the near side of every plane.
+using field_renderer = basic_renderer<field_finder, field_depth, plane_springs>;
+
+/// Settings of make_field_renderer().
+struct field_renderer_settings {
+  field_body_settings bodies{};
+  /// Gaps up to this are told, m. What a hand of 0.5 m/s approaches in two periods of 500 Hz.
+  double reach_m = 2e-3;
+  plane_spring_settings springs{};
+  near_sample_limits limits{};
+};
+
+/// The field renderer for bodies that were made before, by make_field_scene(): several renderers can share them.
+/// @pre made are of these bodies, in their order
+/// @return invalid_argument (no probe, no fixed body, bodies missing, a setting out of range)
+[[nodiscard]] inline result<field_renderer> make_field_renderer(scene bodies, std::shared_ptr<const field_scene> made,
+                                                                const field_renderer_settings& settings = {}) {
+  const auto bad = [](const char* what) { return error{error_code::invalid_argument, what}; };
+  if (bodies.fixed.empty()) return bad("the scene has no fixed body: give the probe something to touch");
+  if (!bodies.probe || !made || !made->probe || made->fixed.size() != bodies.fixed.size()) {
+    return bad("the fields are not as many as the scene's bodies: make_field_scene() makes one for each");
+  }
+  if (!(std::isfinite(settings.reach_m) && settings.reach_m > 0.0)) {
+    return bad("field renderer settings: reach_m must be a finite length above 0");
+  }
+  if (const result<void> ok = check(settings.springs); !ok) return ok.error();
+  field_depth depth(made, bodies, settings.reach_m, settings.limits.readings());
+  return field_renderer(std::move(bodies), field_finder(std::move(made), settings.reach_m), std::move(depth),
+                        plane_springs(settings.springs), settings.limits);
+}
+
+/// The field renderer for a scene. Makes the fields of its models; all memory that its ticks need is taken here.
+/// @return invalid_argument | bad_mesh | bad_texture
+[[nodiscard]] inline result<field_renderer> make_field_renderer(scene bodies,
+                                                                const field_renderer_settings& settings = {}) {
+  if (bodies.fixed.empty()) {
+    return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
+  }
+  result<field_scene> made = make_field_scene(bodies, settings.bodies);
+  if (!made) return made.error();
+  auto shared = std::make_shared<const field_scene>(std::move(made).value());
+  return make_field_renderer(std::move(bodies), std::move(shared), settings);
+}
+
+}  // namespace asperity
