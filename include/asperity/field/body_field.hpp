@@ -45,9 +45,11 @@ struct body_field {
   /// S with its derivatives. Beyond the grid it goes on, negative and falling.
   [[nodiscard]] coarse_reading coarse(const vec3& p_b) const noexcept { return smooth.read(p_b); }
 
-  /// t(foot(p)), faded, and its slope by p: the chain rule through foot and fade, exact.
+  /// t(foot(p)), faded, and its slope by p: the chain rule through foot and fade, exact. Zero beyond the grid, where S
+  /// is far below zero.
   /// @param at coarse(p_b)
   [[nodiscard]] field_reading relief(const vec3& p_b, const coarse_reading& at) const noexcept {
+    if (smooth.clamped(p_b) != p_b) return {};
     const foot_and_fade to = foot(p_b, at);
     if (!(to.fade > 0.0)) return {};
     const vec3& g = at.slope;
