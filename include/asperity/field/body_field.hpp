@@ -38,16 +38,18 @@ struct foot_and_fade {
 struct body_field {
   detail::coarse_grid smooth;
   detail::relief_bricks fine;
-  double largest_relief_m = 0.0;     ///< no relief is larger than this
+  double lowest_relief_m = 0.0, highest_relief_m = 0.0;  ///< no relief lies beyond these; at most, at least 0
   double thickness_m = 0.0;          ///< of the thinnest parts of the body; 0 where no two walls face each other
   double thinnest_resolved_m = 0.0;  ///< parts thinner than this are blurred: three pitches of the smooth part
 
   /// S with its derivatives. Beyond the grid it goes on, negative and falling.
   [[nodiscard]] coarse_reading coarse(const vec3& p_b) const noexcept { return smooth.read(p_b); }
 
-  /// t(foot(p)), faded, and its slope by p: the chain rule through foot and fade, exact.
+  /// t(foot(p)), faded, and its slope by p: the chain rule through foot and fade, exact. Zero beyond the grid, where S
+  /// is far below zero.
   /// @param at coarse(p_b)
   [[nodiscard]] field_reading relief(const vec3& p_b, const coarse_reading& at) const noexcept {
+    if (smooth.clamped(p_b) != p_b) return {};
     const foot_and_fade to = foot(p_b, at);
     if (!(to.fade > 0.0)) return {};
     const vec3& g = at.slope;
@@ -86,16 +88,16 @@ struct body_field {
     return {at.value_m + t.value_m, at.slope + t.slope};
   }
 
-  /// Upper bound of D in a ball, from one node. Never below the truth; above it by some 2.2 pitches and the largest
-  /// relief.
+  /// Upper bound of D in a ball, from one node. Never below the truth; above it by up to 2.1 pitches, the relief's
+  /// range and twice the radius.
   ///
   /// The nodes hold a signed distance, which changes by a metre per metre at most. The spline's weights about a point
   /// have a root mean square distance of one pitch from it, so the spline lies at most a pitch above the distance.
   [[nodiscard]] double most_near(const vec3& p_b, double radius_m) const noexcept {
     const vec3 c_b = smooth.clamped(p_b), beyond = p_b - c_b;
     const double away = std::sqrt(glm::dot(beyond, beyond));
-    const double reach = to_node + 1.0 + distance_slack;
-    return smooth.beside(c_b) + radius_m + reach * smooth.pitch_m + largest_relief_m - std::max(0.0, away - radius_m);
+    return smooth.most_beside(c_b) + radius_m + (1.0 + distance_slack) * smooth.pitch_m + highest_relief_m -
+           std::max(0.0, away - radius_m);
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return smooth.heap_bytes() + fine.heap_bytes(); }
@@ -103,7 +105,6 @@ struct body_field {
  private:
   static constexpr double fade_none = 0.4;        // |grad S|^2 from which there is some relief, far from the surface
   static constexpr double fade_full = 0.8;        // and all of it
-  static constexpr double to_node = 0.8661;       // from a point to its nearest node, in pitches: half of root 3
   static constexpr double distance_slack = 0.25;  // what swept distances may be wrong by, in pitches
 };
 

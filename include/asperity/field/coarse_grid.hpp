@@ -45,14 +45,17 @@ struct coarse_grid {
     return out;
   }
 
-  /// Value of the node next to a point. @rt safe
-  [[nodiscard]] double beside(const vec3& p_b) const noexcept {
+  /// Value of the node next to a point, plus how far off it is: nowhere less than a distance at the point. @rt safe
+  [[nodiscard]] double most_beside(const vec3& p_b) const noexcept {
     std::array<std::size_t, 3> n{};
+    vec3 off(0.0);
     for (std::size_t k = 0; k < 3; ++k) {
-      const double g = (p_b[static_cast<int>(k)] - low[static_cast<int>(k)]) / pitch_m + 0.5;
-      n[k] = static_cast<std::size_t>(std::min(std::max(0.0, g), static_cast<double>(nodes[k]) - 1.0));
+      const int axis = static_cast<int>(k);
+      const double g = (p_b[axis] - low[axis]) / pitch_m;
+      n[k] = static_cast<std::size_t>(std::min(std::max(0.0, g + 0.5), static_cast<double>(nodes[k]) - 1.0));
+      off[axis] = g - static_cast<double>(n[k]);
     }
-    return static_cast<double>(value[at(n[0], n[1], n[2])]);
+    return static_cast<double>(value[at(n[0], n[1], n[2])]) + pitch_m * std::sqrt(glm::dot(off, off));
   }
 
   /// The spline. Beyond the grid: its value at the border less the distance from there, continuous and falling.

@@ -31,6 +31,8 @@ class relief_fit {
     const foot_and_fade foot = field_.foot(p_b, at);
     const double length = std::sqrt(glm::dot(at.slope, at.slope));
     if (!(length > 0.05) || !(foot.fade > 0.25)) return;
+    lowest_ = std::min(lowest_, static_cast<float>(-at.value_m / foot.fade));
+    highest_ = std::max(highest_, static_cast<float>(-at.value_m / foot.fade));
     points_.push_back({glm::vec3(foot.foot_b), glm::vec3(off_surface * out_.pitch_m / length * at.slope),
                        static_cast<float>(-at.value_m / foot.fade)});
   }
@@ -64,7 +66,9 @@ class relief_fit {
     }
     for (std::size_t b = 1; b < out_.bricks.size(); ++b) {
       for (std::size_t n = 0; n < relief_bricks::nodes_per_brick; ++n) {
-        out_.bricks[b][n] = work_[b * relief_bricks::nodes_per_brick + n].value;
+        // Beside few points, at sharp corners, a coefficient is not well known, and all of them bound the relief.
+        const float c = work_[b * relief_bricks::nodes_per_brick + n].value;
+        out_.bricks[b][n] = std::min(std::max(1.25F * lowest_, c), 1.25F * highest_);
       }
     }
     work_ = {};
@@ -134,6 +138,7 @@ class relief_fit {
   const body_field& field_;
   std::vector<point> points_;
   std::vector<node> work_;
+  float lowest_ = 0.0F, highest_ = 0.0F;  // of the points' relief, and zero
 };
 
 }  // namespace asperity::detail

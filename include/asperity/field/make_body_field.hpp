@@ -19,13 +19,14 @@
 
 namespace asperity {
 
-/// How finely a depth field is made. Lengths in metres, 0 for automatic.
+/// How finely a depth field is made. Lengths in metres, 0 for automatic. A pitch is raised where it would go beyond the
+/// limits.
 struct field_settings {
   double pitch_m = 0.0;                   ///< of the smooth part; automatic: extent / 96, at most a third of thin parts
   double relief_pitch_m = 0.0;            ///< of the relief; automatic: a texel, at most a third of the pitch above
   double margin_m = 0.0;                  ///< of the grid around the body; automatic: 4 % of its diagonal
   std::size_t most_nodes = 4'000'000;     ///< of the smooth part; 4 bytes each
-  std::size_t relief_bytes = 40'000'000;  ///< about what the relief may take; its pitch is raised to keep to it
+  std::size_t relief_bytes = 40'000'000;  ///< about what the relief may take
 };
 
 namespace detail {
@@ -65,11 +66,48 @@ namespace detail {
   return out;
 }
 
+/// Lays the smooth part's grid, with a pitch raised until it keeps to its nodes.
+inline void lay_smooth(coarse_grid& out, const bounds& box, const field_settings& settings, double pitch_m) {
+  const double margin = settings.margin_m > 0.0 ? settings.margin_m : 0.04 * box.diagonal();
+  const vec3 around = box.high - box.low + 2.0 * margin;
+  // From below, whatever was asked for: no count of nodes may overflow.
+  pitch_m =
+      std::max(pitch_m, 0.5 * std::cbrt(around.x * around.y * around.z / static_cast<double>(settings.most_nodes)));
+  do {
+    out = lay_grid(box, std::max(margin, 3.0 * pitch_m), pitch_m);
+    pitch_m *= 1.02;
+  } while (nodes_of(out) > static_cast<double>(settings.most_nodes));
+}
+
+/// Lays the relief's box of bricks, none of them made yet.
+inline void lay_relief(body_field& out, const bounds& box, const field_settings& settings, double texel_m,
+                       double area_m2) {
+  relief_bricks& fine = out.fine;
+  fine.pitch_m = settings.relief_pitch_m;
+  if (!(fine.pitch_m > 0.0)) {
+    fine.pitch_m = out.smooth.pitch_m / 3.0;
+    if (texel_m > 0.0) fine.pitch_m = std::min(fine.pitch_m, texel_m);
+  }
+  // About 2.6 layers of bricks along the surface.
+  const double layers = 2.6 * static_cast<double>(sizeof(relief_bricks::brick)) / 16.0;
+  fine.pitch_m = std::max(fine.pitch_m, std::sqrt(layers * area_m2 / static_cast<double>(settings.relief_bytes)));
+  constexpr double most_places = 8e6;
+  for (;; fine.pitch_m *= 1.02) {
+    const double around = out.smooth.pitch_m + 4.0 * fine.pitch_m;
+    const vec3 bricks = glm::ceil((box.high - box.low + 2.0 * around) / (relief_bricks::side * fine.pitch_m)) + 1.0;
+    fine.low = box.low - around;
+    if (bricks.x * bricks.y * bricks.z > most_places) continue;
+    for (std::size_t k = 0; k < 3; ++k) fine.bricks_along[k] = static_cast<std::size_t>(bricks[static_cast<int>(k)]);
+    return;
+  }
+}
+
 }  // namespace detail
 
 /// Makes the depth field of a model. Takes a fraction of a second, and allocates; not for a tick.
 /// @return invalid_argument where a setting is out of range; bad_texture where the model has no texture; bad_mesh where
-///         it has no surface or extent; limit_exceeded where the body is too thin for the nodes that it may have
+///         it has no surface, extent or inside; limit_exceeded where the body is too thin for the nodes that it may
+///         have
 [[nodiscard]] inline result<body_field> make_body_field(const textured_model& model,
                                                         const field_settings& settings = {}) {
   for (const double length : {settings.pitch_m, settings.relief_pitch_m, settings.margin_m}) {
@@ -78,8 +116,9 @@ namespace detail {
                    "field settings: pitch_m, relief_pitch_m and margin_m must be finite lengths, or 0 for automatic"};
     }
   }
-  if (settings.most_nodes < 1000) {
-    return error{error_code::invalid_argument, "field settings: most_nodes must be 1000 or more"};
+  if (settings.most_nodes < 10'000 || settings.relief_bytes < 100'000) {
+    return error{error_code::invalid_argument,
+                 "field settings: most_nodes must be 10000 or more, relief_bytes 100000 or more"};
   }
   const std::string& name = model.name;
   if (model.texture.width == 0 || model.texture.height == 0) {
@@ -92,20 +131,16 @@ namespace detail {
   }
 
   body_field out;
-  const double first_pitch = settings.pitch_m > 0.0 ? settings.pitch_m : extent / 96.0;
-  std::vector<detail::fine_triangle> surface = detail::cut_fine_surface(model, first_pitch);
+  std::vector<detail::fine_triangle> surface = detail::cut_fine_surface(model, extent / 96.0);
   const bounds box = detail::box_of(surface);
   out.thickness_m = detail::measure_thickness(surface, detail::lay_grid(box, 0.0, extent / 96.0));
-  double pitch = first_pitch;
-  if (!(settings.pitch_m > 0.0) && out.thickness_m > 0.0) pitch = std::min(pitch, out.thickness_m / 3.0);
-  const auto margin_at = [&](double p) {
-    return std::max(settings.margin_m > 0.0 ? settings.margin_m : 0.04 * box.diagonal(), 3.0 * p);
-  };
-  out.smooth = detail::lay_grid(box, margin_at(pitch), pitch);
-  while (detail::nodes_of(out.smooth) > static_cast<double>(settings.most_nodes)) {
-    pitch *= 1.02;
-    out.smooth = detail::lay_grid(box, margin_at(pitch), pitch);
+  double pitch = settings.pitch_m;
+  if (!(pitch > 0.0)) {
+    pitch = extent / 96.0;
+    if (out.thickness_m > 0.0) pitch = std::min(pitch, out.thickness_m / 3.0);
   }
+  detail::lay_smooth(out.smooth, box, settings, pitch);
+  pitch = out.smooth.pitch_m;
   if (out.thickness_m > 0.0 && out.thickness_m < 1.5 * pitch) {
     return error{error_code::limit_exceeded,
                  "model \"" + name + "\" has walls " + std::to_string(1e3 * out.thickness_m) +
@@ -116,30 +151,22 @@ namespace detail {
   surface = detail::cut_fine_surface(model, 0.75 * pitch);
   detail::fill_distance(surface, out.smooth);
 
-  const detail::surface_index index(model);
-  const double texel = detail::measure_texture(model, index).texel_m;
-  double fine = settings.relief_pitch_m;
-  if (!(fine > 0.0)) {
-    fine = pitch / 3.0;
-    if (texel > 0.0) fine = std::min(fine, texel);
-    // About 2.6 layers of bricks along the surface.
-    fine =
-        std::max(fine, std::sqrt(2.6 * 16.0 * detail::area_of(surface) / static_cast<double>(settings.relief_bytes)));
+  if (std::none_of(out.smooth.value.begin(), out.smooth.value.end(), [](float d) { return d > 0.0F; })) {
+    return error{error_code::bad_mesh, "model \"" + name +
+                                           "\" has no inside that a grid shows; its triangles must go "
+                                           "counter-clockwise seen from outside, around a volume"};
   }
+  const double texel = detail::measure_texture(model, detail::surface_index(model)).texel_m;
+  detail::lay_relief(out, box, settings, texel, detail::area_of(surface));
   surface = {};
-  out.fine.pitch_m = fine;
-  const double around = pitch + 4.0 * fine;
-  out.fine.low = box.low - around;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int axis = static_cast<int>(k);
-    const double nodes = std::ceil((box.high[axis] - box.low[axis] + 2.0 * around) / fine) + 1.0;
-    out.fine.bricks_along[k] = static_cast<std::size_t>(std::ceil(nodes / detail::relief_bricks::side));
-  }
   detail::relief_fit fit(out.fine, out);
-  detail::for_each_fine_point(model, 0.8 * fine, [&](const vec3& p_b) { fit.add(p_b); });
+  detail::for_each_fine_point(model, 0.95 * out.fine.pitch_m, [&](const vec3& p_b) { fit.add(p_b); });
   fit.solve();
   for (const detail::relief_bricks::brick& b : out.fine.bricks) {
-    for (const float c : b) out.largest_relief_m = std::max(out.largest_relief_m, std::fabs(static_cast<double>(c)));
+    for (const float c : b) {
+      out.lowest_relief_m = std::min(out.lowest_relief_m, static_cast<double>(c));
+      out.highest_relief_m = std::max(out.highest_relief_m, static_cast<double>(c));
+    }
   }
   return out;
 }

@@ -23,7 +23,10 @@ TEST(MakeBodyField, RefusesSettingsOutOfRange) {
     }
   }
   field_settings s;
-  s.most_nodes = 999;
+  s.most_nodes = 9'999;
+  EXPECT_EQ(built_field(box, s).error().code, error_code::invalid_argument);
+  s = {};
+  s.relief_bytes = 99'999;
   EXPECT_EQ(built_field(box, s).error().code, error_code::invalid_argument);
 }
 
@@ -37,6 +40,17 @@ TEST(MakeBodyField, RefusesModelsWithoutSurfaceOrTexture) {
   textured_model flat = make_flat_box({0.01, 0.01, 0.01});
   flat.box = {};
   EXPECT_EQ(built_field(flat).error().code, error_code::bad_mesh);
+}
+
+TEST(MakeBodyField, RefusesABodyTurnedInsideOut) {
+  textured_model box = make_flat_box({0.01, 0.01, 0.01});
+  for (coarse_triangle& t : box.mesh.triangles) {
+    std::swap(t.vertex[1], t.vertex[2]);
+    std::swap(t.uv[1], t.uv[2]);
+  }
+  const auto made = built_field(box);
+  ASSERT_FALSE(made);
+  EXPECT_EQ(made.error().code, error_code::bad_mesh);
 }
 
 TEST(MakeBodyField, RefusesWallsThatItsNodesCannotShow) {
@@ -63,6 +77,14 @@ TEST(MakeBodyField, KeepsToItsLimits) {
   const body_field given = built_field(make_flat_box({0.02, 0.02, 0.02}), s).value();
   EXPECT_EQ(given.smooth.pitch_m, 0.9e-3);
   EXPECT_EQ(given.fine.pitch_m, 0.4e-3);
+  // What nobody can have is not tried.
+  s.pitch_m = 1e-9;
+  s.relief_pitch_m = 1e-9;
+  s.most_nodes = 50'000;
+  s.relief_bytes = 200'000;
+  const body_field least = built_field(make_flat_box({0.02, 0.02, 0.02}), s).value();
+  EXPECT_LE(least.smooth.value.size(), s.most_nodes);
+  EXPECT_LE(least.fine.bricks.size() * sizeof(detail::relief_bricks::brick), 2 * s.relief_bytes);
 }
 
 }  // namespace

@@ -45,7 +45,7 @@ TEST(BodyFieldBound, HoldsInEveryBallAndIsNotIdle) {
       dismissed += bound < 0.0 ? 1 : 0;
     }
     EXPECT_GE(least, 0.0);
-    EXPECT_LE(loosest, 4.5 * f.smooth.pitch_m + 2.0 * f.largest_relief_m);
+    EXPECT_LE(loosest, 4.5 * f.smooth.pitch_m + f.highest_relief_m - f.lowest_relief_m);
     EXPECT_GT(dismissed, 2000);
   }
 }
