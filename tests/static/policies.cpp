@@ -106,6 +106,25 @@ static_assert(!force_model<force_without_stiffness>);
 static_assert(!force_model<force_changes_depths>);
 static_assert(!force_model<depth>);
 
+// A stage may know support planes; one that might throw, or hands out what others may change, does not count.
+struct knows_planes {
+  std::span<const support_plane> support_planes() const noexcept { return {}; }
+};
+struct planes_may_throw {
+  std::span<const support_plane> support_planes() const { return {}; }
+};
+struct planes_may_be_changed {
+  std::span<support_plane> support_planes() const noexcept { return {}; }
+};
+struct planes_change_the_stage {
+  std::span<const support_plane> support_planes() noexcept { return {}; }
+};
+static_assert(tells_support_planes<knows_planes>);
+static_assert(!tells_support_planes<planes_may_throw>);
+static_assert(!tells_support_planes<planes_may_be_changed>);
+static_assert(!tells_support_planes<planes_change_the_stage>);
+static_assert(!tells_support_planes<depth>);
+
 // The renderer takes exactly three policies, each in its place.
 template <class... Policies>
 concept makes_a_renderer = requires {

@@ -7,7 +7,7 @@
 
 namespace asperity::test_support {
 
-/// A renderer whose stiffness J is dropped, so that the device thread holds the wrench as it is.
+/// A renderer whose stiffness J and support planes are dropped, so that the device thread holds the wrench as it is.
 template <contact_renderer Renderer>
 class held_force {
  public:
@@ -16,6 +16,7 @@ class held_force {
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     const status s = renderer_.step(at, out);
     out.force.stiffness = {};
+    out.planes = {};
     return s;
   }
 

@@ -98,7 +98,7 @@ struct plane_rows {
 /// @param moved q - q0 of the planes at the beginning of the step
 /// @pre a symmetric positive definite; h_s > 0; check(law)
 /// @rt safe: at most law.most_passes passes
-/// @source the problem: compliant unilateral constraints with implicit steps; the primal form as in Castro et al. 2022
+/// @source the problem: compliant unilateral constraints with implicit steps; the primal form as in Castro et al. 2023
 [[nodiscard]] inline contact_solution solve_contact(const mat6& a, const vec6& load, const vec6& v0, double h_s,
                                                     const support_planes& planes, const vec6& moved,
                                                     const contact_law& law) noexcept {

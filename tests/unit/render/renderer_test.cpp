@@ -190,6 +190,32 @@ TEST_F(renderer_of_cells, reads_every_cell_and_pair_of_edges_and_hands_out_the_c
   EXPECT_EQ(out.dropped_contacts, 0U);
 }
 
+/// A depth backend, or a force model, that knows planes.
+template <class Stage>
+struct knowing_planes : Stage {
+  std::array<support_plane, 2> planes{support_plane{.depth_m = -1e-3}, support_plane{.depth_m = 2e-3}};
+  [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return planes; }
+};
+
+TEST_F(renderer_test, hands_out_the_planes_that_a_stage_knows) {
+  ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
+  EXPECT_TRUE(out.planes.empty());
+  basic_renderer<scripted_finder, knowing_planes<scripted_depth>, scripted_force> by_depth{
+      one_fixed_body(), scripted_finder{&s}, {{&s}}, scripted_force{&s}};
+  ASSERT_EQ(by_depth.step({{}, fixed}, out), status::ok);
+  ASSERT_EQ(out.planes.size(), 2U);
+  EXPECT_EQ(out.planes[0].depth_m, -1e-3);
+  EXPECT_EQ(out.planes.data(), by_depth.depth().planes.data());
+  basic_renderer<scripted_finder, scripted_depth, knowing_planes<scripted_force>> by_force{
+      one_fixed_body(), scripted_finder{&s}, scripted_depth{&s}, {{&s}}};
+  ASSERT_EQ(by_force.step({{}, fixed}, out), status::ok);
+  EXPECT_EQ(out.planes.data(), by_force.force().planes.data());
+  // What failed has none, whatever its stages still hold.
+  s.measured = status::backend_failed;
+  EXPECT_EQ(by_depth.step({{}, fixed}, out), status::backend_failed);
+  EXPECT_TRUE(out.planes.empty());
+}
+
 TEST_F(renderer_of_cells, tells_no_more_contacts_than_it_has_room_for) {
   renderer.force().tells = 1000;
   ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
