@@ -7,6 +7,7 @@
 
 #include "asperity/core/status.hpp"
 #include "presses/press_pairs.hpp"
+#include "presses/press_session.hpp"
 #include "presses/run_press.hpp"
 
 namespace asperity::presses {
@@ -16,6 +17,9 @@ struct press_law {
   std::string name;
   /// For two bodies and the stiffness of a face, N/m.
   std::function<result<step_function>(const press_body& probe, const press_body& fixed, double stiffness_n_per_m)> make;
+  /// The same for sessions, with the stiffness J; empty where the law is no renderer.
+  std::function<result<render_function>(const press_body& probe, const press_body& fixed, double stiffness_n_per_m)>
+      render;
 };
 
 /// "default": the default renderer.
@@ -39,5 +43,9 @@ struct press_choice {
 /// Presses one pair under one law.
 [[nodiscard]] press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,
                                        const step_function& step, const press_choice& which);
+
+/// Sessions of one pair under a renderer.
+[[nodiscard]] session_row press_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
+                                         const render_function& render, const press_choice& which);
 
 }  // namespace asperity::presses

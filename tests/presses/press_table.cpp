@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   }
   const std::vector<press_law> laws = known_laws();
   const auto law = std::find_if(laws.begin(), laws.end(), [&](const press_law& l) { return l.name == asked.law; });
-  if (law == laws.end()) {
+  if (law == laws.end() || (asked.sessions && !law->render)) {
     std::fputs(usage, stderr);
     return 2;
   }
@@ -119,9 +119,13 @@ int main(int argc, char** argv) {
       continue;
     }
     if (asked.sessions) {
-      const result<session_row> row = press_sessions(pair, **probe, **fixed, which.seed, which.touches);
-      row ? print_row(stdout, *row) : static_cast<void>(std::printf("%s\n", row.error().message.c_str()));
-      failed += row ? 0 : 1;
+      const result<render_function> render = law->render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+      if (render) {
+        print_row(stdout, press_sessions(pair, **probe, **fixed, *render, which));
+        continue;
+      }
+      std::printf("%s: %s\n", pair.name().c_str(), render.error().message.c_str());
+      ++failed;
       continue;
     }
     const result<step_function> step = law->make(**probe, **fixed, press_rules{}.stiffness_n_per_m);

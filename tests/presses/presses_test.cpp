@@ -58,7 +58,8 @@ press_law formula_law() {
               const way_out exit = shapes.at(T_wa);
               return wrench{k * exit.way_m * exit.direction_w, vec3(0.0)};
             });
-          }};
+          },
+          {}};
 }
 
 std::vector<press_pair> balls_on_boxes() {
