@@ -1,18 +1,18 @@
 #include "presses/press_law.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "support/built_renderers.hpp"
+#include "support/fresh_seed.hpp"
 
 namespace asperity::presses {
 namespace {
-
-using test_support::build_renderer;
-using test_support::built_renderer;
 
 wrench no_answer() {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -21,43 +21,68 @@ wrench no_answer() {
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
-}  // namespace
-
-press_law default_renderer_law() {
-  return {"default renderer",
-          [](const press_body& probe, const press_body& fixed, double stiffness_n_per_m) -> result<step_function> {
-            renderer_settings settings;
-            settings.shared.stiffness_n_per_m = stiffness_n_per_m;
-            result<built_renderer> made = build_renderer({probe.model, {fixed.model}}, settings);
-            if (!made) return made.error();
-            const auto feel = std::make_shared<built_renderer>(std::move(made).value());
-            return step_function([feel](const pose& T_wa) {
-              const std::array<pose, 1> T_wb{};
-              tick t;
-              const status s = feel->step({T_wa, T_wb}, t);
-              return s == status::ok || s == status::capacity_reached ? t.force.on_probe_w : no_answer();
-            });
-          }};
+template <class Renderer>
+result<render_function> render_of(result<Renderer> made) {
+  if (!made) return made.error();
+  const auto feel = std::make_shared<Renderer>(std::move(made).value());
+  return render_function([feel](const scene_pose& at, tick& out) { return feel->step(at, out); });
 }
 
+result<render_function> render_by_default(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
+  renderer_settings settings;
+  settings.shared.stiffness_n_per_m = stiffness_n_per_m;
+  return render_of(test_support::build_renderer({probe.model, {fixed.model}}, settings));
+}
+
+result<render_function> render_as_the_paper(const press_body& probe, const press_body& fixed,
+                                            double stiffness_n_per_m) {
+  paper_settings settings;
+  settings.force.stiffness_n_per_m = stiffness_n_per_m;
+  return render_of(test_support::build_paper_renderer({probe.model, {fixed.model}}, settings));
+}
+
+press_law law_of(std::string name, decltype(press_law::render) render) {
+  press_law out{std::move(name), {}, render};
+  out.make = [render = std::move(render)](const press_body& probe, const press_body& fixed,
+                                          double stiffness_n_per_m) -> result<step_function> {
+    const result<render_function> made = render(probe, fixed, stiffness_n_per_m);
+    if (!made) return made.error();
+    return step_function([feel = *made](const pose& T_wa) {
+      const std::array<pose, 1> T_wb{};
+      tick t;
+      const status s = feel({T_wa, T_wb}, t);
+      return s == status::ok || s == status::capacity_reached ? t.force.on_probe_w : no_answer();
+    });
+  };
+  return out;
+}
+
+}  // namespace
+
+press_law default_renderer_law() { return law_of("default", render_by_default); }
+press_law paper_renderer_law() { return law_of("paper", render_as_the_paper); }
+
 press_law true_exit_law() {
-  return {"true exit", [](const press_body& probe, const press_body& fixed, double k) -> result<step_function> {
+  return {"exit",
+          [](const press_body& probe, const press_body& fixed, double k) -> result<step_function> {
             const auto search = std::make_shared<exit_search>(probe.full, fixed.full);
             return step_function([search, k](const pose& T_wa) {
               const way_out exit = search->true_exit(T_wa, vec3(0.0, 0.0, 1.0));
               return wrench{k * exit.way_m * exit.direction_w, vec3(0.0)};
             });
-          }};
+          },
+          {}};
 }
 
+std::vector<press_law> known_laws() { return {default_renderer_law(), paper_renderer_law(), true_exit_law()}; }
+
 press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,
-                         const step_function& step, std::uint64_t seed, int touches, double step_m) {
+                         const step_function& step, const press_choice& which) {
   using clock = std::chrono::steady_clock;
   press_row row;
   row.probe = pair.probe;
   row.fixed = pair.fixed;
   press_rules rules;
-  rules.step_m = step_m;
   rules.allowance_m = probe.error_m() + fixed.error_m();
   exit_search originals(probe.full, fixed.full);
   touch_finder finder(pair.name(), probe.full, fixed.full, pair.region);
@@ -69,15 +94,34 @@ press_row press_one_pair(const press_pair& pair, const press_body& probe, const 
     ++row.step_count;
     return w;
   };
-  for (int i = 0; i < touches; ++i) {
+  for (int i = 0; i < which.first + which.touches; ++i) {
     const auto start = clock::now();
-    const std::optional<press_touch> touch = finder.next(seed);
+    const std::optional<press_touch> touch = finder.next(which.seed);
     row.touch_s += seconds(clock::now() - start);
     if (!touch) break;
+    if (i < which.first) continue;
+    rules.step_m = std::min(which.step_m, 0.25 * touch->press_m);
     row.longest_m = std::max(row.longest_m, touch->press_m);
     row.presses.push_back(run_press(timed, *touch, rules, originals));
   }
   row.step_s = seconds(stepping);
+  return row;
+}
+
+session_row press_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
+                           const render_function& render, const press_choice& which) {
+  const auto start = std::chrono::steady_clock::now();
+  session_row row{pair.probe, pair.fixed, {}, 0.0};
+  exit_search originals(probe.full, fixed.full);
+  touch_finder finder(pair.name(), probe.full, fixed.full, pair.region);
+  for (int i = 0; i < which.first + which.touches; ++i) {
+    const std::optional<press_touch> touch = finder.next(which.seed);
+    if (!touch) break;
+    if (i < which.first) continue;
+    row.sessions.push_back(press_session(render, *touch, probe.model->mass.centre_of_mass, {},
+                                         test_support::seed_of(which.seed, pair.name(), touch->index), originals));
+  }
+  row.seconds = seconds(std::chrono::steady_clock::now() - start);
   return row;
 }
 

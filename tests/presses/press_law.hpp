@@ -7,6 +7,7 @@
 
 #include "asperity/core/status.hpp"
 #include "presses/press_pairs.hpp"
+#include "presses/press_session.hpp"
 #include "presses/run_press.hpp"
 
 namespace asperity::presses {
@@ -16,18 +17,35 @@ struct press_law {
   std::string name;
   /// For two bodies and the stiffness of a face, N/m.
   std::function<result<step_function>(const press_body& probe, const press_body& fixed, double stiffness_n_per_m)> make;
+  /// The same for sessions, with the stiffness J; empty where the law is no renderer.
+  std::function<result<render_function>(const press_body& probe, const press_body& fixed, double stiffness_n_per_m)>
+      render;
 };
 
-/// The default renderer.
+/// "default": the default renderer.
 [[nodiscard]] press_law default_renderer_law();
-/// The force that the true depth of the originals has: k times the shortest way out that a search finds, along it. It
-/// is right for every pair, and far too slow for a tick.
+/// "paper": the paper's renderer.
+[[nodiscard]] press_law paper_renderer_law();
+/// "exit": the force that the true depth of the originals has, k times the shortest way out that a search finds, along
+/// it. It is right for every pair, and far too slow for a tick.
 [[nodiscard]] press_law true_exit_law();
+/// All of these.
+[[nodiscard]] std::vector<press_law> known_laws();
 
-/// Presses one pair under one law `touches` times, the touches of the day's seed.
-/// @param originals, finder of the pair
-/// @param step_m of the press
+/// Which presses of a pair.
+struct press_choice {
+  std::uint64_t seed = 1;
+  int touches = 24;
+  int first = 0;         ///< of the seed's touches, so many are found and left out
+  double step_m = 1e-4;  ///< of a press, but at most a quarter of it
+};
+
+/// Presses one pair under one law.
 [[nodiscard]] press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,
-                                       const step_function& step, std::uint64_t seed, int touches, double step_m);
+                                       const step_function& step, const press_choice& which);
+
+/// Sessions of one pair under a renderer.
+[[nodiscard]] session_row press_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
+                                         const render_function& render, const press_choice& which);
 
 }  // namespace asperity::presses

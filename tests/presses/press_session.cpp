@@ -1,16 +1,11 @@
 #include "presses/press_session.hpp"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <memory>
 #include <utility>
 
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/hal/simulated/simulated_device.hpp"
 #include "oracle/against_originals.hpp"
-#include "support/built_renderers.hpp"
-#include "support/fresh_seed.hpp"
 
 namespace asperity::presses {
 namespace {
@@ -86,28 +81,6 @@ session_result press_session(render_function render, const press_touch& touch, c
   }
   out.passed_at_n = out.passed ? out.largest_n : 0.0;
   return out;
-}
-
-result<session_row> press_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
-                                   std::uint64_t seed, int touches) {
-  const auto start = std::chrono::steady_clock::now();
-  session_row row{pair.probe, pair.fixed, {}, 0.0};
-  session_rules rules;
-  renderer_settings settings;
-  settings.shared.stiffness_n_per_m = rules.stiffness_n_per_m;
-  result<test_support::built_renderer> feel = test_support::build_renderer({probe.model, {fixed.model}}, settings);
-  if (!feel) return feel.error();
-  exit_search originals(probe.full, fixed.full);
-  touch_finder finder(pair.name(), probe.full, fixed.full, pair.region);
-  for (int i = 0; i < touches; ++i) {
-    const std::optional<press_touch> touch = finder.next(seed);
-    if (!touch) break;
-    row.sessions.push_back(press_session([&](const scene_pose& at, tick& out) { return feel->step(at, out); }, *touch,
-                                         probe.model->mass.centre_of_mass, rules,
-                                         test_support::seed_of(seed, pair.name(), touch->index), originals));
-  }
-  row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return row;
 }
 
 void print_session_heading(std::FILE* to) {

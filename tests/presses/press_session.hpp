@@ -8,7 +8,6 @@
 
 #include "asperity/model/scene.hpp"
 #include "asperity/render/renderer.hpp"
-#include "presses/press_pairs.hpp"
 #include "presses/press_touch.hpp"
 #include "presses/true_exit.hpp"
 
@@ -49,15 +48,12 @@ struct session_result {
                                            const vec3& centre_of_mass_a, const session_rules& rules, std::uint64_t seed,
                                            exit_search& originals);
 
-/// Sessions of one pair under the default renderer.
+/// All sessions of one pair under one renderer.
 struct session_row {
   std::string probe, fixed;
   std::vector<session_result> sessions;
   double seconds = 0.0;
 };
-
-[[nodiscard]] result<session_row> press_sessions(const press_pair& pair, const press_body& probe,
-                                                 const press_body& fixed, std::uint64_t seed, int touches);
 
 void print_session_heading(std::FILE* to);
 /// One line. A session slips where the probe has not passed and the hand feels less than half of its force at the end:

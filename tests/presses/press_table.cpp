@@ -17,10 +17,12 @@ using namespace asperity;
 using namespace asperity::presses;
 
 constexpr char usage[] =
-    "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--step MM] [--own] [--sessions] [--dump]\n"
-    "  --law NAME    default (the default renderer) or exit (the originals' own true depth, slow)\n"
+    "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
+    "[--sessions] [--dump]\n"
+    "  --law NAME    default or paper (the two renderers) or exit (the originals' own true depth, slow)\n"
     "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
     "  --touches N   presses on each pair (24)\n"
+    "  --first N     leave the first N of the day's touches out (0)\n"
     "  --step MM     between two steps of a press (0.1)\n"
     "  --own         solids are their own coarse meshes; otherwise they are simplified\n"
     "  --sessions    a simulated hand presses with up to 20 N instead, through device and coupling\n"
@@ -33,8 +35,7 @@ constexpr char usage[] =
 struct arguments {
   std::string law = "default";
   std::vector<press_pair> pairs;
-  int touches = 24;
-  double step_m = 1e-4;
+  press_choice which;
   press_bake solids = press_bake::simplified;
   bool sessions = false, dump = false;
 };
@@ -64,15 +65,17 @@ bool parse(int argc, char** argv, arguments& to) {
     } else if (name == "--pair") {
       to.pairs.push_back(pair_named(argv[++i]));
     } else if (name == "--touches") {
-      to.touches = std::atoi(argv[++i]);
+      to.which.touches = std::atoi(argv[++i]);
+    } else if (name == "--first") {
+      to.which.first = std::atoi(argv[++i]);
     } else if (name == "--step") {
-      to.step_m = 1e-3 * std::atof(argv[++i]);
+      to.which.step_m = 1e-3 * std::atof(argv[++i]);
     } else {
       return false;
     }
   }
   if (to.pairs.empty()) to.pairs = press_pairs();
-  return to.touches > 0 && to.step_m > 0.0 && (to.law == "default" || to.law == "exit");
+  return to.which.touches > 0 && to.which.first >= 0 && to.which.step_m > 0.0;
 }
 
 void dump(const press_row& row) {
@@ -92,8 +95,14 @@ int main(int argc, char** argv) {
     std::fputs(usage, stderr);
     return 2;
   }
-  const press_law law = asked.law == "exit" ? true_exit_law() : default_renderer_law();
-  const std::uint64_t seed = test_support::fresh_seed("presses", std::to_string(asked.touches) + " touches a pair");
+  const std::vector<press_law> laws = known_laws();
+  const auto law = std::find_if(laws.begin(), laws.end(), [&](const press_law& l) { return l.name == asked.law; });
+  if (law == laws.end() || (asked.sessions && !law->render)) {
+    std::fputs(usage, stderr);
+    return 2;
+  }
+  press_choice which = asked.which;
+  which.seed = test_support::fresh_seed("presses", std::to_string(which.touches) + " touches a pair");
   press_shelf shelf(asked.solids);
   asked.sessions ? print_session_heading(stdout) : print_heading(stdout);
   int failed = 0;
@@ -110,18 +119,22 @@ int main(int argc, char** argv) {
       continue;
     }
     if (asked.sessions) {
-      const result<session_row> row = press_sessions(pair, **probe, **fixed, seed, asked.touches);
-      row ? print_row(stdout, *row) : static_cast<void>(std::printf("%s\n", row.error().message.c_str()));
-      failed += row ? 0 : 1;
+      const result<render_function> render = law->render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+      if (render) {
+        print_row(stdout, press_sessions(pair, **probe, **fixed, *render, which));
+        continue;
+      }
+      std::printf("%s: %s\n", pair.name().c_str(), render.error().message.c_str());
+      ++failed;
       continue;
     }
-    const result<step_function> step = law.make(**probe, **fixed, press_rules{}.stiffness_n_per_m);
+    const result<step_function> step = law->make(**probe, **fixed, press_rules{}.stiffness_n_per_m);
     if (!step) {
       std::printf("%s: %s\n", pair.name().c_str(), step.error().message.c_str());
       ++failed;
       continue;
     }
-    const press_row row = press_one_pair(pair, **probe, **fixed, *step, seed, asked.touches, asked.step_m);
+    const press_row row = press_one_pair(pair, **probe, **fixed, *step, which);
     print_row(stdout, row);
     if (asked.dump) dump(row);
     std::fprintf(stderr, "%s: %.1f s, models within %.0f um of the originals\n", pair.name().c_str(),

@@ -58,7 +58,8 @@ press_law formula_law() {
               const way_out exit = shapes.at(T_wa);
               return wrench{k * exit.way_m * exit.direction_w, vec3(0.0)};
             });
-          }};
+          },
+          {}};
 }
 
 std::vector<press_pair> balls_on_boxes() {
@@ -101,10 +102,13 @@ TEST(presses, no_law_is_weak_gives_way_or_pulls) {
       ASSERT_TRUE(fixed) << fixed.error().message;
       const auto step = held.law.make(**probe, **fixed, press_rules{}.stiffness_n_per_m);
       ASSERT_TRUE(step) << step.error().message;
-      const press_row row = press_one_pair(pair, **probe, **fixed, *step, seed, touches, held.step_m);
+      const press_row row = press_one_pair(pair, **probe, **fixed, *step, {seed, touches, 0, held.step_m});
       print_row(stdout, row);
       EXPECT_EQ(row.presses.size(), static_cast<std::size_t>(touches)) << pair.name();
-      for (std::size_t i = 0; i < row.presses.size(); ++i) EXPECT_TRUE(row.presses[i].good()) << in_words(row, i);
+      for (std::size_t i = 0; i < row.presses.size(); ++i) {
+        EXPECT_TRUE(row.presses[i].good()) << in_words(row, i);
+        EXPECT_GE(row.presses[i].steps.size(), 4U);
+      }
       ++pairs;
     }
     EXPECT_GE(pairs, std::min<std::size_t>(16, held.pairs.size()));
@@ -122,13 +126,12 @@ press_row press_ball_on_slab(const fault& change, int touches) {
   const ball_and_box shapes = shapes_of(ball, slab);
   const double k = press_rules{}.stiffness_n_per_m;
   const std::uint64_t seed = fresh_seed("a law at fault", std::to_string(touches) + " touches");
-  const press_row row = press_one_pair(
-      {"ball_10", "slab", {}}, ball, slab,
-      [&](const pose& T_wa) {
-        const way_out exit = shapes.at(T_wa);
-        return change(exit.way_m, k * exit.way_m * exit.direction_w);
-      },
-      seed, touches, 0.1 * mm);
+  const press_row row = press_one_pair({"ball_10", "slab", {}}, ball, slab,
+                                       [&](const pose& T_wa) {
+                                         const way_out exit = shapes.at(T_wa);
+                                         return change(exit.way_m, k * exit.way_m * exit.direction_w);
+                                       },
+                                       {seed, touches, 0, 0.1 * mm});
   print_row(stdout, row);
   return row;
 }
