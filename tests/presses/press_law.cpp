@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "asperity/render/field_renderer.hpp"
 #include "support/built_renderers.hpp"
 #include "support/fresh_seed.hpp"
 
@@ -41,6 +42,13 @@ result<render_function> render_as_the_paper(const press_body& probe, const press
   return render_of(test_support::build_paper_renderer({probe.model, {fixed.model}}, settings));
 }
 
+// Support planes bring the stiffness of the control loop's contact_law; the reported force has the one asked for.
+result<render_function> render_by_field(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
+  field_renderer_settings settings;
+  settings.springs.stiffness_n_per_m = stiffness_n_per_m;
+  return render_of(make_field_renderer({probe.model, {fixed.model}}, settings));
+}
+
 press_law law_of(std::string name, decltype(press_law::render) render) {
   press_law out{std::move(name), {}, render};
   out.make = [render = std::move(render)](const press_body& probe, const press_body& fixed,
@@ -62,6 +70,8 @@ press_law law_of(std::string name, decltype(press_law::render) render) {
 press_law default_renderer_law() { return law_of("default", render_by_default); }
 press_law paper_renderer_law() { return law_of("paper", render_as_the_paper); }
 
+press_law field_renderer_law() { return {"field", {}, render_by_field}; }
+
 press_law true_exit_law() {
   return {"exit",
           [](const press_body& probe, const press_body& fixed, double k) -> result<step_function> {
@@ -74,7 +84,9 @@ press_law true_exit_law() {
           {}};
 }
 
-std::vector<press_law> known_laws() { return {default_renderer_law(), paper_renderer_law(), true_exit_law()}; }
+std::vector<press_law> known_laws() {
+  return {default_renderer_law(), paper_renderer_law(), field_renderer_law(), true_exit_law()};
+}
 
 press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,
                          const step_function& step, const press_choice& which) {

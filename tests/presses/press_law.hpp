@@ -16,6 +16,7 @@ namespace asperity::presses {
 struct press_law {
   std::string name;
   /// For two bodies and the stiffness of a face, N/m.
+  /// Empty where the law is for sessions only.
   std::function<result<step_function>(const press_body& probe, const press_body& fixed, double stiffness_n_per_m)> make;
   /// The same for sessions, with the stiffness J; empty where the law is no renderer.
   std::function<result<render_function>(const press_body& probe, const press_body& fixed, double stiffness_n_per_m)>
@@ -26,6 +27,9 @@ struct press_law {
 [[nodiscard]] press_law default_renderer_law();
 /// "paper": the paper's renderer.
 [[nodiscard]] press_law paper_renderer_law();
+/// "field": the renderer for control loops. In sessions only: it holds the probe by its support planes, and its force
+/// is meant for a probe at the surface.
+[[nodiscard]] press_law field_renderer_law();
 /// "exit": the force that the true depth of the originals has, k times the shortest way out that a search finds, along
 /// it. It is right for every pair, and far too slow for a tick.
 [[nodiscard]] press_law true_exit_law();

@@ -19,7 +19,9 @@ using namespace asperity::presses;
 constexpr char usage[] =
     "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
     "[--sessions] [--dump]\n"
-    "  --law NAME    default or paper (the two renderers) or exit (the originals' own true depth, slow)\n"
+    "  --law NAME    default or paper (renderers), field (the renderer for control loops, with --sessions) or exit "
+    "(the\n"
+    "                originals' own true depth, slow, without --sessions)\n"
     "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
     "  --touches N   presses on each pair (24)\n"
     "  --first N     leave the first N of the day's touches out (0)\n"
@@ -97,7 +99,7 @@ int main(int argc, char** argv) {
   }
   const std::vector<press_law> laws = known_laws();
   const auto law = std::find_if(laws.begin(), laws.end(), [&](const press_law& l) { return l.name == asked.law; });
-  if (law == laws.end() || (asked.sessions && !law->render)) {
+  if (law == laws.end() || (asked.sessions ? !law->render : !law->make)) {
     std::fputs(usage, stderr);
     return 2;
   }

@@ -1,0 +1,104 @@
+// Hands that press with up to 20 N through the field renderer's support planes: the probe stays on its side. The same
+// hands pass where a part of the planes is withheld.
+#include <algorithm>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "presses/press_law.hpp"
+#include "presses/press_session.hpp"
+#include "support/extent.hpp"
+#include "support/fresh_seed.hpp"
+
+namespace asperity::presses {
+namespace {
+
+using test_support::extent;
+using test_support::fresh_seed;
+
+constexpr double deepest_allowed_m = 1e-3;  // of the point that touched first, for the models' errors and the springs
+
+/// The pairs of an ordinary run: a thin plate, textured bodies of every kind, a scan; and those of a run at length.
+std::vector<press_pair> pairs_of_this_run() {
+  const std::vector<press_pair> all = press_pairs();
+  if (test_support::at_length()) return all;
+  std::vector<press_pair> out;
+  for (const press_pair& p : all) {
+    for (const char* name : {"ball_2 on plate_1", "block on gear", "hammer on torus", "ball_10 on corner"}) {
+      if (p.name() == name) out.push_back(p);
+    }
+  }
+  return out;
+}
+
+/// Sessions of every pair under a law made of the field renderer.
+/// @param judge called with what each pair gave
+template <class Change, class Judge>
+void press_every_pair(const char* name, const std::vector<press_pair>& pairs, int touches, Change&& change,
+                      Judge&& judge) {
+  const std::uint64_t seed = fresh_seed(name, std::to_string(touches) + " hands a pair");
+  press_shelf shelf(press_bake::simplified);
+  print_session_heading(stdout);
+  for (const press_pair& pair : pairs) {
+    if (const std::string why = why_without_body(pair.probe) + why_without_body(pair.fixed); !why.empty()) {
+      std::printf("%s: skipped, %s\n", pair.name().c_str(), why.c_str());
+      continue;
+    }
+    const auto probe = shelf.get(pair.probe), fixed = shelf.get(pair.fixed);
+    ASSERT_TRUE(probe) << probe.error().message;
+    ASSERT_TRUE(fixed) << fixed.error().message;
+    const auto render = field_renderer_law().render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+    ASSERT_TRUE(render) << render.error().message;
+    const session_row row = press_sessions(pair, **probe, **fixed, change(*render), {seed, touches, 0, 1e-4});
+    print_row(stdout, row);
+    EXPECT_EQ(row.sessions.size(), static_cast<std::size_t>(touches)) << pair.name();
+    judge(pair, row);
+  }
+}
+
+TEST(held_sessions, no_hand_passes_support_planes) {
+  press_every_pair(
+      "held_sessions", pairs_of_this_run(), extent(2, 20), [](const render_function& whole) { return whole; },
+      [](const press_pair& pair, const session_row& row) {
+        for (const session_result& s : row.sessions) {
+          EXPECT_FALSE(s.passed) << pair.name();
+          EXPECT_FALSE(s.gave_way) << pair.name();
+          EXPECT_FALSE(s.ended_early) << pair.name();
+          EXPECT_LE(s.deepest_m, deepest_allowed_m) << pair.name();
+        }
+      });
+}
+
+// A law that knows a thin layer only: planes deeper than half a tenth of a millimetre are withheld.
+TEST(held_sessions, a_layer_of_planes_lets_hands_through) {
+  std::vector<press_pair> pairs;
+  for (const press_pair& p : press_pairs()) {
+    if (p.name() == "ball_10 on slab" || p.name() == "block on gear") pairs.push_back(p);
+  }
+  int passed = 0;
+  press_every_pair(
+      "held_sessions, thin", pairs, 2,
+      [](const render_function& whole) -> render_function {
+        auto kept = std::make_shared<std::vector<support_plane>>();
+        return [whole, kept](const scene_pose& at, tick& out) {
+          const status s = whole(at, out);
+          kept->clear();
+          for (const support_plane& p : out.planes) {
+            if (p.depth_m < 5e-5) kept->push_back(p);
+          }
+          out.planes = *kept;
+          return s;
+        };
+      },
+      [&](const press_pair&, const session_row& row) {
+        passed += static_cast<int>(std::count_if(row.sessions.begin(), row.sessions.end(), [](const session_result& s) {
+          return s.passed || s.deepest_m > deepest_allowed_m;
+        }));
+      });
+  EXPECT_GE(passed, 2) << "of 4";
+}
+
+}  // namespace
+}  // namespace asperity::presses
