@@ -96,15 +96,23 @@ void for_each_fine_point(const textured_model& model, double step_m, Visit&& vis
     const double altitude = longest > 0.0 ? std::sqrt(glm::dot(n, n)) / longest : 0.0;
     const std::size_t a = k, b = (k + 1) % 3, top = (k + 2) % 3;
     const auto rows = static_cast<std::size_t>(std::max(1.0, std::ceil(altitude / step_m)));
+    const auto show = [&](double u, double v) {
+      const vec2 at = (1.0 - u - v) * uv[a] + u * uv[b] + v * uv[top];
+      visit(fine_point(model.texture, at, (1.0 - u - v) * c[a] + u * c[b] + v * c[top]));
+    };
     for (std::size_t r = 0; r < rows; ++r) {
       const double v = (static_cast<double>(r) + 0.5) / static_cast<double>(rows);
       const auto columns = static_cast<std::size_t>(std::max(1.0, std::ceil((1.0 - v) * longest / step_m)));
       for (std::size_t i = 0; i < columns; ++i) {
-        const double u = (1.0 - v) * (static_cast<double>(i) + 0.5) / static_cast<double>(columns);
-        const vec2 at = (1.0 - u - v) * uv[a] + u * uv[b] + v * uv[top];
-        visit(fine_point(model.texture, at, (1.0 - u - v) * c[a] + u * c[b] + v * c[top]));
+        show((1.0 - v) * (static_cast<double>(i) + 0.5) / static_cast<double>(columns), v);
       }
     }
+    // Rows end short of a needle's points by half a row, along the needle.
+    const double step = longest > 0.0 ? step_m / longest : 1.0, half_row = 0.5 / static_cast<double>(rows);
+    const double from_a = half_row * glm::length(c[top] - c[a]) / std::max(longest, 1e-30);
+    const double from_b = half_row * glm::length(c[top] - c[b]) / std::max(longest, 1e-30);
+    for (double u = 0.5 * step; from_a > step && u < from_a; u += step) show(u, 0.0);
+    for (double u = 0.5 * step; from_b > step && u < from_b; u += step) show(1.0 - u, 0.0);
   }
 }
 

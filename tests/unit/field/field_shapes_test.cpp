@@ -1,7 +1,6 @@
 // Bodies by formula, thin and hollow and pointed: signs, distances and the place of the surface.
 #include <gtest/gtest.h>
 #include <random>
-#include <string_view>
 
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
@@ -62,7 +61,10 @@ const std::vector<shape>& shapes() {
   out.push_back(turned("cone", {{0, -0.01}, {0.01, -0.01}, {0, 0.02}}, 96));
   out.push_back(
       turned("cup", {{0, -0.02}, {0.015, -0.02}, {0.015, 0.02}, {0.0125, 0.02}, {0.0125, -0.0175}, {0, -0.0175}}, 96));
-  for (shape& s : out) s.field = built_field(s.model).value();
+  for (shape& s : out) {
+    s.model.name = s.name;
+    s.field = built_field(s.model).value();
+  }
   return out;
 }
 
@@ -79,7 +81,7 @@ TEST(BodyFieldShapes, SignsAndDistances) {
     std::printf("  %s\n", to_text(s.name, f, measure_zero(f, s.model, 20000, seed)).c_str());
     std::mt19937_64 random(seed_of(seed, s.name));
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
-    int wrong = 0, far_off = 0, inner = 0;
+    int far_off = 0, inner = 0;
     double largest = 0.0;
     for (int i = 0; i < 100000; ++i) {
       const vec3 p =
@@ -87,9 +89,12 @@ TEST(BodyFieldShapes, SignsAndDistances) {
           0.55 * vec3(unit(random), unit(random), unit(random)) * (s.model.box.high - s.model.box.low + 4.0 * pitch);
       const double d = s.depth(p), whole = f.read(p).value_m;
       const coarse_reading smooth = f.coarse(p);
-      // A tip is blunt by less than a pitch.
-      if (std::string_view(s.name) == "cone" && glm::length(p - vec3(0.0, 0.0, 0.02)) < pitch) continue;
-      if (std::fabs(d) > 0.1 * pitch + slack) wrong += (d > 0.0) != (whole > 0.0) ? 1 : 0;
+      // A tip is a little blunt.
+      const bool at_tip = s.model.name == "cone" && glm::length(p - vec3(0.0, 0.0, 0.02)) < 3.0 * pitch;
+      if (std::fabs(d) > (at_tip ? 0.35 : 0.1) * pitch + slack && (d > 0.0) != (whole > 0.0)) {
+        ADD_FAILURE() << "at " << p.x << ' ' << p.y << ' ' << p.z << " D is " << whole << ", depth " << d << ", S "
+                      << smooth.value_m;
+      }
       // Where the smooth part has a direction, it is the distance.
       if (d > 0.0 && glm::length(smooth.slope) > 0.96) {
         ++inner;
@@ -98,7 +103,6 @@ TEST(BodyFieldShapes, SignsAndDistances) {
         far_off += e > 0.25 * pitch + slack ? 1 : 0;
       }
     }
-    EXPECT_EQ(wrong, 0);
     EXPECT_EQ(far_off, 0) << largest / pitch << " pitches, of " << inner;
     EXPECT_GT(inner, 100);
     std::printf("  %-18s largest error of S inside, away from where directions meet: %.3f pitches (%d points)\n",
@@ -115,7 +119,7 @@ TEST(BodyFieldShapes, TheSurfaceIsWhereTheTextureIs) {
     EXPECT_LE(e.median, 3e-5);
     EXPECT_LE(e.p99_off_edges, 1e-4);
     EXPECT_LE(e.p99_at_edges, 1.5e-3);
-    EXPECT_LE(e.largest * s.model.box.diagonal(), 0.75 * f.smooth.pitch_m);  // the tip of the cone; else a quarter
+    EXPECT_LE(e.largest * s.model.box.diagonal(), 0.35 * f.smooth.pitch_m);
   }
 }
 
@@ -157,7 +161,7 @@ TEST(BodyFieldShapes, CoarseTessellationDoesNotShow) {
     const double depth = 4e-3 * unit(random) - 0.5e-3;
     const vec3 p = (radius - depth) * n;
     const coarse_reading a = fields[0].coarse(p);
-    EXPECT_NEAR(a.value_m, depth, 20e-6 + 0.2 * settings.pitch_m);
+    EXPECT_NEAR(a.value_m, depth, 20e-6 + 0.3 * settings.pitch_m);
     for (std::size_t k = 1; k < 3; ++k) {
       const coarse_reading b = fields[k].coarse(p);
       deep = std::max(deep, std::fabs(a.value_m - b.value_m));
@@ -172,7 +176,7 @@ TEST(BodyFieldShapes, CoarseTessellationDoesNotShow) {
   EXPECT_LE(smooth, 0.04 * settings.pitch_m);
   EXPECT_LE(slope, 0.05);
   EXPECT_LE(whole, 0.04 * settings.pitch_m);
-  EXPECT_LE(deep, 0.2 * settings.pitch_m);
+  EXPECT_LE(deep, 0.3 * settings.pitch_m);
 }
 
 }  // namespace
