@@ -151,6 +151,7 @@ TEST(press_touch, of_crossed_rods_is_across_both) {
       EXPECT_GT(std::fabs(glm::dot(touch->out_w, glm::cross(axis, z) / sine)), 0.998);
     }
     EXPECT_NEAR(touch->fixed_thickness_m, 4.0 * mm, 0.1 * mm);
+    EXPECT_NEAR(touch->press_m, 0.45 * std::min(touch->fixed_thickness_m, touch->probe_thickness_m), 1e-12);
   }
 }
 
