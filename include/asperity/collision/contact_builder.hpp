@@ -12,6 +12,7 @@
 #include "asperity/collision/clustering.hpp"
 #include "asperity/collision/contact.hpp"
 #include "asperity/collision/finder_settings.hpp"
+#include "asperity/collision/held_contact.hpp"
 #include "asperity/collision/patch_window.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/reserve_resident.hpp"
@@ -47,11 +48,46 @@ class contact_builder {
   bool build(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
              const finder_settings& limits, std::span<const close_pair> pairs, std::span<const std::uint32_t> members,
              const pair_cluster& cluster, contact& out) noexcept {
-    const double tolerance = limits.tolerance_m;
-    contact_window& w = out.window;
+    place_window(T_wa, cluster, out.window);
+    const window_projection onto_a(out.window, T_wa);
+    plane_box near;
+    // Presence counts against the nearest pair's: a contact that is new as a whole is whole at once.
+    double presence = 0.0;
+    for (const std::uint32_t m : members) presence = std::max(presence, pairs[m].presence);
+    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence / presence);
+    return complete(a, b, T_wa, T_wb, limits, near, cluster, out);
+  }
+
+  /// The same for a contact whose direction is held; its extent takes the place of the pairs' regions.
+  /// @rt safe
+  bool build(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
+             const finder_settings& limits, const held_contact& held, contact& out) noexcept {
+    const pair_cluster cluster = held.cluster(T_wa, T_wb);
+    place_window(T_wa, cluster, out.window);
+    return complete(a, b, T_wa, T_wb, limits, held.near(out.window, T_wa, T_wb), cluster, out);
+  }
+
+  /// Patches of the last contact that was built.
+  [[nodiscard]] std::span<const std::uint32_t> patch_a() const noexcept { return patch_a_; }
+  [[nodiscard]] std::span<const std::uint32_t> patch_b() const noexcept { return patch_b_; }
+  /// Extent of the last contact that was built, in its window's plane.
+  [[nodiscard]] const plane_box& near() const noexcept { return near_; }
+
+ private:
+  static constexpr double facing_limit = 0.1;  // spec section 2
+  static constexpr double least_share = 0.05;  // of the tolerance: thinnest slab that still has an extent
+
+  static void place_window(const pose& T_wa, const pair_cluster& cluster, contact_window& w) noexcept {
     w.n_ab_w = T_wa.rotation * cluster.n_ab;
     w.v_w = glm::cross(w.n_ab_w, w.u_w);
     w.centre_w = T_wa * cluster.place;
+  }
+
+  /// @param near  where the bodies are near each other, about out.window's centre so far
+  bool complete(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
+                const finder_settings& limits, plane_box near, const pair_cluster& cluster, contact& out) noexcept {
+    const double tolerance = limits.tolerance_m;
+    contact_window& w = out.window;
     const double foot = glm::dot(cluster.n_ab, cluster.place);
     const double height_a = cluster.height_a_m - foot;
     const double height_b = cluster.height_b_m - foot;
@@ -62,11 +98,6 @@ class contact_builder {
 
     const window_projection onto_a(w, T_wa);
     const window_projection onto_b(w, T_wb);
-    plane_box near;
-    // Presence counts against the nearest pair's: a contact that is new as a whole is whole at once.
-    double presence = 0.0;
-    for (const std::uint32_t m : members) presence = std::max(presence, pairs[m].presence);
-    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence / presence);
     near = intersection(near, plane_box::square(vec2(0.0), limits.max_half_size_m));
     const plane_box region_a = cut_region(a, onto_a, 1.0, {height_a - behind, height_a + beyond}, near, patch_a_);
     const plane_box region_b = cut_region(b, onto_b, -1.0, {height_b - beyond, height_b + behind}, near, patch_b_);
@@ -78,6 +109,7 @@ class contact_builder {
       w.half_size_m = std::clamp(1.05 * region.half_side(), limits.min_half_size_m, limits.max_half_size_m);
       region = {region.low - centre, region.high - centre};
     }
+    near_ = {near.low - centre, near.high - centre};
     w.centre_w += centre.x * w.u_w + centre.y * w.v_w + 0.5 * (height_a + height_b) * w.n_ab_w;
 
     const window_projection to_a(w, T_wa);
@@ -95,14 +127,6 @@ class contact_builder {
     out.separation_m = glm::dot(out.p_b_w - out.p_a_w, w.n_ab_w);
     return true;
   }
-
-  /// Patches of the last contact that was built.
-  [[nodiscard]] std::span<const std::uint32_t> patch_a() const noexcept { return patch_a_; }
-  [[nodiscard]] std::span<const std::uint32_t> patch_b() const noexcept { return patch_b_; }
-
- private:
-  static constexpr double facing_limit = 0.1;  // spec section 2
-  static constexpr double least_share = 0.05;  // of the tolerance: thinnest slab that still has an extent
 
   static std::array<vec3, 3> projected(const collision_body& body, std::size_t t,
                                        const window_projection& to) noexcept {
@@ -188,6 +212,7 @@ class contact_builder {
   }
 
   std::vector<std::uint32_t> patch_a_, patch_b_;
+  plane_box near_;
 };
 
 }  // namespace asperity
