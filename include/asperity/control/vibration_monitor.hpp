@@ -124,7 +124,7 @@ class vibration_monitor {
   /// @rt safe: no allocation, lock, throw, print or clock
   void observe(std::int64_t time_ns, const pose& T_dh, const wrench& on_hand) noexcept {
     if (!valid_) return;
-    if (!is_valid(T_dh) || !is_finite(on_hand)) {
+    if (!is_valid(T_dh)) {
       started_ = false;
       return;
     }
@@ -168,7 +168,7 @@ class vibration_monitor {
   }
 
   void close_block(std::int64_t time_ns) noexcept {
-    if (!std::isfinite(now_.force2 + now_.torque2)) {  // a wrench so large that its square is not a number
+    if (!std::isfinite(now_.force2 + now_.torque2)) {  // a wrench that is not a number, or its square
       started_ = false;
       return;
     }
