@@ -321,7 +321,8 @@ TEST_F(documents, run) {
                   "memory",       "rejected_samples", "lost_records", "fault",
                   "fault_record", "interrupted",      "recording",    "plot",
                   "units",        "device_recording", "replay",       "real_time",
-                  "signal",       "driver_fault",     "rates"});
+                  "signal",       "driver_fault",     "rates",        "vibration"});
+  for (const char* key : {"band", "rest", "force", "torque"}) EXPECT_TRUE(d["vibration"].contains(key)) << key;
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
   EXPECT_EQ(d["interrupted"], false);

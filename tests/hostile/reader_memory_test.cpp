@@ -10,6 +10,7 @@
 #include "asperity/hal/device_recording.hpp"
 #include "attacks.hpp"
 #include "probe_process.hpp"
+#include "support/byte_strings.hpp"
 #include "support/image_writers.hpp"
 #include "unit/io/scratch_folder.hpp"
 
@@ -20,17 +21,8 @@ constexpr std::size_t times_the_file = 4;
 constexpr std::size_t plus_bytes = std::size_t{512} << 20;
 constexpr std::size_t refusal_bytes = std::size_t{16} << 20;
 
-std::string repeated(const std::string& what, std::size_t times) {
-  std::string out;
-  out.reserve(what.size() * times);
-  for (std::size_t i = 0; i < times; ++i) out += what;
-  return out;
-}
-
-template <class T>
-void put(std::string& to, T value) {
-  to.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
+using test_support::put;
+using test_support::repeated;
 
 std::string ply_header(const char* coordinate, const char* count, const char* index, std::size_t vertices,
                        std::size_t faces) {

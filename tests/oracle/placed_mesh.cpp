@@ -254,13 +254,14 @@ double placed_mesh::distance_to(const vec3& p, double at_most) const noexcept {
   return std::sqrt(best);
 }
 
-int placed_mesh::crossings_beyond(const vec3& p, int axis) const noexcept {
+template <class Misses, class Found>
+void placed_mesh::each_crossing(const vec3& p, int axis, const Misses& misses, const Found& found) const noexcept {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  int found = 0;
   std::array<double, 3> w;
   const auto look = [&](const auto& again, std::uint32_t index) -> void {
     const node& n = nodes_[index];
-    if (p[u] < n.low[u] || p[u] > n.high[u] || p[v] < n.low[v] || p[v] > n.high[v] || p[axis] > n.high[axis]) return;
+    if (p[u] < n.low[u] || p[u] > n.high[u] || p[v] < n.low[v] || p[v] > n.high[v]) return;
+    if (misses(n)) return;
     if (n.count == 0) {
       again(again, index + 1);
       again(again, n.right);
@@ -268,10 +269,17 @@ int placed_mesh::crossings_beyond(const vec3& p, int axis) const noexcept {
     }
     for (std::uint32_t t = n.first; t < n.first + n.count; ++t) {
       const corners3 c = corners_of(t);
-      if (crosses(p, c, axis, w) && along(c, w, axis) > p[axis]) ++found;
+      if (crosses(p, c, axis, w)) found(along(c, w, axis));
     }
   };
   look(look, 0);
+}
+
+int placed_mesh::crossings_beyond(const vec3& p, int axis) const noexcept {
+  int found = 0;
+  each_crossing(
+      p, axis, [&](const node& n) { return p[axis] > n.high[axis]; },
+      [&](double at) { found += at > p[axis] ? 1 : 0; });
   return found;
 }
 
@@ -282,23 +290,9 @@ bool placed_mesh::contains(const vec3& p) const noexcept {
 
 double placed_mesh::crossing(double x, double y, double sign) const noexcept {
   double best = -infinity;  // of sign * z
-  std::array<double, 3> w;
-  const vec3 p(x, y, 0.0);
-  const auto look = [&](const auto& again, std::uint32_t index) -> void {
-    const node& n = nodes_[index];
-    if (x < n.low.x || x > n.high.x || y < n.low.y || y > n.high.y) return;
-    if (std::max(sign * n.low.z, sign * n.high.z) <= best) return;
-    if (n.count == 0) {
-      again(again, index + 1);
-      again(again, n.right);
-      return;
-    }
-    for (std::uint32_t t = n.first; t < n.first + n.count; ++t) {
-      const corners3 c = corners_of(t);
-      if (crosses(p, c, 2, w)) best = std::max(best, sign * along(c, w, 2));
-    }
-  };
-  look(look, 0);
+  each_crossing(
+      vec3(x, y, 0.0), 2, [&](const node& n) { return std::max(sign * n.low.z, sign * n.high.z) <= best; },
+      [&](double at) { best = std::max(best, sign * at); });
   return sign * best;
 }
 

@@ -69,6 +69,10 @@ class placed_mesh {
     const auto& v = triangles_[t];
     return {points_[v[0]], points_[v[1]], points_[v[2]]};
   }
+  /// Tells found(coordinate) of every triangle that the line through p along `axis` crosses, in nodes that misses()
+  /// does not rule out.
+  template <class Misses, class Found>
+  void each_crossing(const vec3& p, int axis, const Misses& misses, const Found& found) const noexcept;
   [[nodiscard]] double crossing(double x, double y, double sign) const noexcept;
   [[nodiscard]] int crossings_beyond(const vec3& p, int axis) const noexcept;
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <jpeglib.h>
 #include <png.h>
 #include <tiffio.h>
@@ -92,7 +93,8 @@ std::string compressed_png_bytes(std::uint32_t width, std::uint32_t height, bool
   return out;
 }
 
-std::string flat_png_bytes(std::uint32_t width, std::uint32_t height, bool deep, bool interlaced) {
+std::string grey_png_bytes(std::uint32_t width, std::uint32_t height, bool deep, bool interlaced,
+                           const std::function<const unsigned char*(std::uint32_t)>& row) {
   std::string out;
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png_create_info_struct(png);
@@ -107,13 +109,17 @@ std::string flat_png_bytes(std::uint32_t width, std::uint32_t height, bool deep,
                PNG_FILTER_TYPE_DEFAULT);
   png_set_filter(png, 0, PNG_FILTER_NONE);
   png_write_info(png, info);
-  std::vector<unsigned char> row(std::size_t{width} * (deep ? 2 : 1), 0x40);
   for (int pass = png_set_interlace_handling(png); pass > 0; --pass) {
-    for (std::uint32_t j = 0; j < height; ++j) png_write_row(png, row.data());
+    for (std::uint32_t j = 0; j < height; ++j) png_write_row(png, row(j));
   }
   png_write_end(png, nullptr);
   png_destroy_write_struct(&png, &info);
   return out;
+}
+
+std::string flat_png_bytes(std::uint32_t width, std::uint32_t height, bool deep, bool interlaced) {
+  const std::vector<unsigned char> grey(std::size_t{width} * (deep ? 2 : 1), 0x40);
+  return grey_png_bytes(width, height, deep, interlaced, [&](std::uint32_t) { return grey.data(); });
 }
 
 std::string tiff_bytes(const tiff_layout& l) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,10 @@ namespace asperity::test_support {
 
 /// A grey PNG, compressed, of 8 or 16 bits: a bumpy surface.
 [[nodiscard]] std::string compressed_png_bytes(std::uint32_t width, std::uint32_t height, bool deep);
+
+/// A grey PNG of 8 or 16 bits, high byte first. @param row  the bytes of a row, asked for once per pass
+[[nodiscard]] std::string grey_png_bytes(std::uint32_t width, std::uint32_t height, bool deep, bool interlaced,
+                                         const std::function<const unsigned char*(std::uint32_t)>& row);
 
 /// A PNG in one grey of 8 or 16 bits: a thousandth of its pixels in bytes.
 [[nodiscard]] std::string flat_png_bytes(std::uint32_t width, std::uint32_t height, bool deep, bool interlaced = false);

@@ -190,6 +190,7 @@ answer report(const run_command& options, const session_findings& found) {
   if (!options.plot.empty()) out.text += row("plot", options.plot);
   if (!summary.touched())
     out.text += "  warning: the probe never touched anything: lower it with --press or --probe-pose\n";
+  out.text += summary.vibration_warning();
   if (ended.rates.lowest_scale < 1.0) out.text += late_warning(ended.rates);
   if (ended.lost_records > 0) {
     out.text += "  warning: " + std::to_string(ended.lost_records) + " ticks are missing from the recording\n";

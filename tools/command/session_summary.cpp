@@ -22,6 +22,35 @@ std::string range_text(const vector_range& range, const std::string& unit, doubl
   return out + ")";
 }
 
+json level_json(const vibration_level& level, bool measured) {
+  if (!measured) return nullptr;
+  return {{"rms", level.rms},
+          {"mean", level.mean},
+          {"worst_rms", level.worst_rms},
+          {"worst_mean", level.worst_mean},
+          {"worst_time", 1e-9 * static_cast<double>(level.worst_time_ns)},
+          {"excessive", level.excessive}};
+}
+
+json vibration_json(const vibration_report& seen) {
+  const bool measured = seen.measurements > 0;
+  return {{"band", {vibration_monitor::corner_hz, 0.5e9 / static_cast<double>(device_period_ns)}},
+          {"rest", 1e-9 * static_cast<double>(seen.rest_ns)},
+          {"force", level_json(seen.force, measured)},
+          {"torque", level_json(seen.torque, measured)}};
+}
+
+std::string vibration_text(const vibration_report& seen) {
+  if (seen.measurements == 0) return "not measured: the hand never rested for 0.7 s";
+  return "at most " + brief(1e3 * seen.force.worst_rms) + " mN and " + brief(1e3 * seen.torque.worst_rms) +
+         " mN m rms above 60 Hz, in " + brief(1e-9 * static_cast<double>(seen.rest_ns)) + " s at rest";
+}
+
+std::string excess_text(const vibration_level& level, const std::string& what, const std::string& unit) {
+  return brief(1e3 * level.worst_rms) + ' ' + unit + " rms of " + what + " (mean " + brief(1e3 * level.worst_mean) +
+         ' ' + unit + ") at " + brief(1e-9 * static_cast<double>(level.worst_time_ns)) + " s";
+}
+
 std::vector<plot_line> components(const std::vector<vec3>& values) {
   std::vector<plot_line> lines;
   for (int i = 0; i < 3; ++i) {
@@ -54,6 +83,7 @@ void session_summary::add(const session_record& tick) noexcept {
   hand_torque_.add(tick.on_hand_d.torque);
   delivered_j_ = tick.delivered_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
+  vibration_.observe(tick.time_ns, tick.T_dh, tick.on_hand_d);
   if (tick.guard_alpha_per_s > 0.0 || tick.guard_scale < 1.0) ++guarded_;
 }
 
@@ -70,7 +100,8 @@ json session_summary::to_json() const {
           {"hand_force", range_json(hand_force_)},
           {"hand_torque", range_json(hand_torque_)},
           {"energy",
-           {{"delivered_to_hand", delivered_j_}, {"largest_surplus", surplus_max_j_}, {"guarded_ticks", guarded_}}}};
+           {{"delivered_to_hand", delivered_j_}, {"largest_surplus", surplus_max_j_}, {"guarded_ticks", guarded_}}},
+          {"vibration", vibration_json(vibration_.report())}};
 }
 
 std::string session_summary::to_text() const {
@@ -85,7 +116,18 @@ std::string session_summary::to_text() const {
   out += row("torque on the hand", range_text(hand_torque_, "mN m", 1e3));
   out += row("energy", brief(1e3 * delivered_j_) + " mJ to the hand, surplus at most " + brief(1e3 * surplus_max_j_) +
                            " mJ; the guard acted in " + std::to_string(guarded_) + " ticks");
+  out += row("vibration at rest", vibration_text(vibration_.report()));
   return out;
+}
+
+std::string session_summary::vibration_warning() const {
+  const vibration_report& seen = vibration_.report();
+  std::string out;
+  if (seen.force.excessive) out = excess_text(seen.force, "force", "mN");
+  if (seen.torque.excessive) out += (out.empty() ? "" : ", ") + excess_text(seen.torque, "torque", "mN m");
+  if (out.empty()) return out;
+  return "  warning: the wrench vibrates above 60 Hz while the hand rests: " + out +
+         "; lower the coupling's stiffness, raise the contact rate, add damping, or take a softer tau\n";
 }
 
 session_curves::session_curves(std::size_t expected_ticks) : stride_(1 + expected_ticks / 20000) {}

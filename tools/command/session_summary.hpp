@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "asperity/control/session_record.hpp"
+#include "asperity/control/vibration_monitor.hpp"
 #include "cli.hpp"
 #include "plot.hpp"
+#include "session.hpp"
 
 namespace asperity::command {
 
@@ -34,6 +36,8 @@ class session_summary {
 
   [[nodiscard]] json to_json() const;
   [[nodiscard]] std::string to_text() const;
+  /// Empty, or a line that says how much the wrench vibrates while the hand rests, and what to change.
+  [[nodiscard]] std::string vibration_warning() const;
   [[nodiscard]] bool touched() const noexcept { return touching_ > 0; }
   [[nodiscard]] double mean_contacts() const noexcept;
   [[nodiscard]] double largest_hand_force_n() const noexcept { return hand_force_.largest(); }
@@ -49,6 +53,7 @@ class session_summary {
   double delivered_j_ = 0.0;
   double surplus_max_j_ = 0.0;
   std::uint64_t guarded_ = 0;
+  vibration_monitor vibration_{device_period_ns};
 };
 
 /// The curves of a session, thinned so that a long one stays a small picture.

@@ -8,7 +8,8 @@
 //   allowed. The window is in the world; its centre lies halfway between the surfaces along n and in the middle of
 //   the region of contact, which moves continuously where witness points of parallel faces jump.
 // - The same poses after the same history give the same bits. State between ticks (cached simplices, contact ids,
-//   window axes) may change the cost and the frame {u, v}, never whether two pieces touch.
+//   window axes) may change the cost and the frame {u, v}, never whether two pieces touch. One thing more may be kept:
+//   the direction of a contact that has grown too deep to have one. Such a contact is marked (contact::held).
 // - find() clears the set that it is given.
 // - Nothing in find() allocates, locks, throws, prints or reads a clock. Poses are finite; T_wb has one pose per fixed
 //   body. What does not fit is dropped, counted in contact_set::dropped(), and answered with capacity_reached.

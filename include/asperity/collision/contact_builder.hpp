@@ -12,6 +12,7 @@
 #include "asperity/collision/clustering.hpp"
 #include "asperity/collision/contact.hpp"
 #include "asperity/collision/finder_settings.hpp"
+#include "asperity/collision/held_contact.hpp"
 #include "asperity/collision/patch_window.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/reserve_resident.hpp"
@@ -30,6 +31,9 @@ namespace asperity {
 /// - Patch: every facing triangle of the body, from whatever piece, that may reach into the window grown by a tenth
 ///   (gradients move A a little) and whose heights come within 2 t + 2 d of the window's centre. Sheets further off,
 ///   and the far side of a thin part, stay out.
+/// - Tip slope: over A's and B's part within t / 20 of their extreme height, the mean of grad h grad h^T, added up;
+/// twice
+///   its smaller eigenvalue is the square of the slope of a cone, and zero for a face or a ridge.
 /// - Witness points: over the middle of the place where both surfaces are within t / 20 of their extreme height in the
 ///   region; a tie between parallel faces gives the middle of their overlap, not one of its corners.
 class contact_builder {
@@ -47,11 +51,46 @@ class contact_builder {
   bool build(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
              const finder_settings& limits, std::span<const close_pair> pairs, std::span<const std::uint32_t> members,
              const pair_cluster& cluster, contact& out) noexcept {
-    const double tolerance = limits.tolerance_m;
-    contact_window& w = out.window;
+    place_window(T_wa, cluster, out.window);
+    const window_projection onto_a(out.window, T_wa);
+    plane_box near;
+    // Presence counts against the nearest pair's: a contact that is new as a whole is whole at once.
+    double presence = 0.0;
+    for (const std::uint32_t m : members) presence = std::max(presence, pairs[m].presence);
+    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence / presence);
+    return complete(a, b, T_wa, T_wb, limits, near, cluster, out);
+  }
+
+  /// The same for a contact whose direction is held; its extent takes the place of the pairs' regions.
+  /// @rt safe
+  bool build(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
+             const finder_settings& limits, const held_contact& held, contact& out) noexcept {
+    const pair_cluster cluster = held.cluster(T_wa, T_wb);
+    place_window(T_wa, cluster, out.window);
+    return complete(a, b, T_wa, T_wb, limits, held.near(out.window, T_wa, T_wb), cluster, out);
+  }
+
+  /// Patches of the last contact that was built.
+  [[nodiscard]] std::span<const std::uint32_t> patch_a() const noexcept { return patch_a_; }
+  [[nodiscard]] std::span<const std::uint32_t> patch_b() const noexcept { return patch_b_; }
+  /// Extent of the last contact that was built, in its window's plane.
+  [[nodiscard]] const plane_box& near() const noexcept { return near_; }
+
+ private:
+  static constexpr double facing_limit = 0.1;  // spec section 2
+  static constexpr double least_share = 0.05;  // of the tolerance: thinnest slab that still has an extent
+
+  static void place_window(const pose& T_wa, const pair_cluster& cluster, contact_window& w) noexcept {
     w.n_ab_w = T_wa.rotation * cluster.n_ab;
     w.v_w = glm::cross(w.n_ab_w, w.u_w);
     w.centre_w = T_wa * cluster.place;
+  }
+
+  /// @param near  where the bodies are near each other, about out.window's centre so far
+  bool complete(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
+                const finder_settings& limits, plane_box near, const pair_cluster& cluster, contact& out) noexcept {
+    const double tolerance = limits.tolerance_m;
+    contact_window& w = out.window;
     const double foot = glm::dot(cluster.n_ab, cluster.place);
     const double height_a = cluster.height_a_m - foot;
     const double height_b = cluster.height_b_m - foot;
@@ -62,11 +101,6 @@ class contact_builder {
 
     const window_projection onto_a(w, T_wa);
     const window_projection onto_b(w, T_wb);
-    plane_box near;
-    // Presence counts against the nearest pair's: a contact that is new as a whole is whole at once.
-    double presence = 0.0;
-    for (const std::uint32_t m : members) presence = std::max(presence, pairs[m].presence);
-    for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence / presence);
     near = intersection(near, plane_box::square(vec2(0.0), limits.max_half_size_m));
     const plane_box region_a = cut_region(a, onto_a, 1.0, {height_a - behind, height_a + beyond}, near, patch_a_);
     const plane_box region_b = cut_region(b, onto_b, -1.0, {height_b - beyond, height_b + behind}, near, patch_b_);
@@ -78,6 +112,7 @@ class contact_builder {
       w.half_size_m = std::clamp(1.05 * region.half_side(), limits.min_half_size_m, limits.max_half_size_m);
       region = {region.low - centre, region.high - centre};
     }
+    near_ = {near.low - centre, near.high - centre};
     w.centre_w += centre.x * w.u_w + centre.y * w.v_w + 0.5 * (height_a + height_b) * w.n_ab_w;
 
     const window_projection to_a(w, T_wa);
@@ -95,14 +130,6 @@ class contact_builder {
     out.separation_m = glm::dot(out.p_b_w - out.p_a_w, w.n_ab_w);
     return true;
   }
-
-  /// Patches of the last contact that was built.
-  [[nodiscard]] std::span<const std::uint32_t> patch_a() const noexcept { return patch_a_; }
-  [[nodiscard]] std::span<const std::uint32_t> patch_b() const noexcept { return patch_b_; }
-
- private:
-  static constexpr double facing_limit = 0.1;  // spec section 2
-  static constexpr double least_share = 0.05;  // of the tolerance: thinnest slab that still has an extent
 
   static std::array<vec3, 3> projected(const collision_body& body, std::size_t t,
                                        const window_projection& to) noexcept {
@@ -137,10 +164,41 @@ class contact_builder {
     });
   }
 
-  /// Extreme height of a patch over the region and the box of what lies within `thin` of it.
+  /// Mean of grad h grad h^T over a surface, h its height along n over the window plane.
+  struct slope_tensor {
+    double uu = 0.0, uv = 0.0, vv = 0.0;
+    double area_m2 = 0.0;
+
+    void add(const clipped_polygon& part, const vec3& normal) noexcept {
+      double doubled = 0.0;
+      for (std::size_t i = 0; i < part.size(); ++i) {
+        const vec3 &p = part[i], &q = part[(i + 1) % part.size()];
+        doubled += p.x * q.y - p.y * q.x;
+      }
+      const double area = 0.5 * std::fabs(doubled);
+      const vec2 slope = vec2(normal) / normal.z;
+      area_m2 += area;
+      uu += area * slope.x * slope.x;
+      uv += area * slope.x * slope.y;
+      vv += area * slope.y * slope.y;
+    }
+    [[nodiscard]] slope_tensor mean() const noexcept {
+      if (!(area_m2 > 0.0)) return {};
+      return {uu / area_m2, uv / area_m2, vv / area_m2, 1.0};
+    }
+  };
+
+  [[nodiscard]] static double cone_slope(const slope_tensor& a, const slope_tensor& b) noexcept {
+    const slope_tensor on_a = a.mean(), on_b = b.mean();
+    const double uu = on_a.uu + on_b.uu, uv = on_a.uv + on_b.uv, vv = on_a.vv + on_b.vv;
+    const double smaller = 0.5 * (uu + vv - std::sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv));
+    return std::sqrt(2.0 * std::max(smaller, 0.0));
+  }
+
+  /// Extreme height of a patch over the region and the box of what lies within `thin` of it; `slope` is added to.
   static plane_box extreme_place(const collision_body& body, std::span<const std::uint32_t> patch,
                                  const window_projection& to, double side, const height_slab& slab,
-                                 const plane_box& region, double thin) noexcept {
+                                 const plane_box& region, double thin, slope_tensor& slope) noexcept {
     double top = -std::numeric_limits<double>::infinity();
     for (const std::uint32_t t : patch) {
       for (const vec3& p : clip(projected(body, t, to), slab, region)) top = std::max(top, side * p.z);
@@ -151,7 +209,9 @@ class contact_builder {
     for (const std::uint32_t t : patch) {
       const auto uvh = projected(body, t, to);
       if (std::max({side * uvh[0].z, side * uvh[1].z, side * uvh[2].z}) < top - thin) continue;
-      for (const vec3& p : clip(uvh, cap, region)) place.add(p);
+      const clipped_polygon part = clip(uvh, cap, region);
+      for (const vec3& p : part) place.add(p);
+      slope.add(part, to.to_uvh * body.triangle_normals[t]);
     }
     return place;
   }
@@ -172,8 +232,10 @@ class contact_builder {
   bool find_witness(const collision_body& a, const collision_body& b, const window_projection& to_a,
                     const window_projection& to_b, const height_slab& slab, const plane_box& region, double thin,
                     contact& out) const noexcept {
-    const plane_box place = intersection(extreme_place(a, patch_a_, to_a, 1.0, slab, region, thin),
-                                         extreme_place(b, patch_b_, to_b, -1.0, slab, region, thin));
+    slope_tensor slope_a, slope_b;
+    const plane_box place = intersection(extreme_place(a, patch_a_, to_a, 1.0, slab, region, thin, slope_a),
+                                         extreme_place(b, patch_b_, to_b, -1.0, slab, region, thin, slope_b));
+    out.tip_slope = cone_slope(slope_a, slope_b);
     if (place.empty()) return false;
     const vec2 at = place.centre();
     double height_a = 0.0, height_b = 0.0;
@@ -188,6 +250,7 @@ class contact_builder {
   }
 
   std::vector<std::uint32_t> patch_a_, patch_b_;
+  plane_box near_;
 };
 
 }  // namespace asperity

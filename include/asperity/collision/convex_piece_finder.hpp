@@ -15,6 +15,7 @@
 #include "asperity/collision/concept.hpp"
 #include "asperity/collision/contact_builder.hpp"
 #include "asperity/collision/finder_settings.hpp"
+#include "asperity/collision/held_contact.hpp"
 #include "asperity/core/reserve_resident.hpp"
 
 namespace asperity {
@@ -25,6 +26,7 @@ namespace asperity {
 /// Narrow phase: GJK with cached simplices; for overlaps, separating axes of the real surface (close_pair.hpp).
 /// Clusters (clustering.hpp) become contacts with a window and patches (contact_builder.hpp). Contacts are ordered by
 /// body and id. docs/explanation/collision.md says what is continuous in the pose and what is known to jump.
+/// A contact that grows deeper than max_depth_m keeps its last valid direction and is marked (contact::held).
 /// @source paper sections 3.3 and 6.1 (after Kim et al. 2003)
 class convex_piece_finder {
  public:
@@ -49,7 +51,7 @@ class convex_piece_finder {
       if (!sides_[i].clustering.build(sides_[i].pairs, std::cos(sides_[i].settings.merge_angle_rad))) {
         statistics_.dropped_clusters += sides_[i].clustering.left_out();
       }
-      identify(sides_[i], at.T_wa);
+      identify(sides_[i], at.T_wa, at.T_wb[i]);
       report(sides_[i], static_cast<std::uint32_t>(i), at.T_wa, at.T_wb[i], out);
     }
     const bool complete = statistics_.dropped_pairs == 0 && statistics_.dropped_clusters == 0 && out.dropped() == 0;
@@ -78,7 +80,11 @@ class convex_piece_finder {
     vec3 n_ab_w{0.0};
     vec3 u_w{0.0};
     double reach_m = 0.0;
+    bool held = false;
+    held_contact kept;  ///< what would be held
   };
+  static constexpr auto unknown = std::numeric_limits<std::uint32_t>::max();
+  static constexpr double same_direction = 0.5;  // 60 degrees
 
   /// Everything between the probe and one fixed body.
   struct side {
@@ -97,8 +103,9 @@ class convex_piece_finder {
           clustering(settings.close_pairs, settings.clusters),
           builder(probe.model->mesh.triangles.size(), m->mesh.triangles.size()) {
       detail::reserve_resident(pairs, settings.close_pairs);
-      detail::reserve_resident(previous, settings.clusters);
-      detail::reserve_resident(current, settings.clusters);
+      // Held contacts come on top of the clusters.
+      detail::reserve_resident(previous, 2 * settings.clusters);
+      detail::reserve_resident(current, 2 * settings.clusters);
     }
 
     [[nodiscard]] std::size_t heap_bytes() const noexcept {
@@ -174,37 +181,72 @@ class convex_piece_finder {
     }
   }
 
-  /// Gives every cluster the id and axes of the contact that was nearest to it in the last tick, or new ones.
-  void identify(side& s, const pose& T_wa) noexcept {
-    constexpr double same_direction = 0.5;  // 60 degrees
-    constexpr auto unknown = std::numeric_limits<std::uint32_t>::max();
+  [[nodiscard]] static const close_pair& deepest_pair(const side& s, const pair_cluster& c) noexcept {
+    const close_pair* deepest = nullptr;
+    for (const std::uint32_t m : s.clustering.members(c).first(c.active)) {
+      if (deepest == nullptr || s.pairs[m].separation_m < deepest->separation_m) deepest = &s.pairs[m];
+    }
+    return *deepest;  // a cluster has at least its seed
+  }
+
+  /// True where a cluster of this tick may be the contact `old` of the last one.
+  [[nodiscard]] static bool may_be(const track& now, const track& old) noexcept {
+    return glm::distance(now.place_w, old.place_w) <= old.reach_m && glm::dot(now.n_ab_w, old.n_ab_w) >= same_direction;
+  }
+
+  /// Decides whether a contact of the last tick is held in this one. A contact is held from where its deepest pair is
+  /// deeper than the limit, until a pair has a valid direction there again, the surfaces have parted along the held
+  /// direction, or the probe has left the body on the far side. A contact that moved further than across its window is
+  /// not the same one.
+  [[nodiscard]] bool is_to_hold(const side& s, const track& old, const pose& T_wa, const pose& T_wb) const noexcept {
+    if (!old.kept.valid() || old.kept.moved_m(T_wa, T_wb) > old.reach_m) return false;
+    if (has_passed_through(probe_.model->box, s.body.model->box, old.n_ab_w, T_wa, T_wb)) return false;
+    if (old.kept.depth_m(T_wa, T_wb) > s.settings.max_depth_m) return true;
+    if (!old.held || old.kept.separation_m(T_wa, T_wb) > s.settings.tolerance_m) return false;
+    return std::none_of(s.current.begin(), s.current.end(), [&](const track& now) { return may_be(now, old); });
+  }
+
+  /// Gives every cluster the id and axes of the contact that was nearest to it in the last tick, or new ones. Clusters
+  /// that belong to a held contact are part of it. While one is held, a cluster that comes up deep inside is the way
+  /// out on another side: it is left out.
+  void identify(side& s, const pose& T_wa, const pose& T_wb) noexcept {
     const auto clusters = s.clustering.clusters();
     std::swap(s.previous, s.current);
     s.current.clear();
     for (std::uint32_t i = 0; i < clusters.size(); ++i) {
-      s.current.push_back({unknown, i, T_wa * clusters[i].place, T_wa.rotation * clusters[i].n_ab, vec3(0.0), 0.0});
+      track now;
+      now.id = unknown;
+      now.cluster = i;
+      now.place_w = T_wa * clusters[i].place;
+      now.n_ab_w = T_wa.rotation * clusters[i].n_ab;
+      s.current.push_back(now);
     }
-    for (;;) {
-      track* best = nullptr;
-      std::size_t best_old = 0;
-      double nearest = std::numeric_limits<double>::infinity();
-      for (track& now : s.current) {
-        if (now.id != unknown) continue;
-        for (std::size_t k = 0; k < s.previous.size(); ++k) {
-          const track& old = s.previous[k];
-          const double distance = glm::distance(now.place_w, old.place_w);
-          if (distance > old.reach_m || glm::dot(now.n_ab_w, old.n_ab_w) < same_direction || distance >= nearest) {
-            continue;
-          }
-          best = &now;
-          best_old = k;
-          nearest = distance;
+    bool holding = false;
+    for (track& old : s.previous) {
+      if (old.held || old.kept.valid()) {
+        const track moved = carried(old, T_wa, T_wb);
+        const bool hold = is_to_hold(s, moved, T_wa, T_wb);
+        if (hold || old.held) old = moved;
+        old.held = hold;
+        holding = holding || hold;
+      }
+    }
+    match(s);
+    if (holding) {
+      std::erase_if(s.current, [&](const track& now) {
+        const bool left_out =
+            now.id == unknown && -deepest_pair(s, clusters[now.cluster]).separation_m > s.settings.tolerance_m;
+        if (left_out) ++statistics_.unheld_clusters;
+        return left_out;
+      });
+      for (const track& old : s.previous) {
+        if (!old.held) continue;
+        if (s.current.size() == 2 * s.settings.clusters) {
+          ++statistics_.dropped_clusters;
+        } else {
+          s.current.push_back(old);
         }
       }
-      if (best == nullptr) break;
-      best->id = s.previous[best_old].id;
-      best->u_w = s.previous[best_old].u_w;
-      s.previous.erase(s.previous.begin() + static_cast<std::ptrdiff_t>(best_old));
     }
     for (track& now : s.current) {
       if (now.id == unknown) now.id = next_id_++;
@@ -215,22 +257,72 @@ class convex_piece_finder {
     std::sort(s.current.begin(), s.current.end(), [](const track& x, const track& y) { return x.id < y.id; });
   }
 
+  /// A track whose place and direction went with its bodies since the last tick.
+  [[nodiscard]] static track carried(track old, const pose& T_wa, const pose& T_wb) noexcept {
+    old.place_w = T_wa * old.kept.p_a;
+    old.n_ab_w = old.kept.n_ab_w(T_wb);
+    return old;
+  }
+
+  /// Nearest first: a contact of the last tick hands its id on once; a held one takes in every cluster that it is
+  /// nearest to.
+  static void match(side& s) noexcept {
+    for (;;) {
+      std::size_t best = 0, best_old = 0;
+      double nearest = std::numeric_limits<double>::infinity();
+      for (std::size_t i = 0; i < s.current.size(); ++i) {
+        const track& now = s.current[i];
+        if (now.id != unknown) continue;
+        for (std::size_t k = 0; k < s.previous.size(); ++k) {
+          const double distance = glm::distance(now.place_w, s.previous[k].place_w);
+          if (distance >= nearest || !may_be(now, s.previous[k])) continue;
+          best = i;
+          best_old = k;
+          nearest = distance;
+        }
+      }
+      if (nearest == std::numeric_limits<double>::infinity()) return;
+      if (s.previous[best_old].held) {
+        s.current.erase(s.current.begin() + static_cast<std::ptrdiff_t>(best));
+        continue;
+      }
+      s.current[best].id = s.previous[best_old].id;
+      s.current[best].u_w = s.previous[best_old].u_w;
+      s.previous.erase(s.previous.begin() + static_cast<std::ptrdiff_t>(best_old));
+    }
+  }
+
   void report(side& s, std::uint32_t body, const pose& T_wa, const pose& T_wb, contact_set& out) noexcept {
     for (track& now : s.current) {
-      const pair_cluster& cluster = s.clustering.clusters()[now.cluster];
       contact c;
       c.body = body;
       c.id = now.id;
       c.window.u_w = now.u_w;
-      if (!s.builder.build(probe_, s.body, T_wa, T_wb, s.settings, s.pairs, s.clustering.members(cluster), cluster,
-                           c)) {
+      c.held = now.held;
+      if (!build(s, now, T_wa, T_wb, c)) {
+        now.kept = {};
+        now.held = false;
         ++statistics_.empty_clusters;
         continue;
       }
       // A contact that moved no further than across its window is the same one.
       now.reach_m = 2.0 * c.window.half_size_m + s.settings.tolerance_m;
+      if (now.held) ++statistics_.held_contacts;
       (void)out.add(c, s.builder.patch_a(), s.builder.patch_b());  // a refusal is counted in out.dropped()
     }
+  }
+
+  [[nodiscard]] bool build(side& s, track& now, const pose& T_wa, const pose& T_wb, contact& c) noexcept {
+    if (now.held) {
+      now.kept.last_b = inverse(T_wb) * (T_wa * now.kept.p_a);
+      return s.builder.build(probe_, s.body, T_wa, T_wb, s.settings, now.kept, c);
+    }
+    const pair_cluster& cluster = s.clustering.clusters()[now.cluster];
+    if (!s.builder.build(probe_, s.body, T_wa, T_wb, s.settings, s.pairs, s.clustering.members(cluster), cluster, c)) {
+      return false;
+    }
+    now.kept = keep_contact(c, cluster, deepest_pair(s, cluster), s.builder.near(), T_wa, T_wb);
+    return true;
   }
 
   collision_body probe_;

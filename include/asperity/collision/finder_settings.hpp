@@ -17,7 +17,7 @@ namespace asperity {
 /// Settings of convex_piece_finder. Lengths in metres; 0 means automatic, see resolve().
 struct finder_settings {
   double tolerance_m = 0.0;         ///< pieces closer than this are in contact
-  double max_depth_m = 0.0;         ///< deeper overlaps are not followed
+  double max_depth_m = 0.0;         ///< deeper overlaps have no direction of their own: the last valid one is held
   double min_half_size_m = 0.0;     ///< smallest window
   double max_half_size_m = 0.0;     ///< largest window
   double merge_angle_rad = 0.5236;  ///< pairs whose directions differ less may share a contact; 30 degrees
@@ -36,6 +36,8 @@ struct finder_statistics {
   std::size_t dropped_pairs = 0;      ///< close pairs that did not fit: raise finder_settings::close_pairs
   std::size_t dropped_clusters = 0;   ///< clusters that did not fit: raise finder_settings::clusters
   std::size_t empty_clusters = 0;     ///< clusters without a facing triangle on one side: no contact
+  std::size_t held_contacts = 0;      ///< contacts deeper than the limit that keep their last valid direction
+  std::size_t unheld_clusters = 0;    ///< clusters that came up deep inside while a contact was held: left out
   std::uint32_t gjk_iterations = 0;   ///< most that one pair took
 };
 

@@ -74,6 +74,11 @@ class basic_renderer {
 
     const std::span<reading_type> readings = std::span(readings_).first(found_.size());
     if (const status s = depth_.measure(at, found_, readings); s != status::ok) return s;
+    if constexpr (finds_contacts && std::same_as<reading_type, penetration>) {
+      for (std::size_t i = 0; i < readings.size(); ++i) {
+        if (found_.contacts()[i].held) readings[i].flags |= depth_flag::held_direction;
+      }
+    }
     if (const status s = force_.accumulate(found_, readings, out.force); s != status::ok) {
       out.force = {};
       return s;

@@ -347,15 +347,32 @@ TEST(finder, a_thin_plate_pushes_out_on_the_side_that_was_entered) {
   }
 }
 
-TEST(finder, deeper_than_the_limit_is_not_followed) {
+TEST(finder, deeper_than_the_limit_the_last_direction_is_held) {
   finder_settings settings;
   settings.max_depth_m = 1e-3;
+  const pose above{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0302 - 1e-3}};
+  const pose below{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0298 - 1e-3}};
   for (const cut_into how : every_cut) {
     rig r = box_on_plate(how, settings);
-    EXPECT_EQ(r.at({{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0302 - 1e-3}}), status::ok);
-    EXPECT_EQ(r.out.size(), 1U);
-    EXPECT_EQ(r.at({{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0298 - 1e-3}}), status::ok);
-    EXPECT_EQ(r.out.size(), 0U);
+    EXPECT_EQ(r.at(below), status::ok);
+    EXPECT_EQ(r.out.size(), 0U);  // no direction was ever valid
+    EXPECT_EQ(r.at(above), status::ok);
+    ASSERT_EQ(r.out.size(), 1U);
+    EXPECT_FALSE(r.only().held);
+    const contact last = r.only();
+    EXPECT_EQ(r.at(below), status::ok);
+    ASSERT_EQ(r.out.size(), 1U);
+    expect_sound(r, below);
+    EXPECT_TRUE(r.only().held);
+    EXPECT_EQ(r.only().id, last.id);
+    EXPECT_NEAR(glm::distance(r.only().window.n_ab_w, last.window.n_ab_w), 0.0, 1e-9);
+    EXPECT_NEAR(r.only().separation_m, -1.2e-3, 1e-9);
+    EXPECT_NEAR(r.only().window.half_size_m, last.window.half_size_m, 1e-9);
+    EXPECT_EQ(r.finder.statistics().held_contacts, 1U);
+    EXPECT_EQ(r.at(above), status::ok);
+    ASSERT_EQ(r.out.size(), 1U);
+    EXPECT_FALSE(r.only().held);
+    EXPECT_EQ(r.only().id, last.id);
   }
 }
 

@@ -10,7 +10,6 @@
 #include <csetjmp>
 #include <cstring>
 #include <gtest/gtest.h>
-#include <png.h>
 #include <string>
 #include <vector>
 
@@ -162,33 +161,14 @@ TEST(ImageLimits, ExrOfOneFlatPartWithoutLossAndNoOther) {
   expect_unsupported("sly.exr", sly, "holds deep pixels");
 }
 
-std::string interlaced_png(std::uint32_t width, std::uint32_t height, const std::vector<unsigned char>& grey) {
-  std::string out;
-  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
-  png_infop info = png_create_info_struct(png);
-  png_set_write_fn(
-      png, &out,
-      [](png_structp p, png_bytep from, png_size_t n) {
-        static_cast<std::string*>(png_get_io_ptr(p))->append(reinterpret_cast<const char*>(from), n);
-      },
-      [](png_structp) {});
-  png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_GRAY, PNG_INTERLACE_ADAM7, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
-  std::vector<unsigned char> pixels = grey;
-  std::vector<png_bytep> rows;
-  for (std::uint32_t j = 0; j < height; ++j) rows.push_back(&pixels[std::size_t{j} * width]);
-  png_set_rows(png, info, rows.data());
-  png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
-  png_destroy_write_struct(&png, &info);
-  return out;
-}
-
 TEST(ImageLimits, PngInterlacedIsTheSameImage) {
   constexpr std::uint32_t width = 37, height = 21;
   std::vector<unsigned char> grey;
   for (std::uint32_t i = 0; i < width * height; ++i) grey.push_back(static_cast<unsigned char>(i * i % 251));
   const std::string rows(grey.begin(), grey.end());
-  EXPECT_EQ(expect_read("i.png", interlaced_png(width, height, grey)).samples,
+  EXPECT_EQ(expect_read("i.png", test_support::grey_png_bytes(width, height, false, true,
+                                                              [&](std::uint32_t j) { return &grey[j * width]; }))
+                .samples,
             expect_read("p.png", test_support::png_image{width, height, 8, 0, rows, {}}.bytes()).samples);
 }
 

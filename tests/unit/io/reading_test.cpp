@@ -16,26 +16,17 @@
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "scratch_folder.hpp"
+#include "support/byte_strings.hpp"
 #include "support/image_writers.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity {
 namespace {
 
+using test_support::put;
+using test_support::repeated;
 using test_support::scratch_folder;
 using go_on = std::function<bool()>;
-
-std::string repeated(const std::string& what, std::size_t times) {
-  std::string out;
-  out.reserve(what.size() * times);
-  for (std::size_t i = 0; i < times; ++i) out += what;
-  return out;
-}
-
-template <class T>
-void put(std::string& to, T value) {
-  to.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 std::string ply(const std::string& format, const std::string& type, std::size_t vertices, std::size_t faces,
                 const std::string& more = "") {
