@@ -44,10 +44,12 @@ class field_finder {
             near_samples& out) const noexcept {
     of_x.query([&](const vec3& centre_x,
                    double radius_m) noexcept { return in_y.most_near(T_yx * centre_x, radius_m) > -reach_m_; },
-               [&](std::span<const field_sample> samples) noexcept {
+               [&](const vec3& centre_x, double radius_m, std::span<const field_sample> samples) noexcept {
                  near_leaf leaf = whose;
                  leaf.first = samples.data();
                  leaf.count = static_cast<std::uint32_t>(samples.size());
+                 leaf.centre_b = centre_x;
+                 leaf.radius_m = radius_m;
                  static_cast<void>(out.add(leaf));
                });
   }

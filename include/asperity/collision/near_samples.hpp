@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
 #include "asperity/core/reserve_resident.hpp"
 #include "asperity/field/sample_tree.hpp"
@@ -18,6 +19,8 @@ struct near_leaf {
   bool of_probe = false;                ///< whose samples: the probe's, met by B's field; or B's, met by the probe's
   const field_sample* first = nullptr;  ///< in that body's sample_tree
   std::uint32_t count = 0;
+  vec3 centre_b{0.0};  ///< of a ball around them, in the same frame
+  double radius_m = 0.0;
 
   [[nodiscard]] std::span<const field_sample> samples() const noexcept { return {first, count}; }
 };

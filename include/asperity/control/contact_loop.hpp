@@ -36,8 +36,8 @@ class contact_loop {
  public:
   /// @param shared outlives the loop
   /// @param selection which support planes are handed on; selection_for() knows what fits a period
-  contact_loop(Renderer renderer, scene_placement placement, exchange& shared, const plane_selection& selection = {})
-      : renderer_(std::move(renderer)), placement_(std::move(placement)), shared_(&shared), selection_(selection) {}
+  contact_loop(Renderer feel, scene_placement placement, exchange& shared, const plane_selection& selection = {})
+      : renderer_(std::move(feel)), placement_(std::move(placement)), shared_(&shared), selection_(selection) {}
 
   /// compute() and publish() in one.
   /// @return the renderer's answer; ok without work where no new pose came

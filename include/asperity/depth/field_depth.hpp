@@ -85,6 +85,10 @@ class field_depth {
     // Half way through a body no way out is shorter than another: a sample there holds nothing.
     constexpr double least_slope = 0.05;
     near_plane out;
+    // A smooth distance grows by little more than a metre per metre.
+    constexpr double steepest = 1.2;
+    const double most_m = in_y.coarse(T_yx * leaf.centre_b).value_m + steepest * leaf.radius_m + in_y.largest_relief_m;
+    if (most_m <= -reach_m_) return out;
     vec3 slope_y(0.0), point_x(0.0);
     const quat rotation_xy = glm::conjugate(T_yx.rotation);
     for (const field_sample& s : leaf.samples()) {

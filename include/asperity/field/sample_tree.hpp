@@ -58,7 +58,8 @@ class sample_tree {
       const ball& b = balls_[i];
       if (!may(vec3(b.centre_b), static_cast<double>(b.radius_m))) continue;
       if (b.right == 0) {
-        visit(std::span<const field_sample>(samples_).subspan(b.first, b.count));
+        visit(vec3(b.centre_b), static_cast<double>(b.radius_m),
+              std::span<const field_sample>(samples_).subspan(b.first, b.count));
       } else {
         waiting[count++] = b.right;
         waiting[count++] = i + 1;

@@ -1,6 +1,7 @@
 // The renderer for control loops: depth fields, and support planes that hold the probe at the surface.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -21,11 +22,23 @@ using field_renderer = basic_renderer<field_finder, field_depth, plane_springs>;
 /// Settings of make_field_renderer().
 struct field_renderer_settings {
   field_body_settings bodies{};
-  /// Gaps up to this are told, m. What a hand of 0.5 m/s approaches in two periods of 500 Hz.
-  double reach_m = 2e-3;
+  /// Gaps up to this are told, m. 0: 2 mm, what a hand of 0.5 m/s approaches in two periods of 500 Hz, and at most a
+  /// tenth of the smallest body's diagonal.
+  double reach_m = 0.0;
   plane_spring_settings springs{};
   near_sample_limits limits{};
 };
+
+namespace detail {
+
+[[nodiscard]] inline double usual_reach_m(const scene& bodies) noexcept {
+  constexpr double most_m = 2e-3, of_the_diagonal = 0.1;
+  double reach_m = std::min(most_m, of_the_diagonal * bodies.probe->box.diagonal());
+  for (const model_ptr& b : bodies.fixed) reach_m = std::min(reach_m, of_the_diagonal * b->box.diagonal());
+  return reach_m;
+}
+
+}  // namespace detail
 
 /// The field renderer for bodies that were made before, by make_field_scene(): several renderers can share them.
 /// @pre made are of these bodies, in their order
@@ -34,15 +47,18 @@ struct field_renderer_settings {
                                                                 const field_renderer_settings& settings = {}) {
   const auto bad = [](const char* what) { return error{error_code::invalid_argument, what}; };
   if (bodies.fixed.empty()) return bad("the scene has no fixed body: give the probe something to touch");
-  if (!bodies.probe || !made || !made->probe || made->fixed.size() != bodies.fixed.size()) {
+  bool all = bodies.probe && made && made->probe && made->fixed.size() == bodies.fixed.size();
+  for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && made->fixed[b];
+  if (!all) {
     return bad("the fields are not as many as the scene's bodies: make_field_scene() makes one for each");
   }
-  if (!(std::isfinite(settings.reach_m) && settings.reach_m > 0.0)) {
-    return bad("field renderer settings: reach_m must be a finite length above 0");
+  if (!(std::isfinite(settings.reach_m) && settings.reach_m >= 0.0)) {
+    return bad("field renderer settings: reach_m must be a finite length, or 0 for automatic");
   }
   if (const result<void> ok = check(settings.springs); !ok) return ok.error();
-  field_depth depth(made, bodies, settings.reach_m, settings.limits.readings());
-  return field_renderer(std::move(bodies), field_finder(std::move(made), settings.reach_m), std::move(depth),
+  const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : detail::usual_reach_m(bodies);
+  field_depth depth(made, bodies, reach_m, settings.limits.readings());
+  return field_renderer(std::move(bodies), field_finder(std::move(made), reach_m), std::move(depth),
                         plane_springs(settings.springs), settings.limits);
 }
 

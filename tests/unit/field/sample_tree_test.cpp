@@ -33,7 +33,7 @@ struct brought {
 brought query_ball(const sample_tree& tree, const vec3& centre, double radius) {
   brought out;
   tree.query([&](const vec3& c, double r) noexcept { return glm::length(c - centre) <= r + radius; },
-             [&](std::span<const field_sample> leaf) noexcept {
+             [&](const vec3&, double, std::span<const field_sample> leaf) noexcept {
                out.points += leaf.size();
                for (const field_sample& s : leaf) {
                  if (glm::length(vec3(s.position_b) - centre) <= radius) out.inside.push_back(s.position_b);

