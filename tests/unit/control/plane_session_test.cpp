@@ -100,7 +100,7 @@ TEST(plane_session, holds_a_block_that_is_pressed) {
 
 // Hands of three kinds come down on a plate of 1 mm as hard as they like: the probe is never past its middle.
 TEST(plane_session, never_goes_through_a_thin_plate) {
-  drawn d(seed_of(fresh_seed("thin_plate", "72 sessions"), "plate"));
+  drawn d(seed_of(fresh_seed("thin_plate", "72 sessions, 720 at length"), "plate"));
   double deepest = 0.0;
   double surplus = 0.0;
   int through = 0;
@@ -179,7 +179,7 @@ TEST(plane_session, foresees_what_is_told_within_three_periods) {
 
 // Planes of a corner, a groove and a slot, three hands: no energy. A held force gives some.
 TEST(plane_session, makes_no_energy) {
-  drawn d(seed_of(fresh_seed("plane_energy", "72 sessions"), "energy"));
+  drawn d(seed_of(fresh_seed("plane_energy", "72 sessions, 864 at length"), "energy"));
   const int each = extent(1, 12);
   double held_j = 0.0;
   double surplus = 0.0;
