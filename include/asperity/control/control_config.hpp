@@ -19,7 +19,7 @@ namespace asperity {
 struct control_config {
   probe_config probe{};
   coupling_config coupling{};
-  contact_law contact{};  ///< of support planes; a linear contact brings its own stiffness
+  contact_law contact{};  ///< of support planes, see check(); a linear contact brings its own stiffness
   guard_config guard{};
   contact_ageing ageing{};  ///< how old a contact may be felt
   rate_limits rates{};      ///< how late the loops may be

@@ -302,6 +302,37 @@ TEST(probe_on_planes, stops_where_a_plane_is_not_finite) {
   }
 }
 
+// Numbers of any size from a renderer gone wrong: the probe stays finite, moves no faster than a tool can, or stops.
+TEST(probe_on_planes, stays_finite_whatever_finite_planes_are_told) {
+  drawn d(seed_of(fresh_seed("probe_on_planes_absurd", "3,000 steps"), "absurd"));
+  const virtual_coupling coupling({}, 0.01, 1e-5);
+  int stopped = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const auto absurd = [&] { return (d.bits() % 2 == 0 ? 1.0 : -1.0) * d.log_between(1e-300, 1e300); };
+    support_planes planes;
+    const auto n = static_cast<int>(d.between(1.0, 16.999));
+    for (int i = 0; i < n; ++i) {
+      support_plane p = plane(d.direction(), d.inside(0.05), d.between(-1e-3, 1e-3));
+      if (d.bits() % 3 == 0) p.depth_m = absurd();
+      if (d.bits() % 3 == 0) p.gradient[d.bits() % 6] = absurd();
+      ASSERT_TRUE(planes.push_back(p));
+    }
+    probe tool;
+    tool.reset({exp_rotation(d.inside(3.0)), d.inside(0.1)});
+    contact_solution out;
+    for (int i = 0; i < 3; ++i) {
+      const status s = tool.step_on_planes(1.25e-4, coupling, {}, {}, planes, {}, {}, out);
+      stopped += s == status::ok ? 0 : 1;
+      ASSERT_TRUE(s == status::ok || s == status::not_finite);
+      ASSERT_TRUE(is_valid(tool.state().T_wc)) << trial;
+      ASSERT_TRUE(is_finite(out.on_probe_w)) << trial;
+      ASSERT_LE(glm::length(tool.state().velocity_w.linear), 1e3);
+      ASSERT_LE(glm::length(tool.state().velocity_w.angular), 1e5);
+    }
+  }
+  EXPECT_GT(stopped, 100);
+}
+
 // A free flight is the same with planes far away and without: one solves by elimination, one by Cholesky factors.
 TEST(probe_on_planes, flies_as_without_where_every_plane_is_far) {
   probe with;

@@ -100,7 +100,7 @@ TEST(plane_session, holds_a_block_that_is_pressed) {
 
 // Hands of three kinds come down on a plate of 1 mm as hard as they like: the probe is never past its middle.
 TEST(plane_session, never_goes_through_a_thin_plate) {
-  drawn d(seed_of(fresh_seed("thin_plate", "72 sessions"), "plate"));
+  drawn d(seed_of(fresh_seed("thin_plate", "72 sessions, 720 at length"), "plate"));
   double deepest = 0.0;
   double surplus = 0.0;
   int through = 0;
@@ -140,9 +140,46 @@ TEST(plane_session, never_goes_through_a_thin_plate) {
   EXPECT_GT(through, each);
 }
 
+/// Deepest of presses and taps at up to 0.36 m/s where gaps beyond this are not told.
+double deepest_with_gaps(double told_gap_m, double contact_hz, int sessions, drawn d) {
+  double deepest = 0.0;
+  for (int i = 0; i < sessions; ++i) {
+    plane_case c = block(10.0, {1000, contact_hz});
+    c.body.told_gap_m = told_gap_m;
+    c.hand.seed = d.bits();
+    c.hand.hand = i % 3 == 0 ? soft_hand() : (i % 3 == 1 ? firm_hand() : hand_config{});
+    motion_config& m = c.hand.motion;
+    m.kind = i % 2 == 0 ? motion_kind::press : motion_kind::tap;
+    m.T_dh = {exp_rotation(d.inside(0.05)), {0, 0, 0.01 + d.between(0.002, 0.005)}};
+    m.depth_m = d.between(0.005, 0.02);
+    m.approach_s = d.between(0.1, 0.25);
+    m.amplitude_m = m.depth_m + d.between(0.0, 0.01);
+    m.frequency_hz = d.between(3.0, 6.0);
+    deepest = std::max(deepest, run(c).deepest_m);
+  }
+  return deepest;
+}
+
+// A contact is handed over one period after its pose and used for another: gaps up to three periods' way matter.
+TEST(plane_session, foresees_what_is_told_within_three_periods) {
+  const drawn d(seed_of(fresh_seed("plane_gaps", "8 sessions for each reach"), "gaps"));
+  constexpr double fastest_m_per_s = 0.5;  // of the handle, tremor and uneven taps included
+  for (const double hz : {200.0, 500.0, 1000.0}) {
+    const int sessions = extent(8, 32);
+    EXPECT_LT(deepest_with_gaps(3.0 * fastest_m_per_s / hz, hz, sessions, d), 2e-4) << hz;
+    EXPECT_GT(deepest_with_gaps(0.5 * fastest_m_per_s / hz, hz, sessions, d), 3e-4) << hz;
+    if (!at_length()) continue;
+    std::printf("| %.0f Hz |", hz);
+    for (const double gap_m : {2e-4, 5e-4, 1e-3, 2e-3, 4e-3, 8e-3}) {
+      std::printf(" %.2f mm |", 1e3 * deepest_with_gaps(gap_m, hz, sessions, d));
+    }
+    std::printf("\n");
+  }
+}
+
 // Planes of a corner, a groove and a slot, three hands: no energy. A held force gives some.
 TEST(plane_session, makes_no_energy) {
-  drawn d(seed_of(fresh_seed("plane_energy", "72 sessions"), "energy"));
+  drawn d(seed_of(fresh_seed("plane_energy", "72 sessions, 864 at length"), "energy"));
   const int each = extent(1, 12);
   double held_j = 0.0;
   double surplus = 0.0;
