@@ -248,6 +248,12 @@ TEST(presses_harness, lets_the_force_follow_the_true_depth_past_an_edge) {
   });
   EXPECT_TRUE(weak.weak.found);
   EXPECT_TRUE(weak.falls.found);
+  // As strong as it should be, and into the plate.
+  const press_result pulls = press_by_the_rim(0.4 * mm, 4.0 * mm, [](double, const vec3& force) {
+    return wrench{force.z > 0.0 ? force : vec3(-force.x, 0.0, -0.2 * std::fabs(force.x)), vec3(0.0)};
+  });
+  EXPECT_TRUE(pulls.pulls.found);
+  EXPECT_FALSE(pulls.weak.found);
   const press_result falls = press_by_the_rim(0.4 * mm, 4.0 * mm, [](double, const vec3& force) {
     return wrench{force.z > 0.0 ? force : 0.85 * force, vec3(0.0)};
   });

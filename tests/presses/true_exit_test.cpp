@@ -155,6 +155,18 @@ TEST(press_touch, of_crossed_rods_is_across_both) {
   }
 }
 
+// Whichever edge is named first: what touches from below finds the normals of what lies above pointing down.
+TEST(press_touch, faces_the_approach_whatever_touches) {
+  const triangle_mesh cone = make_press_solid("cone_45_4", fineness::plain).value();
+  oracle::approach_sampler sampler("edges on edges", cone, cone);
+  const std::uint64_t seed = fresh_seed("edges on edges", "60 approaches");
+  for (std::uint64_t i = 0; i < 60; ++i) {
+    const oracle::approach on = sampler.draw(seed, i);
+    EXPECT_NEAR(glm::length(on.out_w), 1.0, 1e-12);
+    EXPECT_LT(glm::dot(on.out_w, on.window.n_ab_w), 1e-12) << "approach " << i;
+  }
+}
+
 // A touch that is repeated by its number, and regions that pairs ask for.
 TEST(press_touch, is_repeatable_and_in_its_region) {
   for (const press_pair& pair : press_pairs()) {
