@@ -20,7 +20,7 @@ struct bounds_of {
   double depth;       ///< of the depth range: the window's width
   double soft_depth;  ///< the same, for a tau that is small beside the window; and of tau a hundred times as much
   double gradient;    ///< per component, angular ones at a lever arm of the window's half size
-  double curvature;   ///< times tau, the same: the error of the covariance that it is made of
+  double curvature;   ///< times tau, the same: the error of the covariance that it is made of, and of its size above 1
 };
 
 struct worst_of {
@@ -49,14 +49,15 @@ void compare(worst_of& worst, const penetration& p, const penetration& q, const 
       std::max(worst.soft_depth, std::fabs(p.soft_depth_m - q.soft_depth_m) / (2.0 * half + 100.0 * tau_m));
   worst.gradient = std::max(worst.gradient, largest(scaled(p.gradient - q.gradient, lever)));
   worst.witness = std::max(worst.witness, glm::length(p.witness_w - q.witness_w) / (2.0 * half));
+  double size = 1.0, off = 0.0;  // of the covariance
   for (std::size_t i = 0; i < 6; ++i) {
-    const double unit_i = i < 3 ? 1.0 : lever;
     for (std::size_t j = 0; j < 6; ++j) {
-      const double unit = unit_i * (j < 3 ? 1.0 : lever);
-      const double difference = std::fabs(p.curvature(i, j) - q.curvature(i, j)) / unit;
-      worst.curvature = std::max(worst.curvature, tau_m * difference);
+      const double unit = (i < 3 ? 1.0 : lever) * (j < 3 ? 1.0 : lever);
+      size = std::max(size, tau_m * std::fabs(p.curvature(i, j)) / unit);
+      off = std::max(off, tau_m * std::fabs(p.curvature(i, j) - q.curvature(i, j)) / unit);
     }
   }
+  worst.curvature = std::max(worst.curvature, off / size);
 }
 
 struct patch_kind {
