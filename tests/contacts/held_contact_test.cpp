@@ -162,7 +162,12 @@ TEST(held_contact, is_let_go_outside_and_where_the_probe_is_put_elsewhere) {
     return held_at({0, 0, 3});
   };
   ASSERT_TRUE(press_in());
-  EXPECT_TRUE(held_at({1, 0, 3}));     // sideways inside
+  EXPECT_TRUE(held_at({1, 0, 3}));    // sideways inside
+  EXPECT_FALSE(held_at({22, 0, 3}));  // inside, but further than across its window in one tick
+  EXPECT_EQ(found.size(), 0U);
+
+  ASSERT_FALSE(held_at({0, 0, 30}));
+  ASSERT_TRUE(press_in());
   EXPECT_FALSE(held_at({200, 0, 3}));  // elsewhere
   EXPECT_EQ(found.size(), 0U);
   EXPECT_FALSE(held_at({0, 0, 3}));  // and back: deep, with no direction that was ever valid

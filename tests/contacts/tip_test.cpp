@@ -103,7 +103,7 @@ TEST(tip, a_symmetric_tip_is_not_pushed_sideways) {
     test::uniform_source random(test_support::seed_of(seed, "pencil", i));
     // Half angles from 63 degrees to 12.5. The window is too small for the softness that the steeper half asks for.
     const bool steep = i % 2 == 1;
-    const double slope = steep ? random(2.5, 4.5) : random(0.5, 2.5);
+    const double slope = steep ? random(2.0, 4.5) : random(0.5, 2.0);
     const double radius = mm * random(2.0, 5.0), shaft = mm * random(10.0, 30.0);
     const auto sides = static_cast<std::size_t>(random(64.0, 128.9));
     const scene bodies{make_model(pencil(sides, radius, slope, shaft), {}), {make_model(slab(), {})}};
@@ -122,6 +122,8 @@ TEST(tip, a_symmetric_tip_is_not_pushed_sideways) {
       worst[steep ? 1 : 0] = std::max(worst[steep ? 1 : 0], s.worst);
     }
   }
+  std::printf("  sideways at most %.2f %% of the normal force, %.2f %% where the slope is above 2\n", 100.0 * worst[0],
+              100.0 * worst[1]);
 }
 
 TEST(tip, a_face_and_a_ridge_are_no_tips) {

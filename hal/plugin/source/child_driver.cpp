@@ -4,8 +4,8 @@
 #include <span>
 #include <utility>
 
-#include "asperity/hal/driver_conversion.hpp"
 #include "child_link.hpp"
+#include "listing_conversion.hpp"
 
 namespace asperity::plugin {
 namespace {
@@ -153,14 +153,8 @@ class child_driver::body {
     }
     std::vector<device_listing> out;
     std::vector<std::unique_ptr<asperity_capabilities>> capabilities;
-    const auto text = [](std::span<const char> field) { return std::string(abi::get_text(field).value_or("")); };
     for (const listed_item& item : *items) {
-      device_listing d{.driver = name_,
-                       .identity = text(item.listing.identity),
-                       .path = text(item.listing.path),
-                       .name = text(item.listing.name),
-                       .maturity = static_cast<driver_maturity>(item.listing.maturity)};
-      if (std::string why = text(item.listing.not_openable); !why.empty()) d.not_openable = std::move(why);
+      device_listing d = from_listing(name_, item.listing);
       if (item.has_capabilities != 0) {
         capabilities.push_back(std::make_unique<asperity_capabilities>(item.capabilities));
         d.capabilities = abi::from_abi(*capabilities.back());
@@ -172,21 +166,15 @@ class child_driver::body {
   }
 
   result<plugin_device> make(const device_listing& which) {
-    auto l = abi::blank<asperity_listing>();
-    if (which.identity.size() >= sizeof l.identity || which.path.size() >= sizeof l.path) {
-      return error{error_code::invalid_argument, "the identity or path of the device is longer than a driver can list"};
-    }
-    l.maturity = static_cast<std::uint32_t>(which.maturity);
-    abi::put_text(l.identity, which.identity);
-    abi::put_text(l.path, which.path);
-    abi::put_text(l.name, which.name);
+    const result<asperity_listing> l = to_listing(which);
+    if (!l) return l.error();
     if (fresh_ == nullptr || !fresh_->what_happened().empty()) {
       if (const result<void> started = start(); !started) return started.error();
     }
     const std::shared_ptr<child_link> link = std::move(fresh_);
     const std::shared_ptr<const driver_module> module = std::move(module_);
     call_answer a{};
-    if (link->make(l, a) != ASPERITY_OK) return error{error_code::io_failed, a.text};
+    if (link->make(*l, a) != ASPERITY_OK) return error{error_code::io_failed, a.text};
     made_.push_back({link, link->last_words()});
     return plugin_device::adopt(module, reinterpret_cast<asperity_device*>(link.get()));
   }

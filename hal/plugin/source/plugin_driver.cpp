@@ -6,6 +6,7 @@
 
 #include "asperity/hal/driver_conversion.hpp"
 #include "guarded_call.hpp"
+#include "listing_conversion.hpp"
 
 namespace asperity::plugin {
 namespace {
@@ -40,13 +41,7 @@ struct gathering {
       problem = *wrong;
       return 1;
     }
-    const auto text = [](std::span<const char> field) { return std::string(*abi::get_text(field)); };
-    device_listing d{.driver = std::string(driver),
-                     .identity = text(l.identity),
-                     .path = text(l.path),
-                     .name = text(l.name),
-                     .maturity = static_cast<driver_maturity>(l.maturity)};
-    if (std::string why = text(l.not_openable); !why.empty()) d.not_openable = std::move(why);
+    device_listing d = from_listing(driver, l);
     if (l.capabilities != nullptr) {
       auto c = std::make_unique<asperity_capabilities>(abi::copy_in(*l.capabilities));
       if (const std::optional<std::string> wrong = find_problem(*c)) {
@@ -83,17 +78,11 @@ result<std::vector<device_listing>> plugin_driver::list() {
 }
 
 result<plugin_device> plugin_driver::make_plugin(const device_listing& which) {
-  auto l = abi::blank<asperity_listing>();
-  if (which.identity.size() >= sizeof l.identity || which.path.size() >= sizeof l.path) {
-    return error{error_code::invalid_argument, "the identity or path of the device is longer than a driver can list"};
-  }
-  l.maturity = static_cast<std::uint32_t>(which.maturity);
-  abi::put_text(l.identity, which.identity);
-  abi::put_text(l.path, which.path);
-  abi::put_text(l.name, which.name);
+  const result<asperity_listing> l = to_listing(which);
+  if (!l) return l.error();
   asperity_device* made = nullptr;
   char text[ASPERITY_TEXT_SIZE] = "";
-  const std::int32_t code = guarded_call([&] { return module_->table().make(&l, &made, text, sizeof text); });
+  const std::int32_t code = guarded_call([&] { return module_->table().make(&*l, &made, text, sizeof text); });
   if (code != ASPERITY_OK) return error{error_code::io_failed, module_->where() + ": " + driver_error(code, text)};
   if (made == nullptr) {
     return error{error_code::bad_format, module_->where() + ": make() says that it made a device, and gives none"};

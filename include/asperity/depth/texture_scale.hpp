@@ -108,7 +108,7 @@ struct pair_scale {
 /// For a push of no more than `share`, tau must be at least p s sqrt(s / (2 pi share)): pitch times slope times a few.
 ///
 /// A radius tau / s beyond a fifth of the window's half size does not fit: its border would cut the weights off
-/// unevenly. Cones steeper than 2.5 therefore keep a push of up to 2 % of the normal force; a finer grid lowers it.
+/// unevenly. Cones steeper than 2 therefore keep a push of up to 2 % of the normal force; a finer grid lowers it.
 ///
 /// The reference area goes with tau from the pair's to the cone's own area 2 pi tau^2 / s^2, in such a way that a tip
 /// reads as deep as with the pair's own tau on a fine grid.
