@@ -276,7 +276,7 @@ void add_run(command_line& line) {
             return extension_error(text, {".png", ".svg"});
           },
           "FILE");
-  add_render_options(sub, o->render);
+  add_render_options(sub, o->render, {"shared", "paper", "field"});
 }
 
 }  // namespace asperity::command

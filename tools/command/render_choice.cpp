@@ -23,6 +23,7 @@ enum class depth_kind : std::uint8_t {
 struct backend_choice {
   const char* name;
   renderer_maker* shared;  ///< with --contacts shared; null: the backend has none, and implies --contacts paper
+  renderer_maker* field;   ///< with --contacts field; null: the backend has none
   renderer_maker* paper;   ///< with --contacts paper; both null: not part of this build
   depth_kind depth;
   bool on_gpu;
@@ -37,11 +38,11 @@ constexpr renderer_maker* gl_occlusion = nullptr;
 #endif
 
 constexpr std::array backends{
-    backend_choice{"cpu", make_shared_on_cpu, make_paper_on_cpu, depth_kind::sampled, false},
-    backend_choice{"exact", nullptr, make_paper_with_exact, depth_kind::searched, false},
-    backend_choice{"cpu-simd", nullptr, nullptr, depth_kind::sampled, false},
-    backend_choice{"gl-occlusion", nullptr, gl_occlusion, depth_kind::as_printed, true},
-    backend_choice{"gl-compute", nullptr, gl_compute, depth_kind::sampled, true},
+    backend_choice{"cpu", make_shared_on_cpu, make_field_on_cpu, make_paper_on_cpu, depth_kind::sampled, false},
+    backend_choice{"exact", nullptr, nullptr, make_paper_with_exact, depth_kind::searched, false},
+    backend_choice{"cpu-simd", nullptr, nullptr, nullptr, depth_kind::sampled, false},
+    backend_choice{"gl-occlusion", nullptr, nullptr, gl_occlusion, depth_kind::as_printed, true},
+    backend_choice{"gl-compute", nullptr, nullptr, gl_compute, depth_kind::sampled, true},
 };
 
 /// @pre the name is one of them: the command line lets no other through
@@ -131,14 +132,15 @@ result<void> check(const render_options& options) {
                                        "libegl-dev, libgl-dev)"
                                      : "")};
   }
-  if (backend.shared == nullptr && options.contacts == "shared") {
+  const bool without_windows = options.contacts == "shared" || options.contacts == "field";
+  if (backend.shared == nullptr && without_windows) {
     return contradiction("--backend " + options.backend +
-                         " looks into the windows of the paper's contacts: leave out --contacts shared");
+                         " looks into the windows of the paper's contacts: leave out --contacts " + *options.contacts);
   }
   if (const result<void> ok = check_gpu(backend, options); !ok) return ok;
   if (const char* const given = given_for_grid(options); given != nullptr && !on_grid(options)) {
     return contradiction(given +
-                         (formulation_name(options) == "shared"
+                         (formulation_name(options) != "paper"
                               ? std::string(" belongs to the paper's contacts: add --contacts paper")
                               : " belongs to depths on a grid: leave it out with --backend " + options.backend));
   }
@@ -148,7 +150,10 @@ result<void> check(const render_options& options) {
 result<chosen_renderer> make_chosen_renderer(scene bodies, const render_options& options) {
   if (const result<void> ok = check(options); !ok) return ok.error();
   const backend_choice& backend = backend_of(options);
-  return (formulation_name(options) == "shared" ? backend.shared : backend.paper)(std::move(bodies), options);
+  const std::string formulation = formulation_name(options);
+  renderer_maker* const make =
+      formulation == "shared" ? backend.shared : (formulation == "field" ? backend.field : backend.paper);
+  return make(std::move(bodies), options);
 }
 
 }  // namespace asperity::command

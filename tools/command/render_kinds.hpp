@@ -11,6 +11,7 @@ namespace asperity::command {
 using renderer_maker = result<chosen_renderer>(scene bodies, const render_options& options);
 
 renderer_maker make_shared_on_cpu;     // shared_on_cpu.cpp
+renderer_maker make_field_on_cpu;      // field_on_cpu.cpp
 renderer_maker make_paper_on_cpu;      // paper_on_cpu.cpp
 renderer_maker make_paper_with_exact;  // paper_with_exact.cpp
 // In builds with OpenGL, where ASPERITY_HAS_GL is defined:

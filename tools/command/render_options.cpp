@@ -1,15 +1,17 @@
 #include "render_options.hpp"
 
 #include <string>
+#include <vector>
 
 #include "asperity/depth/settings.hpp"
 
 namespace asperity::command {
 
-void add_render_options(CLI::App& sub, render_options& options) {
+void add_render_options(CLI::App& sub, render_options& options, const std::vector<std::string>& formulations) {
   sub.add_option("--contacts", options.contacts,
-                 "How many contacts become one force: as one potential, or the paper's clusters and sum")
-      ->check(CLI::IsMember({"shared", "paper"}))
+                 "How many contacts become one force: as one potential, or the paper's clusters and sum" +
+                     std::string(formulations.size() > 2 ? "; or how they hold the probe: by support planes" : ""))
+      ->check(CLI::IsMember(formulations))
       ->default_str("shared");
   sub.add_option("--backend", options.backend,
                  "Depth backend. All but cpu imply --contacts paper. exact searches the maximum itself, for work at a "

@@ -22,14 +22,19 @@ std::string plot_title(const run_command& options, const session_summary& summar
          (summary.mean_contacts() == 1.0 ? " contact" : " contacts on average") + " while touching.";
 }
 
+std::string contacts_in_words(const render_options& options) {
+  const std::string formulation = formulation_name(options);
+  if (formulation == "field") return "contacts as support planes";
+  return formulation == "shared" ? "contacts as one potential" : "contacts as in the paper";
+}
+
 std::string plot_caption(const run_command& options) {
   return (is_simulated(options) ? "Simulated device"
           : is_replay(options)
               ? "Replay of " + printable(std::filesystem::path(replayed_file(options)).filename().string())
               : printable(options.device)) +
          " at 1 kHz, contact loop at " + brief(options.contact_rate_hz) + " Hz, " + clock_of(options) + " clock, " +
-         (formulation_name(options.render) == "shared" ? "contacts as one potential" : "contacts as in the paper") +
-         (is_simulated(options) ? ", seed " + std::to_string(options.seed) : "") +
+         contacts_in_words(options.render) + (is_simulated(options) ? ", seed " + std::to_string(options.seed) : "") +
          "; world axes, torque about the probe's centre of mass.";
 }
 
