@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "support/small_models.hpp"
+#include "unit/field/charted_model.hpp"
 #include "unit/field/field_measures.hpp"
 
 namespace asperity {
@@ -61,6 +62,25 @@ TEST(MakeBodyField, RefusesWallsThatItsNodesCannotShow) {
   EXPECT_EQ(made.error().code, error_code::limit_exceeded);
   EXPECT_NE(made.error().message.find("0.600000 mm"), std::string::npos) << made.error().message;
   EXPECT_TRUE(built_field(make_flat_box({0.03, 0.03, 0.002}, 64), few));
+}
+
+// A needle's points are far from its middle: corners of single triangles, in every order of their corners.
+TEST(MakeBodyField, ThePointsOfAFitReachEveryCorner) {
+  const double step = 0.1e-3;
+  for (const vec3& far :
+       {vec3(0.03, 0.0003, 0.0), vec3(0.0, 0.0003, 0.0), vec3(0.03, 0.003, 0.0), vec3(0.005, 0.03, 0.0)}) {
+    for (std::uint32_t turn = 0; turn < 3; ++turn) {
+      plain_mesh one;
+      one.positions = {vec3(0.0), vec3(0.03, 0.0, 0.0), far};
+      one.triangles = {{turn, (turn + 1) % 3, (turn + 2) % 3}};
+      const textured_model model = make_charted_model(one, 64, [](const vec3& p) { return p; });
+      std::array<double, 3> nearest{1.0, 1.0, 1.0};
+      detail::for_each_fine_point(model, step, [&](const vec3& p) {
+        for (std::size_t k = 0; k < 3; ++k) nearest[k] = std::min(nearest[k], glm::length(p - one.positions[k]));
+      });
+      for (const double d : nearest) EXPECT_LE(d, 1.5 * step);
+    }
+  }
 }
 
 TEST(MakeBodyField, KeepsToItsLimits) {
