@@ -87,12 +87,16 @@ class field_depth {
     near_plane out;
     // A smooth distance grows by little more than a metre per metre.
     constexpr double steepest = 1.2;
-    const double most_m = in_y.coarse(T_yx * leaf.centre_b).value_m + steepest * leaf.radius_m + in_y.largest_relief_m;
+    const double most_m = in_y.coarse(T_yx * leaf.centre_b).value_m + steepest * leaf.radius_m + in_y.highest_relief_m;
     if (most_m <= -reach_m_) return out;
     vec3 slope_y(0.0), point_x(0.0);
     const quat rotation_xy = glm::conjugate(T_yx.rotation);
     for (const field_sample& s : leaf.samples()) {
-      const field_reading d = in_y.read(T_yx * vec3(s.position_b));
+      const vec3 p_y = T_yx * vec3(s.position_b);
+      const coarse_reading smooth = in_y.coarse(p_y);
+      if (!(smooth.value_m + in_y.highest_relief_m > out.plane.depth_m)) continue;
+      const field_reading relief = in_y.relief(p_y, smooth);
+      const field_reading d{smooth.value_m + relief.value_m, smooth.slope + relief.slope};
       if (!(d.value_m > out.plane.depth_m)) continue;
       const double squared = glm::dot(d.slope, d.slope);
       if (!(squared > least_slope * least_slope)) continue;
