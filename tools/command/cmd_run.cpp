@@ -165,7 +165,9 @@ result<answer> run_session(const run_command& options, const common_options& com
     guard.emplace(watch, [&](const std::string& what) { abandon(rescue, *files, what, common.json); });
   }
   if (const result<void> opened = open_device(options, *bodies, felt); !opened) return opened.error();
-  result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), options.render);
+  render_options chosen = options.render;
+  chosen.contact_rate_hz = options.contact_rate_hz;
+  result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), chosen);
   if (!feel) return feel.error();
   const std::shared_ptr<gpu_use> gpu = feel->gpu();
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
