@@ -20,13 +20,13 @@ using test_support::fresh_seed;
 
 constexpr double deepest_allowed_m = 1e-3;  // of the point that touched first, for the models' errors and the springs
 
-/// The pairs of an ordinary run: a thin plate, textured bodies of every kind, a scan; and those of a run at length.
+/// The pairs of an ordinary run, a thin plate and textured bodies; and those of a run at length, all of them.
 std::vector<press_pair> pairs_of_this_run() {
   const std::vector<press_pair> all = press_pairs();
   if (test_support::at_length()) return all;
   std::vector<press_pair> out;
   for (const press_pair& p : all) {
-    for (const char* name : {"ball_2 on plate_1", "block on gear", "hammer on torus", "ball_10 on corner"}) {
+    for (const char* name : {"ball_2 on plate_1", "block on gear", "hammer on torus"}) {
       if (p.name() == name) out.push_back(p);
     }
   }
@@ -60,7 +60,7 @@ void press_every_pair(const char* name, const std::vector<press_pair>& pairs, in
 
 TEST(held_sessions, no_hand_passes_support_planes) {
   press_every_pair(
-      "held_sessions", pairs_of_this_run(), extent(2, 20), [](const render_function& whole) { return whole; },
+      "held_sessions", pairs_of_this_run(), extent(1, 20), [](const render_function& whole) { return whole; },
       [](const press_pair& pair, const session_row& row) {
         for (const session_result& s : row.sessions) {
           EXPECT_FALSE(s.passed) << pair.name();
@@ -75,7 +75,7 @@ TEST(held_sessions, no_hand_passes_support_planes) {
 TEST(held_sessions, a_layer_of_planes_lets_hands_through) {
   std::vector<press_pair> pairs;
   for (const press_pair& p : press_pairs()) {
-    if (p.name() == "ball_10 on slab" || p.name() == "block on gear") pairs.push_back(p);
+    if (p.name() == "block on gear") pairs.push_back(p);
   }
   int passed = 0;
   press_every_pair(
@@ -97,7 +97,7 @@ TEST(held_sessions, a_layer_of_planes_lets_hands_through) {
           return s.passed || s.deepest_m > deepest_allowed_m;
         }));
       });
-  EXPECT_GE(passed, 2) << "of 4";
+  EXPECT_GE(passed, 1) << "of 2";
 }
 
 }  // namespace

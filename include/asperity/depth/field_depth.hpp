@@ -65,7 +65,9 @@ class field_depth {
 
   /// The planes of the last measure(), gaps included.
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return told_; }
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(told_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(told_) + sizeof(field_scene) + bodies_->heap_bytes();
+  }
 
  private:
   // How far a sample whose surface looks away from the direction that it would be pushed in may count: in full up to 35

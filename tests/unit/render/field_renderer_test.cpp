@@ -207,6 +207,15 @@ TEST(FieldRenderer, RefusesWhatItCannotRender) {
   EXPECT_EQ(make_field_renderer(bodies, s).error().code, error_code::invalid_argument);
 }
 
+TEST(FieldRenderer, CountsItsFieldsAsItsMemory) {
+  const scene bodies = two_boxes();
+  const field_renderer feel = make_field_renderer(bodies, fields_of(bodies)).value();
+  const std::size_t fields = fields_of(bodies)->heap_bytes();
+  EXPECT_GT(fields, 1'000'000U);
+  EXPECT_GT(feel.memory_bytes(), fields + near_sample_limits{}.leaves * (sizeof(near_leaf) + sizeof(near_plane)));
+  EXPECT_LT(feel.memory_bytes(), fields + 20'000'000U);
+}
+
 TEST(FieldRenderer, RefusesPosesThatAreNone) {
   field_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
