@@ -60,7 +60,7 @@ void press_every_pair(const char* name, const std::vector<press_pair>& pairs, in
 
 TEST(held_sessions, no_hand_passes_support_planes) {
   press_every_pair(
-      "held_sessions", pairs_of_this_run(), extent(1, 20), [](const render_function& whole) { return whole; },
+      "held_sessions", pairs_of_this_run(), extent(1, 2), [](const render_function& whole) { return whole; },
       [](const press_pair& pair, const session_row& row) {
         for (const session_result& s : row.sessions) {
           EXPECT_FALSE(s.passed) << pair.name();
