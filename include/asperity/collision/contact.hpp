@@ -35,7 +35,7 @@ struct contact {
   /// How steeply the coarse surfaces fall away from the place of contact in every direction, m per m: the slope of the
   /// cone that they are; 0 for a face or a ridge.
   double tip_slope = 0.0;
-  bool held = false;          ///< too deep for a direction of its own: it keeps the last valid one (held_contact.hpp)
+  bool held = false;  ///< too deep for a direction of its own: it keeps the last valid one (held_contact.hpp)
   std::uint32_t first_a = 0, count_a = 0;  ///< patch of A: range in contact_set::triangles
   std::uint32_t first_b = 0, count_b = 0;  ///< patch of B: range in contact_set::triangles
 };
