@@ -10,6 +10,10 @@
 namespace asperity::presses {
 namespace {
 
+// A probe that slips round a body lies in its far side as well, by what its contact gives there. One that has passed
+// lay as deep as half the thickness; a quarter of it is asked for, of thick bodies a millimetre.
+double least_passing_m(const press_touch& touch) { return 0.25 * std::min(touch.fixed_thickness_m, 4e-3); }
+
 constexpr double far_side = 0.5;  // cosine between the way of the press and what the nearest surface faces
 
 struct rendered {
@@ -72,12 +76,13 @@ session_result press_session(render_function render, const press_touch& touch, c
       out.gave_way_at_n = out.largest_n;
     }
     const vec3 back = p + rules.looks_across_m * touch.out_w;
-    out.passed = fixed.contains(back) && fixed.distance_to(back) - depth > far_side * rules.looks_across_m;
+    out.passed = depth > least_passing_m(touch) && fixed.contains(back) &&
+                 fixed.distance_to(back) - depth > far_side * rules.looks_across_m;
     if (!out.passed) out.deepest_m = std::max(out.deepest_m, depth);
   }
   if (!out.passed && !originals.apart(now.T_wa)) {
     const way_out exit = originals.true_exit(now.T_wa, touch.out_w);
-    out.passed = glm::dot(exit.direction_w, touch.out_w) < -far_side;
+    out.passed = exit.way_m > least_passing_m(touch) && glm::dot(exit.direction_w, touch.out_w) < -far_side;
   }
   out.passed_at_n = out.passed ? out.largest_n : 0.0;
   return out;

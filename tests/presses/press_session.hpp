@@ -41,8 +41,10 @@ struct session_result {
 
 /// One session of one touch; it ends where the probe has passed. Whether it has is asked of the originals: the point of
 /// the probe that touched first is followed in every device tick, and has passed where the fixed body's nearest surface
-/// faces the way of the press; at the end the shortest way out of the whole probe is asked for. The true depth of the
-/// bodies is at least that point's depth: the contact has given way where its force is less than weak_share k of it.
+/// faces the way of the press, a quarter of the thickness away at least: a probe that slips round a body touches its
+/// far side without having passed. At the end the shortest way out of the whole probe is asked for in the same way. The
+/// true depth of the bodies is at least that point's depth: the contact has given way where its force is less than
+/// weak_share k of it.
 /// @param centre_of_mass_a of the probe's model: the handle is there
 [[nodiscard]] session_result press_session(render_function render, const press_touch& touch,
                                            const vec3& centre_of_mass_a, const session_rules& rules, std::uint64_t seed,
