@@ -18,9 +18,9 @@ using GlComputeAgreement = test_support::gl_test;
 
 struct bounds_of {
   double depth;       ///< of the depth range: the window's width
-  double soft_depth;  ///< the same, for a tau that is small beside the window; and of tau a hundred times as much
+  double soft_depth;  ///< the same
   double gradient;    ///< per component, angular ones at a lever arm of the window's half size
-  double curvature;   ///< times tau, the same: the error of the covariance that it is made of, and of its size above 1
+  double curvature;   ///< times tau, the same: the error of the covariance that it is made of
 };
 
 struct worst_of {
@@ -45,19 +45,17 @@ void compare(worst_of& worst, const penetration& p, const penetration& q, const 
   ++worst.overlapping;
   const double half = w.half_size_m, lever = glm::length(w.centre_w - centre_of_mass_w) + half;
   worst.depth = std::max(worst.depth, std::fabs(p.depth_m - q.depth_m) / (2.0 * half));
-  worst.soft_depth =
-      std::max(worst.soft_depth, std::fabs(p.soft_depth_m - q.soft_depth_m) / (2.0 * half + 100.0 * tau_m));
+  worst.soft_depth = std::max(worst.soft_depth, std::fabs(p.soft_depth_m - q.soft_depth_m) / (2.0 * half));
   worst.gradient = std::max(worst.gradient, largest(scaled(p.gradient - q.gradient, lever)));
   worst.witness = std::max(worst.witness, glm::length(p.witness_w - q.witness_w) / (2.0 * half));
-  double size = 1.0, off = 0.0;  // of the covariance
   for (std::size_t i = 0; i < 6; ++i) {
+    const double unit_i = i < 3 ? 1.0 : lever;
     for (std::size_t j = 0; j < 6; ++j) {
-      const double unit = (i < 3 ? 1.0 : lever) * (j < 3 ? 1.0 : lever);
-      size = std::max(size, tau_m * std::fabs(p.curvature(i, j)) / unit);
-      off = std::max(off, tau_m * std::fabs(p.curvature(i, j) - q.curvature(i, j)) / unit);
+      const double unit = unit_i * (j < 3 ? 1.0 : lever);
+      const double difference = std::fabs(p.curvature(i, j) - q.curvature(i, j)) / unit;
+      worst.curvature = std::max(worst.curvature, tau_m * difference);
     }
   }
-  worst.curvature = std::max(worst.curvature, off / size);
 }
 
 struct patch_kind {
@@ -69,7 +67,6 @@ constexpr std::array<patch_kind, 8> kinds{
 void run(const char* name, const context_ptr& context, const depth_settings& settings, arithmetic a,
          std::size_t contacts_each, const bounds_of& allowed) {
   worst_of worst;
-  std::size_t tips = 0;
   std::optional<compute_depth> before;  // kept so that its program is there for the next
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const auto& kind = kinds[k];
@@ -86,24 +83,14 @@ void run(const char* name, const context_ptr& context, const depth_settings& set
     before.emplace(*std::move(made));
     const std::vector<penetration> wanted = test_support::measure_one_by_one(reference, s);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      const contact& c = s.contacts.contacts()[i];
-      const double pitch_m = 2.0 * c.window.half_size_m / settings.grid;
-      // The paper's differences have no tau that grows at a tip.
-      const double tip_slope = settings.gradient == gradient_scheme::soft_max ? c.tip_slope : 0.0;
-      const double tau_m = asperity::detail::scale_at(settings, {.tau_m = reference.tau_m(0), .reference_area_m2 = 1.0},
-                                                      pitch_m, tip_slope)
-                               .tau_m;
-      tips += tau_m > reference.tau_m(0) ? 1U : 0U;
-      compare(worst, found[i], wanted[i], centre_of_mass_w(s.bodies, s.T_wa[i]), c.window, tau_m);
+      compare(worst, found[i], wanted[i], centre_of_mass_w(s.bodies, s.T_wa[i]), s.contacts.contacts()[i].window,
+              reference.tau_m(0));
     }
   }
   std::printf("| %-28s | %5zu | %5zu | %8.1e | %8.1e | %8.1e | %8.1e | %8.1e | %zu | %zu |\n", name, worst.contacts,
               worst.overlapping, worst.depth, worst.soft_depth, worst.gradient, worst.curvature, worst.witness,
               worst.other_flags, worst.other_samples);
   EXPECT_GT(2 * worst.overlapping, worst.contacts);
-  if (settings.gradient == gradient_scheme::soft_max) {
-    EXPECT_GT(10 * tips, worst.contacts);
-  }
   EXPECT_LE(worst.depth, allowed.depth);
   EXPECT_LE(worst.soft_depth, allowed.soft_depth);
   EXPECT_LE(worst.gradient, allowed.gradient);

@@ -207,7 +207,7 @@ void job_writer::write_header(const contact& c, const pose& T_wa, const pose& T_
     const vec3 rest = centre_b - near;
     numbers.add_vector(vec3(glm::dot(map.u_b, rest), glm::dot(map.v_b, rest), glm::dot(map.n_b, rest)) / half);
   }
-  numbers.add(pair(c).tau_m / half);
+  numbers.add(pairs_[c.body].tau_m / half);
   numbers.add(taper_width(sample_grid(settings_.grid, half)) / half);
 }
 

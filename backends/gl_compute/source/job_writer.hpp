@@ -53,12 +53,7 @@ class job_writer {
   }
   [[nodiscard]] const scene& bodies() const noexcept { return scene_; }
   [[nodiscard]] const depth_settings& settings() const noexcept { return settings_; }
-  /// The scales that hold for a contact, as cpu_depth has them.
-  [[nodiscard]] detail::pair_scale pair(const contact& c) const noexcept {
-    return settings_.gradient == gradient_scheme::central_difference
-               ? pairs_[c.body]
-               : scale_at(settings_, pairs_[c.body], 2.0 * c.window.half_size_m / settings_.grid, c.tip_slope);
-  }
+  [[nodiscard]] const detail::pair_scale& pair(std::size_t body) const noexcept { return pairs_[body]; }
   [[nodiscard]] vec3 rotation_origin_w(const contact& c, const pose& T_wa) const noexcept {
     return settings_.origin == rotation_origin::contact ? c.window.centre_w : centre_of_mass_w(scene_, T_wa);
   }

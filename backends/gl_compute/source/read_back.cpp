@@ -131,7 +131,7 @@ bool soften(penetration& to, const number_list& results, std::size_t groups, std
 penetration read_back(const job_writer& writer, const number_list& results, std::size_t groups,
                       const contact_jobs& place, const contact& c, const pose& T_wa) noexcept {
   const detail::sample_grid grid(writer.settings().grid, c.window.half_size_m);
-  const detail::pair_scale pair = writer.pair(c);
+  const detail::pair_scale& pair = writer.pair(c.body);
   const double half = grid.half_m;
   const job_sum here = sum_of(results, groups, place.first_job, grid);
   const depth_flag texels = here.bad_texel ? depth_flag::bad_texel : depth_flag::none;

@@ -32,10 +32,7 @@ struct contact {
   contact_window window;      ///< its n_ab_w is the contact's direction: unit, from A towards B
   std::uint32_t body = 0;     ///< index of B in scene::fixed
   std::uint32_t id = 0;       ///< the same contact keeps its id from tick to tick
-  /// How steeply the coarse surfaces fall away from the place of contact in every direction, m per m: the slope of the
-  /// cone that they are; 0 for a face or a ridge.
-  double tip_slope = 0.0;
-  bool held = false;  ///< too deep for a direction of its own: it keeps the last valid one (held_contact.hpp)
+  bool held = false;          ///< too deep for a direction of its own: it keeps the last valid one (held_contact.hpp)
   std::uint32_t first_a = 0, count_a = 0;  ///< patch of A: range in contact_set::triangles
   std::uint32_t first_b = 0, count_b = 0;  ///< patch of B: range in contact_set::triangles
 };

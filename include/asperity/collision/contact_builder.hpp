@@ -31,9 +31,6 @@ namespace asperity {
 /// - Patch: every facing triangle of the body, from whatever piece, that may reach into the window grown by a tenth
 ///   (gradients move A a little) and whose heights come within 2 t + 2 d of the window's centre. Sheets further off,
 ///   and the far side of a thin part, stay out.
-/// - Tip slope: over A's and B's part within t / 20 of their extreme height, the mean of grad h grad h^T, added up;
-/// twice
-///   its smaller eigenvalue is the square of the slope of a cone, and zero for a face or a ridge.
 /// - Witness points: over the middle of the place where both surfaces are within t / 20 of their extreme height in the
 ///   region; a tie between parallel faces gives the middle of their overlap, not one of its corners.
 class contact_builder {
@@ -164,41 +161,10 @@ class contact_builder {
     });
   }
 
-  /// Mean of grad h grad h^T over a surface, h its height along n over the window plane.
-  struct slope_tensor {
-    double uu = 0.0, uv = 0.0, vv = 0.0;
-    double area_m2 = 0.0;
-
-    void add(const clipped_polygon& part, const vec3& normal) noexcept {
-      double doubled = 0.0;
-      for (std::size_t i = 0; i < part.size(); ++i) {
-        const vec3 &p = part[i], &q = part[(i + 1) % part.size()];
-        doubled += p.x * q.y - p.y * q.x;
-      }
-      const double area = 0.5 * std::fabs(doubled);
-      const vec2 slope = vec2(normal) / normal.z;
-      area_m2 += area;
-      uu += area * slope.x * slope.x;
-      uv += area * slope.x * slope.y;
-      vv += area * slope.y * slope.y;
-    }
-    [[nodiscard]] slope_tensor mean() const noexcept {
-      if (!(area_m2 > 0.0)) return {};
-      return {uu / area_m2, uv / area_m2, vv / area_m2, 1.0};
-    }
-  };
-
-  [[nodiscard]] static double cone_slope(const slope_tensor& a, const slope_tensor& b) noexcept {
-    const slope_tensor on_a = a.mean(), on_b = b.mean();
-    const double uu = on_a.uu + on_b.uu, uv = on_a.uv + on_b.uv, vv = on_a.vv + on_b.vv;
-    const double smaller = 0.5 * (uu + vv - std::sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv));
-    return std::sqrt(2.0 * std::max(smaller, 0.0));
-  }
-
-  /// Extreme height of a patch over the region and the box of what lies within `thin` of it; `slope` is added to.
+  /// Extreme height of a patch over the region and the box of what lies within `thin` of it.
   static plane_box extreme_place(const collision_body& body, std::span<const std::uint32_t> patch,
                                  const window_projection& to, double side, const height_slab& slab,
-                                 const plane_box& region, double thin, slope_tensor& slope) noexcept {
+                                 const plane_box& region, double thin) noexcept {
     double top = -std::numeric_limits<double>::infinity();
     for (const std::uint32_t t : patch) {
       for (const vec3& p : clip(projected(body, t, to), slab, region)) top = std::max(top, side * p.z);
@@ -209,9 +175,7 @@ class contact_builder {
     for (const std::uint32_t t : patch) {
       const auto uvh = projected(body, t, to);
       if (std::max({side * uvh[0].z, side * uvh[1].z, side * uvh[2].z}) < top - thin) continue;
-      const clipped_polygon part = clip(uvh, cap, region);
-      for (const vec3& p : part) place.add(p);
-      slope.add(part, to.to_uvh * body.triangle_normals[t]);
+      for (const vec3& p : clip(uvh, cap, region)) place.add(p);
     }
     return place;
   }
@@ -232,10 +196,8 @@ class contact_builder {
   bool find_witness(const collision_body& a, const collision_body& b, const window_projection& to_a,
                     const window_projection& to_b, const height_slab& slab, const plane_box& region, double thin,
                     contact& out) const noexcept {
-    slope_tensor slope_a, slope_b;
-    const plane_box place = intersection(extreme_place(a, patch_a_, to_a, 1.0, slab, region, thin, slope_a),
-                                         extreme_place(b, patch_b_, to_b, -1.0, slab, region, thin, slope_b));
-    out.tip_slope = cone_slope(slope_a, slope_b);
+    const plane_box place = intersection(extreme_place(a, patch_a_, to_a, 1.0, slab, region, thin),
+                                         extreme_place(b, patch_b_, to_b, -1.0, slab, region, thin));
     if (place.empty()) return false;
     const vec2 at = place.centre();
     double height_a = 0.0, height_b = 0.0;

@@ -73,7 +73,7 @@ class cpu_depth {
   }
 
   [[nodiscard]] const depth_settings& settings() const noexcept { return settings_; }
-  /// Softness that is in force against fixed body `body`, m; a contact at a tip may have a larger one.
+  /// Softness that is in force against fixed body `body`, m.
   [[nodiscard]] double tau_m(std::size_t body) const noexcept { return pairs_[body].tau_m; }
   /// Reference area A0 that is in force against fixed body `body`, m^2.
   [[nodiscard]] double reference_area_m2(std::size_t body) const noexcept { return pairs_[body].reference_area_m2; }
@@ -157,13 +157,12 @@ class cpu_depth {
     if (!(window.half_size_m > 0.0) || !std::isfinite(window.half_size_m)) return out;
     const sample_grid grid(settings_.grid, window.half_size_m);
     const std::size_t fixed = std::size_t{c.body} + 1;
-    const bool differences = settings_.gradient == gradient_scheme::central_difference;
-    const pair_scale pair =
-        differences ? pairs_[c.body] : scale_at(settings_, pairs_[c.body], grid.pitch_m, c.tip_slope);
+    const pair_scale& pair = pairs_[c.body];
     const vec3 centre_w = centre_of_mass_w(scene_, at.T_wa);
     const evaluation e{c, grid, contacts.patch_a(c), at.T_wa, centre_w, pair};
 
     // B does not move: its heights serve every pose of A. Where A only stands still, only shared samples are read.
+    const bool differences = settings_.gradient == gradient_scheme::central_difference;
     const window_map map_a(window, at.T_wa), map_b(window, at.T_wb[c.body]);
     project(a_, 0, e.patch_a, map_a, layer::highest, grid);
     project(b_, fixed, contacts.patch_b(c), map_b, layer::lowest, grid);

@@ -37,8 +37,7 @@ struct depth_settings {
 
   /// Softness of the maximum, m. 0: 2 % of the larger relief of the two bodies (peak to valley of the sine with the
   /// same mean square height), and at least 20 millionths of the smaller body's diagonal, so that untextured faces do
-  /// not chatter either. Where a contact is the tip of a cone it is raised to what the grid can see (scale_at in
-  /// texture_scale.hpp).
+  /// not chatter either.
   double tau_m = 0.0;
 
   /// A0 of the soft maximum, m^2: the contact area at which the soft depth equals the deepest sample. 0: 2 pi tau /

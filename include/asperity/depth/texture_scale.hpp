@@ -97,40 +97,6 @@ struct pair_scale {
   return out;
 }
 
-/// The scales that hold for one contact: its tip must not be sharper than the grid can see.
-///
-/// The soft maximum of a cone of slope s weighs a sample at distance r from the tip by exp(-s r / tau). Sampled at
-/// pitch p, the sum of weights is N = 2 pi (tau / (s p))^2 samples. Every sample has its opposite but one: the sample
-/// that lies on the tip reads one flank, and pushes sideways by s of the normal force. Its share is 1 / N, so the push
-/// is s / N = s^3 p^2 / (2 pi tau^2) of the normal force, at most. Fourier's picture is the same: the lattice sees
-/// exp(-s r / tau) at the wave number k = 2 pi / p, where its transform falls as (s / (k tau))^3, and the derivative of
-/// tau ln(sum) has the amplitude s^3 p^2 / (2 pi^2 tau^2), to which the higher wave numbers add.
-/// For a push of no more than `share`, tau must be at least p s sqrt(s / (2 pi share)): pitch times slope times a few.
-///
-/// A radius tau / s beyond a fifth of the window's half size does not fit: its border would cut the weights off
-/// unevenly. Cones steeper than 2 therefore keep a push of up to 2 % of the normal force; a finer grid lowers it.
-///
-/// The reference area goes with tau from the pair's to the cone's own area 2 pi tau^2 / s^2, in such a way that a tip
-/// reads as deep as with the pair's own tau on a fine grid.
-/// @param tip_slope  contact::tip_slope
-/// @rt safe
-[[nodiscard]] inline pair_scale scale_at(const depth_settings& s, pair_scale pair, double pitch_m,
-                                         double tip_slope) noexcept {
-  constexpr double share = 0.004;         // for both axes, and for creases between flanks, less than 1 %
-  constexpr double largest_radius = 0.2;  // of the window's half size
-  constexpr double full_turn = 2.0 * std::numbers::pi;
-  if (s.tau_m > 0.0 || !(tip_slope > 0.0)) return pair;
-  const double radius_pitches = std::min(std::sqrt(tip_slope / (full_turn * share)), 0.5 * largest_radius * s.grid);
-  const double least_m = pitch_m * tip_slope * radius_pitches;
-  if (least_m <= pair.tau_m) return pair;
-  if (!(s.reference_area_m2 > 0.0)) {
-    const double cone_m2 = full_turn * least_m * least_m / (tip_slope * tip_slope);
-    pair.reference_area_m2 = cone_m2 * std::pow(pair.reference_area_m2 / cone_m2, pair.tau_m / least_m);
-  }
-  pair.tau_m = least_m;
-  return pair;
-}
-
 /// Step of the central differences for a sample pitch p: large enough not to see the grid, small enough not to smear
 /// the texture.
 /// @source spec sections 3.2 and 8
