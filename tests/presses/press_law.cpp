@@ -137,4 +137,21 @@ session_row press_sessions(const press_pair& pair, const press_body& probe, cons
   return row;
 }
 
+rest_row rest_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
+                       const render_function& render, const press_choice& which) {
+  const auto start = std::chrono::steady_clock::now();
+  rest_row row{pair.probe, pair.fixed, {}, 0.0};
+  touch_finder finder(pair.name(), probe.full, fixed.full, pair.region);
+  for (int i = 0; i < which.first + which.touches; ++i) {
+    const std::optional<press_touch> touch = finder.next(which.seed);
+    if (!touch) break;
+    if (i < which.first) continue;
+    row.rests.push_back(rest_session(render, *touch, probe.model->mass.centre_of_mass,
+                                     drawn_rest(which.seed, pair.name(), touch->index),
+                                     test_support::seed_of(which.seed, pair.name(), touch->index)));
+  }
+  row.seconds = seconds(std::chrono::steady_clock::now() - start);
+  return row;
+}
+
 }  // namespace asperity::presses

@@ -8,6 +8,7 @@
 #include "asperity/core/status.hpp"
 #include "presses/press_pairs.hpp"
 #include "presses/press_session.hpp"
+#include "presses/rest_session.hpp"
 #include "presses/run_press.hpp"
 
 namespace asperity::presses {
@@ -51,5 +52,9 @@ struct press_choice {
 /// Sessions of one pair under a renderer.
 [[nodiscard]] session_row press_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
                                          const render_function& render, const press_choice& which);
+
+/// Hands at rest on one pair under a renderer, each by rules drawn anew.
+[[nodiscard]] rest_row rest_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
+                                     const render_function& render, const press_choice& which);
 
 }  // namespace asperity::presses

@@ -85,6 +85,16 @@ std::vector<press_pair> press_pairs() {
   };
 }
 
+std::vector<press_pair> benchmark_pairs() {
+  std::vector<press_pair> out;
+  for (const std::string_view probe : benchmarks) {
+    for (const std::string_view fixed : benchmarks) {
+      if (probe != fixed) out.push_back({std::string(probe), std::string(fixed), {}});
+    }
+  }
+  return out;
+}
+
 std::string why_without_body(std::string_view name) {
   const oracle::real_mesh* const mesh = scan(name);
   return mesh == nullptr ? "" : test_support::why_without(mesh->file);

@@ -26,6 +26,9 @@ struct press_pair {
 /// their inner walls.
 [[nodiscard]] std::vector<press_pair> press_pairs();
 
+/// Every ordered pair of two benchmark models.
+[[nodiscard]] std::vector<press_pair> benchmark_pairs();
+
 /// A body with its original.
 struct press_body {
   std::string name;

@@ -16,11 +16,6 @@ double least_passing_m(const press_touch& touch) { return 0.25 * std::min(touch.
 
 constexpr double far_side = 0.5;  // cosine between the way of the press and what the nearest surface faces
 
-struct rendered {
-  const render_function* render;
-  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept { return (*render)(at, out); }
-};
-
 struct keep_last {
   session_record last;
   void operator()(const session_record& r) noexcept { last = r; }

@@ -16,6 +16,12 @@ namespace asperity::presses {
 /// A renderer's step().
 using render_function = std::function<status(const scene_pose& at, tick& out)>;
 
+/// It as a session takes it.
+struct rendered {
+  const render_function* render;
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept { return (*render)(at, out); }
+};
+
 /// How a session presses. A firm hand pulls the handle along the touch's direction, from just before the touch, until
 /// hand and coupling would hold `hand_n` against a wall.
 struct session_rules {

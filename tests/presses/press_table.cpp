@@ -9,6 +9,7 @@
 
 #include "presses/press_law.hpp"
 #include "presses/press_session.hpp"
+#include "presses/rest_session.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace {
@@ -18,7 +19,7 @@ using namespace asperity::presses;
 
 constexpr char usage[] =
     "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
-    "[--sessions] [--dump]\n"
+    "[--sessions | --rests] [--dump]\n"
     "  --law NAME    default or paper (renderers), field (the renderer for control loops, with --sessions) or exit "
     "(the\n"
     "                originals' own true depth, slow, without --sessions)\n"
@@ -28,6 +29,8 @@ constexpr char usage[] =
     "  --step MM     between two steps of a press (0.1)\n"
     "  --own         solids are their own coarse meshes; otherwise they are simplified\n"
     "  --sessions    a simulated hand presses with up to 20 N instead, through device and coupling\n"
+    "  --rests       a simulated hand rests instead, pressed in by 2 to 30 mm, and what trembles is told; without\n"
+    "                --pair on all ordered pairs of the benchmark models\n"
     "  --dump        every step of every press as well\n"
     "The touches are those of the day; ASPERITY_SEED=N repeats a run. The benchmark models and the scans are taken "
     "from\n"
@@ -39,7 +42,7 @@ struct arguments {
   std::vector<press_pair> pairs;
   press_choice which;
   press_bake solids = press_bake::simplified;
-  bool sessions = false, dump = false;
+  bool sessions = false, rests = false, dump = false;
 };
 
 press_pair pair_named(const std::string& text) {
@@ -58,6 +61,8 @@ bool parse(int argc, char** argv, arguments& to) {
       to.solids = press_bake::own_coarse;
     } else if (name == "--sessions") {
       to.sessions = true;
+    } else if (name == "--rests") {
+      to.rests = true;
     } else if (name == "--dump") {
       to.dump = true;
     } else if (i + 1 == argc) {
@@ -76,7 +81,7 @@ bool parse(int argc, char** argv, arguments& to) {
       return false;
     }
   }
-  if (to.pairs.empty()) to.pairs = press_pairs();
+  if (to.pairs.empty()) to.pairs = to.rests ? benchmark_pairs() : press_pairs();
   return to.which.touches > 0 && to.which.first >= 0 && to.which.step_m > 0.0;
 }
 
@@ -99,14 +104,20 @@ int main(int argc, char** argv) {
   }
   const std::vector<press_law> laws = known_laws();
   const auto law = std::find_if(laws.begin(), laws.end(), [&](const press_law& l) { return l.name == asked.law; });
-  if (law == laws.end() || (asked.sessions ? !law->render : !law->make)) {
+  if (law == laws.end() || (asked.sessions || asked.rests ? !law->render : !law->make)) {
     std::fputs(usage, stderr);
     return 2;
   }
   press_choice which = asked.which;
   which.seed = test_support::fresh_seed("presses", std::to_string(which.touches) + " touches a pair");
   press_shelf shelf(asked.solids);
-  asked.sessions ? print_session_heading(stdout) : print_heading(stdout);
+  if (asked.rests) {
+    print_rest_heading(stdout);
+  } else if (asked.sessions) {
+    print_session_heading(stdout);
+  } else {
+    print_heading(stdout);
+  }
   int failed = 0;
   for (const press_pair& pair : asked.pairs) {
     const auto start = std::chrono::steady_clock::now();
@@ -120,10 +131,14 @@ int main(int argc, char** argv) {
       ++failed;
       continue;
     }
-    if (asked.sessions) {
+    if (asked.sessions || asked.rests) {
       const result<render_function> render = law->render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
       if (render) {
-        print_row(stdout, press_sessions(pair, **probe, **fixed, *render, which));
+        if (asked.rests) {
+          print_row(stdout, rest_sessions(pair, **probe, **fixed, *render, which));
+        } else {
+          print_row(stdout, press_sessions(pair, **probe, **fixed, *render, which));
+        }
         continue;
       }
       std::printf("%s: %s\n", pair.name().c_str(), render.error().message.c_str());
