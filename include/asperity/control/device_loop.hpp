@@ -122,7 +122,7 @@ class device_loop {
       static_cast<void>(device_->disarm());
     }
     if (placed_) {
-      shared_->poses.back() = {motion_.probe().state().T_wc, now_ns};
+      shared_->poses.back() = {motion_.probe().state().T_wc, now_ns, motion_.pull()};
       shared_->poses.publish();
     }
     report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);

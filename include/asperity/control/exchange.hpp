@@ -5,15 +5,17 @@
 #include <cstdint>
 
 #include "asperity/control/linear_contact.hpp"
+#include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/triple_buffer.hpp"
 
 namespace asperity {
 
-/// Where the probe was, and when.
+/// Where the probe was, when, and how the virtual coupling pulled at it: enough to know where it will come to rest.
 struct timed_pose {
   pose T_wc{};  ///< the probe's centre-of-mass frame
   std::int64_t time_ns = 0;
+  coupling_pull pull{};
 };
 
 /// How an application shows that it is alive: any of its threads beats, the device thread counts. It carries no time,

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "asperity/control/exchange.hpp"
+#include "asperity/control/plane_prediction.hpp"
 #include "asperity/control/plane_selection.hpp"
 #include "asperity/render/renderer.hpp"
 
@@ -28,6 +29,7 @@ inline void linearise(const tick& found, status answer, const timed_pose& at, co
     out.answer = status::not_finite;
     return;
   }
+  predict_planes(found.planes_near, at.pull, out.planes);
   out.on_probe_w = found.force.on_probe_w;
   out.stiffness = found.force.stiffness;
   out.dropped = static_cast<std::uint32_t>(found.dropped_contacts);

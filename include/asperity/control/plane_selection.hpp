@@ -108,14 +108,14 @@ struct plane_group {
 
 /// The planes that become active first under small motions of the probe, per body and direction. Directions are taken
 /// from the deepest plane that has none yet; each test motion is made for every direction before the next, so that a
-/// full list lacks diagonals and not a wall. out.dropped() counts the choices that did not fit.
+/// full list lacks diagonals and not a wall. At most most_selected_planes are taken.
 /// The same candidates in the same order give the same planes.
 /// @return ok | capacity_reached | not_finite (a candidate has a number that is not finite; out is empty)
 /// @pre check(s)   @rt safe
 [[nodiscard]] inline status select_planes(std::span<const support_plane> candidates, const plane_selection& s,
                                           support_planes& out) noexcept {
   out.clear();
-  fixed_vector<detail::plane_group, most_support_planes> groups;
+  fixed_vector<detail::plane_group, most_selected_planes> groups;
   for (const support_plane& p : candidates) {
     if (!is_finite(p)) return status::not_finite;
   }
@@ -131,17 +131,22 @@ struct plane_group {
     if (!groups.push_back({.body = deepest->body, .axis_w = deepest->n_ab_w})) break;
     groups.back().find(candidates, s);
   }
-  std::array<std::uint32_t, most_support_planes> taken{};
-  const std::size_t not_tried = groups.dropped();
+  std::array<std::uint32_t, most_selected_planes> taken{};
+  bool all = groups.dropped() == 0;
   for (std::size_t motion = 0; motion < detail::plane_group::motions; ++motion) {
     for (const detail::plane_group& g : groups) {
       const std::uint32_t chosen = g.first_met[motion];
       const auto end = taken.begin() + static_cast<std::ptrdiff_t>(out.size());
       if (std::find(taken.begin(), end, chosen) != end) continue;
-      if (out.push_back(candidates[chosen])) taken[out.size() - 1] = chosen;
+      if (out.size() == taken.size()) {
+        all = false;
+        continue;
+      }
+      taken[out.size()] = chosen;
+      static_cast<void>(out.push_back(candidates[chosen]));
     }
   }
-  return not_tried + out.dropped() > 0 ? status::capacity_reached : status::ok;
+  return all ? status::ok : status::capacity_reached;
 }
 
 }  // namespace asperity

@@ -93,6 +93,9 @@ class probe_motion {
     return -1.0 * coupling_.on_probe(target_T_wc_, target_velocity_w_, p.T_wc, p.velocity_w);
   }
 
+  /// What the coupling's springs do to the probe where it is.
+  [[nodiscard]] coupling_pull pull() const noexcept { return coupling_.pull(target_T_wc_, probe_.state().T_wc); }
+
   /// Where the handle wants the probe's centre-of-mass frame, as far as the target has come.
   [[nodiscard]] const pose& target() const noexcept { return target_T_wc_; }
   /// Whether the target is where the handle is.

@@ -10,7 +10,9 @@ namespace asperity {
 
 /// Most support planes that a contact carries. A rigid body that rests needs six at most; the others are those that it
 /// meets next when it tilts or slides.
-inline constexpr std::size_t most_support_planes = 16;
+inline constexpr std::size_t most_support_planes = 32;
+/// Of these, how many are chosen for test motions; the rest is for where the probe will come to rest.
+inline constexpr std::size_t most_selected_planes = 20;
 
 /// Support planes of one contact; dropped() tells how many more were wanted than it could keep.
 using support_planes = fixed_vector<support_plane, most_support_planes>;

@@ -19,6 +19,13 @@ struct coupling_config {
   double max_damping_n_m_s_per_rad = 0.05;  ///< passivity is wanted (b_device > Kt T / 2 + Bt)
 };
 
+/// The springs of a virtual coupling at one pose of the probe.
+struct coupling_pull {
+  wrench on_probe_w{};                 ///< about c_A, world axes, without the damper
+  double stiffness_n_per_m = 0.0;      ///< 0: not known
+  double stiffness_n_m_per_rad = 0.0;  ///< 0: not known
+};
+
 /// Isotropic six-dimensional spring and damper.
 /// @source spec section 4
 class virtual_coupling {
@@ -42,6 +49,12 @@ class virtual_coupling {
     const vec3 turn = log_rotation(target_T_wc.rotation * glm::conjugate(T_wc.rotation));
     return {kt_ * stretch + bt_ * (target_velocity_w.linear - velocity_w.linear),
             kr_ * turn + br_ * (target_velocity_w.angular - velocity_w.angular)};
+  }
+
+  /// The springs alone.
+  /// @rt safe
+  [[nodiscard]] coupling_pull pull(const pose& target_T_wc, const pose& T_wc) const noexcept {
+    return {on_probe(target_T_wc, {}, T_wc, {}), kt_, kr_};
   }
 
   /// Energy stored in the two springs, J.

@@ -70,7 +70,9 @@ class virtual_tool {
       last_ = status::invalid_pose;
       return {};
     }
-    linearise(found, answer, {T_wa_then * inverse(T_ca_), 0}, config_.selection, contact_);
+    const pose then_T_wc = T_wa_then * inverse(T_ca_);
+    linearise(found, answer, {then_T_wc, 0, motion_.coupling().pull(T_wh * T_hc_, then_T_wc)}, config_.selection,
+              contact_);
     last_ = motion_.move(std::min(dt_s, config_.longest_step_s), T_wh * T_hc_, 1.0, contact_);
     const wrench felt = transport(motion_.on_hand_w(), motion_.target().position, T_wh.position);
     if (last_ == status::ok && !is_finite(felt)) last_ = status::not_finite;

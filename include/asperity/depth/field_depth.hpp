@@ -16,6 +16,7 @@
 #include "asperity/core/reserve_resident.hpp"
 #include "asperity/depth/concept.hpp"
 #include "asperity/depth/near_plane.hpp"
+#include "asperity/depth/plane_source.hpp"
 #include "asperity/depth/support_plane.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/model/scene.hpp"
@@ -56,11 +57,29 @@ class field_depth {
       const near_leaf& leaf = found.leaves()[i];
       const field_body &A = *bodies_->probe, &B = *bodies_->fixed[leaf.body];
       const pose T_ba = inverse(at.T_wb[leaf.body]) * at.T_wa;
-      out[i] = leaf.of_probe ? deepest(leaf, B.field, T_ba, at.T_wb[leaf.body].rotation, at.T_wa, 1.0, c_a_w)
-                             : deepest(leaf, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[leaf.body], -1.0, c_a_w);
+      out[i] = leaf.of_probe ? deepest(leaf, B.field, T_ba, at.T_wb[leaf.body].rotation, at.T_wa, 1.0, c_a_w, -reach_m_)
+                             : deepest(leaf, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[leaf.body], -1.0, c_a_w,
+                                       -reach_m_);
       if (out[i].plane.depth_m > -reach_m_ && told_.size() < told_.capacity()) told_.push_back(out[i].plane);
     }
     return status::ok;
+  }
+
+  /// The planes of the samples that are deeper than above_m at any pose; where there are more than `out` takes, the
+  /// deepest.
+  /// @return ok | capacity_reached
+  /// @rt safe
+  [[nodiscard]] status planes_at(const scene_pose& at, double above_m, plane_list& out) const noexcept {
+    const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
+    for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
+      const field_body &A = *bodies_->probe, &B = *bodies_->fixed[b];
+      const pose T_ba = inverse(at.T_wb[b]) * at.T_wa;
+      deeper_than(above_m, A.samples, B.field, T_ba, at.T_wb[b].rotation, at.T_wa, {.body = b, .of_probe = true}, c_a_w,
+                  out);
+      deeper_than(above_m, B.samples, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[b],
+                  {.body = b, .of_probe = false}, c_a_w, out);
+    }
+    return out.dropped() > 0 ? status::capacity_reached : status::ok;
   }
 
   /// The planes of the last measure(), gaps included.
@@ -70,6 +89,30 @@ class field_depth {
   }
 
  private:
+  // Samples of X in the field of Y, as in deepest(), each by itself.
+  void deeper_than(double above_m, const sample_tree& of_x, const body_field& in_y, const pose& T_yx,
+                   const quat& rotation_wy, const pose& T_wx, const near_leaf& whose, const vec3& c_a_w,
+                   plane_list& out) const noexcept {
+    of_x.query([&](const vec3& centre_x,
+                   double radius_m) noexcept { return in_y.most_near(T_yx * centre_x, radius_m) > above_m; },
+               [&](const vec3&, double, std::span<const field_sample> samples) noexcept {
+                 near_leaf one = whose;
+                 one.count = 1;
+                 for (const field_sample& sample : samples) {
+                   one.first = &sample;
+                   one.centre_b = vec3(sample.position_b);
+                   one.radius_m = 0.0;
+                   const near_plane found =
+                       deepest(one, in_y, T_yx, rotation_wy, T_wx, whose.of_probe ? 1.0 : -1.0, c_a_w, above_m);
+                   if (!(found.plane.depth_m > above_m) || out.push_back(found.plane)) continue;
+                   const auto least = std::min_element(
+                       out.begin(), out.end(),
+                       [](const support_plane& p, const support_plane& q) { return p.depth_m < q.depth_m; });
+                   if (least->depth_m < found.plane.depth_m) *least = found.plane;
+                 }
+               });
+  }
+
   // How far a sample whose surface looks away from the direction that it would be pushed in may count: in full up to 35
   // degrees beyond its cone, since relief leans, and not at all from 60 degrees on.
   [[nodiscard]] static double facing_share(double cosine, double cone_rad) noexcept {
@@ -82,15 +125,15 @@ class field_depth {
   // Samples of X in the field of Y. The depth grows where X's point moves along the field's slope; where X is the fixed
   // body, the probe's motion takes the field along, and the sign turns.
   [[nodiscard]] near_plane deepest(const near_leaf& leaf, const body_field& in_y, const pose& T_yx,
-                                   const quat& rotation_wy, const pose& T_wx, double sign,
-                                   const vec3& c_a_w) const noexcept {
+                                   const quat& rotation_wy, const pose& T_wx, double sign, const vec3& c_a_w,
+                                   double above_m) const noexcept {
     // Half way through a body no way out is shorter than another: a sample there holds nothing.
     constexpr double least_slope = 0.05;
     near_plane out;
     // A smooth distance grows by little more than a metre per metre.
     constexpr double steepest = 1.2;
     const double most_m = in_y.coarse(T_yx * leaf.centre_b).value_m + steepest * leaf.radius_m + in_y.highest_relief_m;
-    if (most_m <= -reach_m_) return out;
+    if (most_m <= above_m) return out;
     vec3 slope_y(0.0), point_x(0.0);
     const quat rotation_xy = glm::conjugate(T_yx.rotation);
     for (const field_sample& s : leaf.samples()) {
@@ -128,5 +171,6 @@ class field_depth {
 };
 
 static_assert(depth_backend<field_depth>);
+static_assert(tells_planes_anywhere<field_depth>);
 
 }  // namespace asperity

@@ -11,6 +11,7 @@
 #include "asperity/collision/concept.hpp"
 #include "asperity/core/memory.hpp"
 #include "asperity/depth/concept.hpp"
+#include "asperity/depth/plane_source.hpp"
 #include "asperity/depth/support_plane.hpp"
 #include "asperity/force/concept.hpp"
 
@@ -24,6 +25,7 @@ struct tick {
   std::span<const penetration> depths;    ///< one per contact
   std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
   std::span<const support_plane> planes;  ///< gaps included; empty where depth backend and force model know none
+  plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
 };
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
@@ -53,7 +55,9 @@ class basic_renderer {
         depth_(std::move(depth)),
         force_(std::move(force)),
         found_(limits),
-        readings_(limits.readings()) {}
+        readings_(limits.readings()) {
+    if constexpr (tells_planes_anywhere<Depth>) at_.T_wb.resize(scene_.fixed.size());
+  }
 
   /// Wrench on the probe at these poses.
   /// @pre at.T_wb.size() == scene().fixed.size()
@@ -97,12 +101,31 @@ class basic_renderer {
       out.contacts = told_.contacts.contacts();
       out.depths = std::span(told_.depths).first(told_.contacts.size());
     }
+    if constexpr (tells_planes_anywhere<Depth>) {
+      at_.T_wa = at.T_wa;
+      std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
+      out.planes_near = plane_source(*this);
+    }
     if constexpr (tells_support_planes<Depth>) {
       out.planes = depth_.support_planes();
     } else if constexpr (tells_support_planes<Force>) {
       out.planes = force_.support_planes();
     }
     return found;
+  }
+
+  /// What the last tick's planes_near tells; see plane_source.
+  /// @pre a step before, which answered ok or capacity_reached
+  /// @rt safe
+  [[nodiscard]] status planes_at(const vec6& moved, double above_m,
+                                 plane_list& out) noexcept requires tells_planes_anywhere<Depth> {
+    out.clear();
+    const vec3 c_a_w = centre_of_mass_w(scene_, at_.T_wa);
+    const quat turn = exp_rotation(moved.angular);
+    const pose T_wa{glm::normalize(turn * at_.T_wa.rotation),
+                    c_a_w + moved.linear + turn * (at_.T_wa.position - c_a_w)};
+    if (!is_valid(T_wa)) return status::invalid_pose;
+    return depth_.planes_at({T_wa, at_.T_wb}, above_m, out);
   }
 
   [[nodiscard]] const asperity::scene& scene() const noexcept { return scene_; }
@@ -143,6 +166,12 @@ class basic_renderer {
     std::vector<penetration> depths{64};
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(contacts, depths); }
   };
+  /// The poses of the last tick.
+  struct kept_poses {
+    pose T_wa{};
+    std::vector<pose> T_wb;
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(T_wb); }
+  };
   struct nothing {};
 
   asperity::scene scene_;
@@ -152,6 +181,7 @@ class basic_renderer {
   found_type found_;
   std::vector<reading_type> readings_;
   [[no_unique_address]] std::conditional_t<finds_contacts, nothing, told_contacts> told_;
+  [[no_unique_address]] std::conditional_t<tells_planes_anywhere<Depth>, kept_poses, nothing> at_;
 };
 
 }  // namespace asperity

@@ -79,7 +79,8 @@ TEST(plane_selection, keeps_the_first_plane_of_every_motion) {
     }
     const plane_selection s = selection_for(static_cast<std::int64_t>(250'000 + 5e6 * d.between(0.0, 1.0)));
     support_planes kept;
-    if (select_planes(all, s, kept) == status::capacity_reached) ++full;
+    const status answer = select_planes(all, s, kept);
+    full += answer == status::capacity_reached ? 1 : 0;
     const vec3 u = any_orthogonal(n);
     const vec3 w = glm::cross(n, u);
     std::vector<vec6> motions{{}};
@@ -90,7 +91,7 @@ TEST(plane_selection, keeps_the_first_plane_of_every_motion) {
       motions.push_back({s.slide_m * way, vec3(0.0)});
     }
     EXPECT_EQ(depth_after(kept, {}), depth_after(all, {}));
-    if (kept.dropped() > 0) continue;
+    if (answer == status::capacity_reached) continue;
     for (const vec6& m : motions) EXPECT_NEAR(depth_after(kept, m), depth_after(all, m), 1e-15);
   }
   EXPECT_GT(300 - full, 30);
@@ -127,12 +128,11 @@ TEST(plane_selection, says_when_its_list_was_full) {
   }
   support_planes kept;
   EXPECT_EQ(select_planes(all, {}, kept), status::capacity_reached);
-  EXPECT_EQ(kept.size(), most_support_planes);
+  EXPECT_EQ(kept.size(), most_selected_planes);
   for (std::size_t i = 0; i < kept.size(); ++i) EXPECT_EQ(kept[i].body, i);  // the deepest, in order
   all.resize(3);
   EXPECT_EQ(select_planes(all, {}, kept), status::ok);
   EXPECT_EQ(kept.size(), 3U);
-  EXPECT_EQ(kept.dropped(), 0U);
   EXPECT_EQ(select_planes({}, {}, kept), status::ok);
   EXPECT_TRUE(kept.empty());
 }

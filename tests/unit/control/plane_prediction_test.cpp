@@ -1,0 +1,170 @@
+// Planes are asked for where the probe will rest, until they say what the surface is there. The surface here is a sum
+// of waves, known in closed form; the probe is a few points.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <limits>
+#include <vector>
+
+#include <asperity/control/plane_prediction.hpp>
+
+#include "support/fresh_seed.hpp"
+#include "unit/control/drawn.hpp"
+
+namespace {
+
+using namespace asperity;
+using namespace asperity::test_support;
+
+constexpr double mm = 1e-3, um = 1e-6;
+
+/// Points of a probe over waves: n_ab is -z, and a point is as deep as it lies below the height.
+struct points_on_waves {
+  std::vector<vec3> r_w;  // from c_A
+  vec3 centre_w{0.0};
+  std::array<vec3, 3> wave{};  // wave numbers along x and y, 1/m, and amplitude, m
+  int asked = 0;
+
+  [[nodiscard]] double depth(const vec3& p) const {
+    double height = 0.0;
+    for (const vec3& w : wave) height += w.z * std::sin(w.x * p.x + w.y * p.y);
+    return height - p.z;
+  }
+  [[nodiscard]] vec3 slope(const vec3& p) const {
+    vec3 out(0.0, 0.0, -1.0);
+    for (const vec3& w : wave) out += w.z * std::cos(w.x * p.x + w.y * p.y) * vec3(w.x, w.y, 0.0);
+    return out;
+  }
+  [[nodiscard]] vec3 point(std::size_t i, const vec6& moved) const {
+    return centre_w + moved.linear + exp_rotation(moved.angular) * r_w[i];
+  }
+  [[nodiscard]] support_plane plane(std::size_t i, const vec6& moved) const {
+    const vec3 p = point(i, moved), g = slope(p), r = p - centre_w - moved.linear;
+    return {depth(p), {g, glm::cross(r, g)}, g / glm::length(g), r, 0.0, 0};
+  }
+  [[nodiscard]] status planes_at(const vec6& moved, double above_m, plane_list& out) noexcept {
+    ++asked;
+    for (std::size_t i = 0; i < r_w.size(); ++i) {
+      const support_plane p = plane(i, moved);
+      if (p.depth_m > above_m) static_cast<void>(out.push_back(p));
+    }
+    return status::ok;
+  }
+};
+
+struct drawn_rest {
+  points_on_waves body;
+  coupling_pull pull;
+  support_planes planes;  // at the pose where the probe is
+};
+
+/// A probe of one to six points a few micrometres from rest, under pulls of 0.2 to 10 N.
+drawn_rest draw(drawn& d) {
+  drawn_rest out;
+  for (vec3& w : out.body.wave) {
+    const double way = d.between(0.0, 6.283185307179586), length_m = d.between(0.5 * mm, 3.0 * mm);
+    w = {6.283185307179586 / length_m * std::cos(way), 6.283185307179586 / length_m * std::sin(way),
+         d.between(2 * um, 20 * um)};
+  }
+  const auto points = static_cast<std::size_t>(d.between(1.0, 6.999));
+  for (std::size_t i = 0; i < points; ++i) {
+    out.body.r_w.push_back(
+        {d.between(-5 * mm, 5 * mm), d.between(-5 * mm, 5 * mm), d.between(-20.01 * mm, -20.0 * mm)});
+  }
+  out.pull.stiffness_n_per_m = d.between(300.0, 5000.0);
+  out.pull.stiffness_n_m_per_rad = d.between(1.0, 20.0);
+  out.pull.on_probe_w = {{d.between(-0.05, 0.05), d.between(-0.05, 0.05), -d.between(0.2, 10.0)}, vec3(0.0)};
+  double deepest = -1.0;
+  out.body.centre_w = {d.between(-10 * mm, 10 * mm), d.between(-10 * mm, 10 * mm), 20 * mm};
+  for (std::size_t i = 0; i < points; ++i) deepest = std::max(deepest, out.body.depth(out.body.point(i, {})));
+  out.body.centre_w.z += deepest - d.between(0.0, 20 * um);
+  for (std::size_t i = 0; i < points; ++i) static_cast<void>(out.planes.push_back(out.body.plane(i, {})));
+  return out;
+}
+
+/// How much deeper a point is than its planes say, at the pose where planes and springs balance.
+double untold_m(const drawn_rest& at) {
+  const vec6 moved = detail::rest_of(at.pull, at.planes);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < at.body.r_w.size(); ++i) {
+    const support_plane there = at.body.plane(i, moved);
+    double said = 0.0;
+    for (const support_plane& p : at.planes) {
+      if (glm::length(p.r_w - there.r_w) < 0.3 * mm) said = std::max(said, p.depth_m + dot(p.gradient, moved));
+    }
+    if (there.depth_m > 0.0) worst = std::max(worst, there.depth_m - said);
+  }
+  return worst;
+}
+
+TEST(plane_prediction, planes_say_what_the_surface_is_where_the_probe_rests) {
+  drawn d(seed_of(fresh_seed("plane_prediction", "400 probes"), "waves"));
+  double before_m = 0.0, after_m = 0.0;
+  int wrong_before = 0, wrong_after = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    drawn_rest at = draw(d);
+    const double before = untold_m(at);
+    predict_planes(plane_source(at.body), at.pull, at.planes);
+    const double after = untold_m(at);
+    before_m = std::max(before_m, before);
+    after_m = std::max(after_m, after);
+    wrong_before += before > 0.5 * um ? 1 : 0;
+    wrong_after += after > 0.5 * um ? 1 : 0;
+    EXPECT_LE(at.body.asked, 6);
+  }
+  std::printf("  a point was deeper than told by at most %.2f um (%d of 400 by more than 0.5); before, %.1f um (%d)\n",
+              after_m / um, wrong_after, before_m / um, wrong_before);
+  EXPECT_LE(wrong_after, 4);  // the way to the pose is bounded, and six rounds may end on the way
+  EXPECT_GT(wrong_before, 100) << "the scenes would not notice a prediction that does nothing";
+}
+
+TEST(plane_prediction, asks_once_where_the_planes_are_the_surface) {
+  points_on_waves flat{{{1 * mm, 0, -20 * mm}, {-1 * mm, 0, -20 * mm}}, {0, 0, 20 * mm - 5 * um}, {}, 0};
+  support_planes planes;
+  for (std::size_t i = 0; i < 2; ++i) static_cast<void>(planes.push_back(flat.plane(i, {})));
+  predict_planes(plane_source(flat), {{{0, 0, -1.0}, {0, 0, 0}}, 500.0, 3.0}, planes);
+  EXPECT_EQ(flat.asked, 1);
+  EXPECT_EQ(planes.size(), 2U);
+}
+
+TEST(plane_prediction, leaves_planes_alone_without_a_pull_or_a_source) {
+  points_on_waves wavy{{{1 * mm, 0, -20 * mm}}, {0, 0, 20 * mm - 5 * um}, {{{4000.0, 0, 20 * um}, {}, {}}}, 0};
+  support_planes planes;
+  static_cast<void>(planes.push_back(wavy.plane(0, {})));
+  const coupling_pull pulled{{{0.1, 0, -1.0}, {0, 0, 0}}, 500.0, 3.0};
+  coupling_pull unknown = pulled;
+  unknown.stiffness_n_m_per_rad = 0.0;
+  coupling_pull broken = pulled;
+  broken.on_probe_w.force.x = std::numeric_limits<double>::quiet_NaN();
+  predict_planes({}, pulled, planes);
+  predict_planes(plane_source(wavy), unknown, planes);
+  predict_planes(plane_source(wavy), broken, planes);
+  EXPECT_EQ(wavy.asked, 0);
+  EXPECT_EQ(planes.size(), 1U);
+  predict_planes(plane_source(wavy), pulled, planes);
+  EXPECT_GT(wavy.asked, 0);
+  EXPECT_GT(planes.size(), 1U);
+}
+
+// A full list keeps what is met at the pose of rest and lets go of what is furthest from it.
+TEST(plane_prediction, a_full_list_lets_go_of_the_furthest_gap) {
+  points_on_waves wavy{{{1 * mm, 0, -20 * mm}}, {0, 0, 20 * mm - 5 * um}, {{{4000.0, 0, 20 * um}, {}, {}}}, 0};
+  support_planes planes;
+  static_cast<void>(planes.push_back(wavy.plane(0, {})));
+  for (std::size_t i = 1; i < most_support_planes; ++i) {
+    support_plane gap = wavy.plane(0, {});
+    gap.depth_m = -1e-4 * static_cast<double>(i);
+    gap.r_w.y = 1e-3 * static_cast<double>(i);
+    static_cast<void>(planes.push_back(gap));
+  }
+  predict_planes(plane_source(wavy), {{{0.1, 0, -1.0}, {0, 0, 0}}, 500.0, 3.0}, planes);
+  EXPECT_EQ(planes.size(), most_support_planes);
+  EXPECT_NEAR(planes[0].depth_m, wavy.plane(0, {}).depth_m, 1e-12);
+  const double furthest = -1e-4 * static_cast<double>(most_support_planes - 1);
+  EXPECT_TRUE(
+      std::none_of(planes.begin(), planes.end(), [&](const support_plane& p) { return p.depth_m == furthest; }));
+}
+
+}  // namespace
