@@ -1,5 +1,5 @@
-// Hands that press with up to 20 N through the field renderer's support planes: the probe stays on its side. The same
-// hands pass where a part of the planes is withheld.
+// Hands that press with up to 20 N through the field renderer's support planes: the probe stays on its side, and nothing
+// is told. The same hands pass where a part of the planes is withheld, and every passage is told.
 #include <algorithm>
 #include <cstdio>
 #include <gtest/gtest.h>
@@ -67,17 +67,19 @@ TEST(held_sessions, no_hand_passes_support_planes) {
           EXPECT_FALSE(s.gave_way) << pair.name();
           EXPECT_FALSE(s.ended_early) << pair.name();
           EXPECT_LE(s.deepest_m, deepest_allowed_m) << pair.name();
+          EXPECT_EQ(s.told, tick_flag::none) << pair.name() << ", flags " << static_cast<int>(s.told);
         }
       });
 }
 
-// A law that knows a thin layer only: planes deeper than half a tenth of a millimetre are withheld.
+// A law that knows a thin layer only: planes deeper than half a tenth of a millimetre are withheld. What the renderer
+// knows of it, it tells.
 TEST(held_sessions, a_layer_of_planes_lets_hands_through) {
   std::vector<press_pair> pairs;
   for (const press_pair& p : press_pairs()) {
-    if (p.name() == "block on gear") pairs.push_back(p);
+    if (p.name() == "block on gear" || p.name() == "ball_10 on plate_5") pairs.push_back(p);
   }
-  int passed = 0;
+  int passed = 0, deep = 0, told_passed = 0, told_deep = 0;
   press_every_pair(
       "held_sessions, thin", pairs, 2,
       [](const render_function& whole) -> render_function {
@@ -93,11 +95,17 @@ TEST(held_sessions, a_layer_of_planes_lets_hands_through) {
         };
       },
       [&](const press_pair&, const session_row& row) {
-        passed += static_cast<int>(std::count_if(row.sessions.begin(), row.sessions.end(), [](const session_result& s) {
-          return s.passed || s.deepest_m > deepest_allowed_m;
-        }));
+        for (const session_result& s : row.sessions) {
+          passed += s.passed ? 1 : 0;
+          deep += s.passed || s.deepest_m > deepest_allowed_m ? 1 : 0;
+          told_passed += s.passed && has(s.told, tick_flag::passed) ? 1 : 0;
+          told_deep += s.told != tick_flag::none ? 1 : 0;
+        }
       });
-  EXPECT_GE(passed, 1) << "of 2";
+  std::printf("  %d deep, of which %d passed; told: %d deep, %d passed\n", deep, passed, told_deep, told_passed);
+  EXPECT_GE(deep, 2) << "of 4";
+  EXPECT_EQ(told_passed, passed);
+  EXPECT_EQ(told_deep, deep);
 }
 
 }  // namespace

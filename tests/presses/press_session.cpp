@@ -65,6 +65,7 @@ session_result press_session(render_function render, const press_touch& touch, c
       out.ended_early = true;
       return out;
     }
+    out.told |= now.flags;
     out.last_n = glm::length(now.on_hand_d.force);
     out.largest_n = std::max(out.largest_n, out.last_n);
     const vec3 p = now.T_wa * point_a;

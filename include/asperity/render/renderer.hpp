@@ -24,6 +24,7 @@ struct tick {
   std::span<const penetration> depths;    ///< one per contact
   std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
   std::span<const support_plane> planes;  ///< gaps included; empty where depth backend and force model know none
+  tick_flag flags = tick_flag::none;      ///< what the planes do not answer
 };
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
@@ -102,6 +103,7 @@ class basic_renderer {
     } else if constexpr (tells_support_planes<Force>) {
       out.planes = force_.support_planes();
     }
+    if constexpr (tells_tick_flags<Depth>) out.flags = depth_.flags();
     return found;
   }
 
