@@ -323,9 +323,7 @@ TEST_F(documents, run) {
                   "units",        "device_recording", "replay",       "real_time",
                   "signal",       "driver_fault",     "rates",        "vibration",
                   "wall",         "coupling"});
-  EXPECT_TRUE(d["wall"].is_null());  // contacts without planes
-  EXPECT_EQ(d["coupling"]["translation"]["stiffness"], 500.0);
-  EXPECT_EQ(d["coupling"]["rotation"]["from"], "default");
+  EXPECT_EQ(d["formulation"], "field");
   for (const char* key : {"band", "rest", "force", "torque"}) EXPECT_TRUE(d["vibration"].contains(key)) << key;
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
@@ -339,8 +337,19 @@ TEST_F(documents, run) {
   EXPECT_NE(read("session.svg").find("</svg>"), std::string::npos);
 }
 
+TEST_F(documents, run_without_support_planes) {
+  for (const char* contacts : {"shared", "paper"}) {
+    const json d = expect_document(
+        {"run", "--probe", block(), "--fixed", block(), "--seconds", "0.1", "--contacts", contacts}, "asperity.run/1");
+    EXPECT_EQ(d["formulation"], contacts);
+    EXPECT_TRUE(d["wall"].is_null());
+    EXPECT_EQ(d["coupling"]["translation"]["stiffness"], 500.0);
+    EXPECT_EQ(d["coupling"]["rotation"]["from"], "default");
+  }
+}
+
 TEST_F(documents, run_with_support_planes) {
-  const arguments session{"run", "--probe", block(), "--fixed", block(), "--contacts", "field", "--motion", "press"};
+  const arguments session{"run", "--probe", block(), "--fixed", block(), "--motion", "press"};
   arguments above = session, inside = session;
   above.insert(above.end(), {"--seconds", "0.5"});
   inside.insert(inside.end(), {"--seconds", "0.05", "--probe-pose", "0.001 0.002 0.003 0 0 0 1", "--coupling", "700"});

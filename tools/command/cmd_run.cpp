@@ -267,12 +267,12 @@ void add_run(command_line& line) {
       ->check(CLI::Range(1.0, 100000.0))
       ->capture_default_str();
   sub.add_option("--coupling", o->coupling_n_per_m,
-                 "Stiffness of the virtual coupling (N/m); by default 500, and with --contacts field what the device "
-                 "can show")
+                 "Stiffness of the virtual coupling (N/m); by default what the device can show, and 500 with other "
+                 "contacts than field")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1.0, 1e5));
   sub.add_option("--coupling-rotation", o->coupling_n_m_per_rad,
-                 "The same of the rotation (N m/rad); by default 3, and with --contacts field what the device can show")
+                 "The same of the rotation (N m/rad); by default what the device can show, and 3 with other contacts")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1e-3, 1e3));
   sub.add_option(
@@ -289,7 +289,8 @@ void add_run(command_line& line) {
             return extension_error(text, {".png", ".svg"});
           },
           "FILE");
-  add_render_options(sub, o->render, {"shared", "paper", "field"});
+  o->render.usual_contacts = "field";
+  add_render_options(sub, o->render, {"field", "shared", "paper"});
 }
 
 }  // namespace asperity::command
