@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "asperity/core/math.hpp"
+#include "asperity/core/pose.hpp"
 #include "asperity/field/body_field.hpp"
 
 namespace asperity {
