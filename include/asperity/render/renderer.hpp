@@ -90,6 +90,7 @@ class basic_renderer {
     }
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
     out.dropped_contacts = found_.dropped();
+    if constexpr (tells_tick_flags<Depth>) out.flags = depth_.flags();
     if constexpr (finds_contacts) {
       out.contacts = found_.contacts();
       out.depths = readings;
@@ -103,7 +104,6 @@ class basic_renderer {
     } else if constexpr (tells_support_planes<Force>) {
       out.planes = force_.support_planes();
     }
-    if constexpr (tells_tick_flags<Depth>) out.flags = depth_.flags();
     return found;
   }
 
