@@ -8,3 +8,4 @@
 #include "asperity/hal/any_device.hpp"
 #include "asperity/hal/simulated/simulated_device.hpp"
 #include "asperity/render/default_renderer.hpp"
+#include "asperity/render/field_renderer.hpp"

@@ -321,7 +321,9 @@ TEST_F(documents, run) {
                   "memory",       "rejected_samples", "lost_records", "fault",
                   "fault_record", "interrupted",      "recording",    "plot",
                   "units",        "device_recording", "replay",       "real_time",
-                  "signal",       "driver_fault",     "rates",        "vibration"});
+                  "signal",       "driver_fault",     "rates",        "vibration",
+                  "wall",         "coupling"});
+  EXPECT_EQ(d["formulation"], "field");
   for (const char* key : {"band", "rest", "force", "torque"}) EXPECT_TRUE(d["vibration"].contains(key)) << key;
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
@@ -333,6 +335,42 @@ TEST_F(documents, run) {
   EXPECT_GE(d["device_loop"]["tick_time"]["p99"], d["device_loop"]["tick_time"]["p50"]);
   EXPECT_EQ(files(), (std::set<std::string>{"session.csv", "session.svg"}));
   EXPECT_NE(read("session.svg").find("</svg>"), std::string::npos);
+}
+
+TEST_F(documents, run_without_support_planes) {
+  for (const char* contacts : {"shared", "paper"}) {
+    const json d = expect_document(
+        {"run", "--probe", block(), "--fixed", block(), "--seconds", "0.1", "--contacts", contacts}, "asperity.run/1");
+    EXPECT_EQ(d["formulation"], contacts);
+    EXPECT_TRUE(d["wall"].is_null());
+    EXPECT_EQ(d["coupling"]["translation"]["stiffness"], 500.0);
+    EXPECT_EQ(d["coupling"]["rotation"]["from"], "default");
+  }
+}
+
+TEST_F(documents, run_with_support_planes) {
+  const arguments session{"run", "--probe", block(), "--fixed", block(), "--motion", "press"};
+  arguments above = session, inside = session;
+  above.insert(above.end(), {"--seconds", "0.5"});
+  inside.insert(inside.end(), {"--seconds", "0.05", "--probe-pose", "0.001 0.002 0.003 0 0 0 1", "--coupling", "700"});
+  const json d = expect_document(above, "asperity.run/1");
+  EXPECT_EQ(d["formulation"], "field");
+  expect_keys(d["wall"], {"largest_overlap", "beyond_field", "passed", "not_held", "planes_left_out", "unbalanced"});
+  for (const char* flag : {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced"}) {
+    EXPECT_EQ(d["wall"][flag]["ticks"], 0) << flag;
+    EXPECT_TRUE(d["wall"][flag]["first"].is_null()) << flag;
+  }
+  EXPECT_GT(d["wall"]["largest_overlap"], 0.0);
+  EXPECT_LT(d["wall"]["largest_overlap"], 4e-4);
+  EXPECT_EQ(d["coupling"]["translation"]["from"], "device");
+  EXPECT_EQ(d["coupling"]["translation"]["stiffness"], 1500.0);  // half of what the simulated device states
+  EXPECT_EQ(d["coupling"]["rotation"]["stiffness"], 5.0);
+  // A probe that begins within a body is told, and so is a coupling of one's own.
+  const json deep = expect_document(inside, "asperity.run/1");
+  EXPECT_GT(deep["wall"]["not_held"]["ticks"], 0);
+  EXPECT_EQ(deep["coupling"]["translation"]["stiffness"], 700.0);
+  EXPECT_EQ(deep["coupling"]["translation"]["from"], "option");
+  EXPECT_EQ(deep["coupling"]["rotation"]["from"], "device");
 }
 
 TEST_F(documents, devices) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <csignal>
 #include <fcntl.h>
+#include <filesystem>
 #include <sched.h>
 #include <sstream>
 #include <sys/wait.h>
@@ -98,6 +99,7 @@ class stalled_session : public command_test {
     arguments args = session(seconds);
     args.insert(args.end(), {"--clock", "real", "--record", path("real.csv")});
     args.insert(args.begin(), ASPERITY_COMMAND);
+    std::filesystem::remove(path("text"));  // of a command before
     const pid_t child = fork();
     if (child != 0) return child;
     const int out = open(path("text").c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -119,6 +121,11 @@ class stalled_session : public command_test {
   }
 
   static void sleep_s(double s) { std::this_thread::sleep_for(std::chrono::duration<double>(s)); }
+
+  /// Until the command says what its threads got, which is when both run: what comes before takes as long as it takes.
+  void wait_for_both_loops() const {
+    for (int i = 0; i < 6000 && read("text").find("real time") == std::string::npos; ++i) sleep_s(0.01);
+  }
 
   /// 0, or 1 where the gate shut. Anything else is a failure of its own.
   void expect_ended(pid_t child) const {
@@ -142,7 +149,8 @@ TEST_F(stalled_session, stopped_and_continued) {
   const double unstalled_n = unstalled_peak_n();
   for (const double stop_s : {0.03, 0.15, 0.6}) {
     const pid_t child = start("1.7", false);
-    sleep_s(0.8);
+    wait_for_both_loops();
+    sleep_s(0.5);
     for (int i = 0; i < 2; ++i) {
       kill(child, SIGSTOP);
       sleep_s(stop_s);

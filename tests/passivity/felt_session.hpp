@@ -97,7 +97,8 @@ struct felt_options {
 };
 
 template <contact_renderer Renderer>
-[[nodiscard]] felt_result run_case(const felt_case& c, Renderer renderer, scene_placement placement, bool guard) {
+[[nodiscard]] felt_result run_case(const felt_case& c, Renderer renderer, scene_placement placement,
+                                   const control_config& control) {
   struct watch {
     session_record last;
     std::uint64_t acted = 0;
@@ -110,8 +111,6 @@ template <contact_renderer Renderer>
   };
   simulated_device dev(c.device);
   if (!dev.open() || !dev.arm()) return {};
-  control_config control;
-  control.guard.enabled = guard;
   virtual_session<Renderer, simulated_device, watch> session(std::move(renderer), std::move(placement), dev, control,
                                                              c.schedule);
   energy_bound book(control.guard, session.device().gate().limits(),
@@ -132,6 +131,13 @@ template <contact_renderer Renderer>
   out.acted = session.device().observer().acted;
   out.touching = session.device().observer().touching;
   return out;
+}
+
+template <contact_renderer Renderer>
+[[nodiscard]] felt_result run_case(const felt_case& c, Renderer renderer, scene_placement placement, bool guard) {
+  control_config control;
+  control.guard.enabled = guard;
+  return run_case(c, std::move(renderer), std::move(placement), control);
 }
 
 /// Runs a case against the analytic wall, or with the real renderer on ridged boxes. No ticks: it could not be set up.

@@ -10,7 +10,7 @@
 namespace asperity::simulation {
 
 seed_range seeds_to_run(seed_range otherwise) {
-  const char* const wanted = std::getenv("ASPERITY_SEED");
+  const char* const wanted = std::getenv("ASPERITY_SESSION");
   return wanted == nullptr ? otherwise : seed_range{std::strtoull(wanted, nullptr, 10), 1};
 }
 

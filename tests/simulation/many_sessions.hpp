@@ -15,7 +15,8 @@ struct seed_range {
   std::uint64_t count = 0;
 };
 
-/// What is in ASPERITY_SEED, as a range of one; otherwise `otherwise`.
+/// The seed in ASPERITY_SESSION, which is one session, as a range of one; otherwise `otherwise`. ASPERITY_SEED is
+/// another thing: where a day's sessions are drawn from.
 [[nodiscard]] seed_range seeds_to_run(seed_range otherwise);
 
 struct summary {

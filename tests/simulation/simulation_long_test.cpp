@@ -23,7 +23,7 @@ void run_sessions_of_today(std::uint64_t count) {
   EXPECT_EQ(all.sessions, count);
   EXPECT_GT(all.faults, count / 2);  // sessions that meet nothing prove nothing
   for (const outcome& o : all.broken) {
-    ADD_FAILURE() << to_string(o) << "\nrepeat with: ASPERITY_SEED=" << o.seed
+    ADD_FAILURE() << to_string(o) << "\nrepeat with: ASPERITY_SESSION=" << o.seed
                   << " simulation_test --gtest_filter=simulation.every_invariant*";
   }
 }

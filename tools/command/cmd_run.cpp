@@ -189,7 +189,9 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (!T_dh) return T_dh.error();
   control_config control;
   control.map = *T_dh ? map_of(*poses->T_wa, shape.centre_of_mass, **T_dh) : map_of(*poses->T_wa, shape.centre_of_mass);
-  control.probe = solid_probe(shape);
+  control.probe = found.probe = solid_probe(shape);
+  found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
+  control.coupling = found.coupling.config;
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   result<session_outcome> ended =
       run_session({.feel = std::move(feel).value(),
@@ -264,6 +266,15 @@ void add_run(command_line& line) {
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1.0, 100000.0))
       ->capture_default_str();
+  sub.add_option("--coupling", o->coupling_n_per_m,
+                 "Stiffness of the virtual coupling (N/m); by default what the device can show, and 500 with other "
+                 "contacts than field")
+      ->check(positive_number_error, "NUMBER > 0")
+      ->check(CLI::Range(1.0, 1e5));
+  sub.add_option("--coupling-rotation", o->coupling_n_m_per_rad,
+                 "The same of the rotation (N m/rad); by default what the device can show, and 3 with other contacts")
+      ->check(positive_number_error, "NUMBER > 0")
+      ->check(CLI::Range(1e-3, 1e3));
   sub.add_option(
          "--clock", o->clock,
          "virtual: reproducible, as fast as it goes, the default of the simulated device and of a replay; real: two "
@@ -278,7 +289,8 @@ void add_run(command_line& line) {
             return extension_error(text, {".png", ".svg"});
           },
           "FILE");
-  add_render_options(sub, o->render, {"shared", "paper", "field"});
+  o->render.usual_contacts = "field";
+  add_render_options(sub, o->render, {"field", "shared", "paper"});
 }
 
 }  // namespace asperity::command

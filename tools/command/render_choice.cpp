@@ -95,7 +95,7 @@ std::vector<std::string> backend_names() {
 }
 
 std::string formulation_name(const render_options& options) {
-  return options.contacts.value_or(backend_of(options).shared != nullptr ? "shared" : "paper");
+  return options.contacts.value_or(backend_of(options).shared != nullptr ? options.usual_contacts : "paper");
 }
 
 std::string gradient_name(const render_options& options) {

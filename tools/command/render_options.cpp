@@ -9,10 +9,12 @@ namespace asperity::command {
 
 void add_render_options(CLI::App& sub, render_options& options, const std::vector<std::string>& formulations) {
   sub.add_option("--contacts", options.contacts,
-                 "How many contacts become one force: as one potential, or the paper's clusters and sum" +
-                     std::string(formulations.size() > 2 ? "; or how they hold the probe: by support planes" : ""))
+                 (formulations.size() > 2 ? "How contacts hold the probe: by support planes; or how many become one "
+                                            "force: as one potential, or the paper's clusters and sum"
+                                          : "How many contacts become one force: as one potential, or the paper's "
+                                            "clusters and sum"))
       ->check(CLI::IsMember(formulations))
-      ->default_str("shared");
+      ->default_str(options.usual_contacts);
   sub.add_option("--backend", options.backend,
                  "Depth backend. All but cpu imply --contacts paper. exact searches the maximum itself, for work at a "
                  "desk; gl-compute and gl-occlusion calculate on a GPU")

@@ -24,7 +24,8 @@ struct run_command {
   std::uint64_t seed = 1;
   double press_m = 0.012;
   double contact_rate_hz = 1000.0;
-  std::string clock;  // empty: what fits the device
+  std::optional<double> coupling_n_per_m, coupling_n_m_per_rad;  // what fits device and contacts
+  std::string clock;                                             // empty: what fits the device
   std::string firmware;
   driver_choice drivers;
   std::string record;

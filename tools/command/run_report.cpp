@@ -132,7 +132,7 @@ std::string to_text(const real_time_grants& got) {
 }
 
 answer report(const run_command& options, const session_findings& found) {
-  const auto& [poses, ended, summary, memory, replay, driver] = found;
+  const auto& [poses, ended, summary, memory, coupling, probe, replay, driver] = found;
   const time_summary contact = summarise(ended.contact.seconds);
   const time_summary device = summarise(ended.device.seconds);
   json T_wb = json::array();
@@ -151,7 +151,8 @@ answer report(const run_command& options, const session_findings& found) {
                   {"formulation", formulation_name(options.render)},
                   {"gradient_scheme", gradient_name(options.render)},
                   {"grid", grid_json(options.render)},
-                  {"lookup", lookup_json(options.render)}};
+                  {"lookup", lookup_json(options.render)},
+                  {"coupling", command::to_json(coupling, probe)}};
   out.document.update(summary.to_json());
   out.document["contact_loop"] = loop_json(ended.contact, contact);
   out.document["device_loop"] = loop_json(ended.device, device);
@@ -176,6 +177,7 @@ answer report(const run_command& options, const session_findings& found) {
   out.text = printable(file_stem(options.probe) + " felt on " + file_stem(options.fixed.front())) + ", " +
              brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
              clock_of(options) + " clock\n" + summary.to_text();
+  out.text += row("coupling", to_text(coupling, probe));
   out.text += row("contact loop", loop_text(ended.contact, contact));
   out.text += row("device loop", loop_text(ended.device, device));
   out.text += row("rates", rates_text(ended.rates));
@@ -190,6 +192,7 @@ answer report(const run_command& options, const session_findings& found) {
   if (!options.plot.empty()) out.text += row("plot", options.plot);
   if (!summary.touched())
     out.text += "  warning: the probe never touched anything: lower it with --press or --probe-pose\n";
+  out.text += summary.wall().warnings();
   out.text += summary.vibration_warning();
   if (ended.rates.lowest_scale < 1.0) out.text += late_warning(ended.rates);
   if (ended.lost_records > 0) {

@@ -10,6 +10,7 @@
 #include "device_replay.hpp"
 #include "gpu_use.hpp"
 #include "run_command.hpp"
+#include "run_coupling.hpp"
 #include "run_start.hpp"
 #include "session.hpp"
 #include "session_summary.hpp"
@@ -29,6 +30,8 @@ struct session_findings {
   session_outcome ended;
   session_summary summary;
   memory_use memory;
+  chosen_coupling coupling;
+  probe_config probe;
   std::optional<replay_outcome> replay;  ///< only of a replay
   std::string driver{};                  ///< what became of the driver's process; empty where all is well
 };

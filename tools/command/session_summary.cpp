@@ -83,6 +83,7 @@ void session_summary::add(const session_record& tick) noexcept {
   hand_torque_.add(tick.on_hand_d.torque);
   delivered_j_ = tick.delivered_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
+  wall_.add(tick);
   vibration_.observe(tick.time_ns, tick.T_dh, tick.on_hand_d);
   if (tick.guard_alpha_per_s > 0.0 || tick.guard_scale < 1.0) ++guarded_;
 }
@@ -101,6 +102,7 @@ json session_summary::to_json() const {
           {"hand_torque", range_json(hand_torque_)},
           {"energy",
            {{"delivered_to_hand", delivered_j_}, {"largest_surplus", surplus_max_j_}, {"guarded_ticks", guarded_}}},
+          {"wall", wall_.to_json()},
           {"vibration", vibration_json(vibration_.report())}};
 }
 
@@ -110,6 +112,7 @@ std::string session_summary::to_text() const {
   out += row("contacts", brief(mean_contacts()) + " on average while touching (" + brief(100.0 * share) +
                              " % of the time), at most " + std::to_string(contacts_max_));
   out += row("deepest overlap", length_text(depth_max_m_));
+  out += wall_.to_text();
   out += row("force on the probe", range_text(probe_force_, "N", 1.0));
   out += row("torque on the probe", range_text(probe_torque_, "mN m", 1e3));
   out += row("force on the hand", range_text(hand_force_, "N", 1.0));

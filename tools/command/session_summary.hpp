@@ -11,6 +11,7 @@
 #include "cli.hpp"
 #include "plot.hpp"
 #include "session.hpp"
+#include "wall_summary.hpp"
 
 namespace asperity::command {
 
@@ -38,6 +39,7 @@ class session_summary {
   [[nodiscard]] std::string to_text() const;
   /// Empty, or a line that says how much the wrench vibrates while the hand rests, and what to change.
   [[nodiscard]] std::string vibration_warning() const;
+  [[nodiscard]] const wall_summary& wall() const noexcept { return wall_; }
   [[nodiscard]] bool touched() const noexcept { return touching_ > 0; }
   [[nodiscard]] double mean_contacts() const noexcept;
   [[nodiscard]] double largest_hand_force_n() const noexcept { return hand_force_.largest(); }
@@ -54,6 +56,7 @@ class session_summary {
   double surplus_max_j_ = 0.0;
   std::uint64_t guarded_ = 0;
   vibration_monitor vibration_{device_period_ns};
+  wall_summary wall_;
 };
 
 /// The curves of a session, thinned so that a long one stays a small picture.

@@ -5,7 +5,7 @@
 nightly_disabled() {
   local status=0
   build release
-  GTEST_ALSO_RUN_DISABLED_TESTS=1 GTEST_FILTER='*DISABLED_*' ASPERITY_SEED=$night_seed \
+  GTEST_ALSO_RUN_DISABLED_TESTS=1 GTEST_FILTER='*DISABLED_*' \
     test_preset release disabled -L '^gtest$' --timeout 14400 || status=1
   all_ran tests build/check/disabled.results || status=1
   return "$status"
@@ -55,7 +55,7 @@ run_nightly() {
   done
   night_seed=${ASPERITY_SEED:-$(date -u +%Y%m%d)}
   say "seed of this night: $night_seed (ASPERITY_SEED=$night_seed ./dev nightly repeats it)"
-  unset ASPERITY_SEED  # to the ordinary tests it means one session alone
+  export ASPERITY_SEED=$night_seed
   begin_check
   configure release
   for step in "${steps[@]}"; do

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "asperity/control/exchange.hpp"
+#include "asperity/control/held_flags.hpp"
 #include "asperity/control/linearise.hpp"
 #include "asperity/render/renderer.hpp"
 
@@ -29,7 +30,7 @@ struct scene_placement {
 };
 
 /// Owns the renderer. One tick takes the newest probe pose, renders, and publishes W0, J, the support planes, q0 and
-/// the time of q0.
+/// the time of q0. A flag of a tick stays in the contacts of the next 50 ms.
 /// @tparam Renderer see contact_renderer
 template <contact_renderer Renderer>
 class contact_loop {
@@ -56,6 +57,7 @@ class contact_loop {
     const pose T_wa = at.T_wc * inverse(placement_.T_ac());
     const status answer = renderer_.step({T_wa, placement_.T_wb}, last_);
     linearise(last_, answer, at, selection_, shared_->contacts.back());
+    shared_->contacts.back().flags = flags_.held(shared_->contacts.back().flags, at.time_ns);
     pending_ = true;
     ++computed_;
     computed_at_ns_ = now_ns;
@@ -82,6 +84,7 @@ class contact_loop {
   scene_placement placement_;
   exchange* shared_;
   plane_selection selection_;
+  held_flags flags_;
   asperity::tick last_{};
   bool pending_ = false;
   std::uint64_t computed_ = 0;

@@ -262,6 +262,9 @@ class device_loop {
     r.contacts = contact.contacts;
     r.planes = static_cast<std::uint32_t>(contact.planes.size());
     r.unbalanced_n = motion_.pressed().residual_n;
+    r.overlap_m = motion_.pressed().deepest_m;
+    r.flags =
+        contact.flags | flags_of(motion_.pressed(), !contact.planes.empty() && probe_status == status::not_finite);
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
@@ -275,6 +278,14 @@ class device_loop {
     r.device = device_->state();
     r.fault = gate_.fault();
     observer_(r);
+  }
+
+  // What the contact solver itself has to say.
+  [[nodiscard]] static tick_flag flags_of(const contact_solution& s, bool failed) noexcept {
+    tick_flag out = tick_flag::none;
+    if (s.deepest_m > deepest_held_m) out |= tick_flag::not_held;
+    if (failed || s.residual_n > most_unbalanced_n) out |= tick_flag::unbalanced;
+    return out;
   }
 
   [[nodiscard]] status answer(sample_verdict verdict, status probe_status) const noexcept {

@@ -30,6 +30,7 @@ struct linear_contact {
   std::uint32_t dropped = 0;          ///< contacts that did not fit
   status answer = status::not_ready;  ///< what the renderer answered at q0
   support_planes planes{};            ///< at q0; empty where the renderer knows none or nothing is near
+  tick_flag flags = tick_flag::none;  ///< what the planes do not answer
 };
 
 /// How long a contact may be felt. An older one goes on holding the probe, and nothing is put out.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "asperity/control/exchange.hpp"
 #include "asperity/control/plane_prediction.hpp"
@@ -11,6 +12,19 @@
 #include "asperity/render/renderer.hpp"
 
 namespace asperity {
+
+/// Whether an overlap has no plane of its body and direction among those that were kept: planes that share a direction
+/// are up to twice that angle apart.
+/// @param same_direction of the plane_selection   @rt safe
+[[nodiscard]] inline bool lacks_a_wall(std::span<const support_plane> found, const support_planes& kept,
+                                       double same_direction) noexcept {
+  const double twice = 2.0 * same_direction * same_direction - 1.0;
+  return std::any_of(found.begin(), found.end(), [&](const support_plane& p) {
+    return p.depth_m > 0.0 && std::none_of(kept.begin(), kept.end(), [&](const support_plane& k) {
+             return k.body == p.body && glm::dot(k.n_ab_w, p.n_ab_w) >= twice;
+           });
+  });
+}
 
 /// W0, J and the support planes of one tick, at the pose and time that it was rendered for. Where the renderer could
 /// not answer, or told a number that is not finite, the contact is empty and carries the status: the wrench goes to
@@ -24,10 +38,16 @@ inline void linearise(const tick& found, status answer, const timed_pose& at, co
   out.time_ns = at.time_ns;
   out.answer = answer;
   if (answer != status::ok && answer != status::capacity_reached) return;
-  if (!is_finite(found.force.on_probe_w) || !is_finite(found.force.stiffness) ||
-      select_planes(found.planes, selection, out.planes) == status::not_finite) {
+  const status selected = select_planes(found.planes, selection, out.planes);
+  if (!is_finite(found.force.on_probe_w) || !is_finite(found.force.stiffness) || selected == status::not_finite) {
     out.answer = status::not_finite;
+    out.planes.clear();
     return;
+  }
+  out.flags = found.flags;
+  if (!found.planes.empty() && found.dropped_contacts > 0) out.flags |= tick_flag::planes_left_out;
+  if (selected == status::capacity_reached && lacks_a_wall(found.planes, out.planes, selection.same_direction)) {
+    out.flags |= tick_flag::planes_left_out;
   }
   predict_planes(found.planes_near, at.pull, out.planes);
   out.on_probe_w = found.force.on_probe_w;

@@ -7,6 +7,7 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/depth/tick_flag.hpp"
 #include "asperity/hal/device_state.hpp"
 #include "asperity/hal/output_gate.hpp"
 #include "asperity/hal/sample_check.hpp"
@@ -25,6 +26,7 @@ struct session_record {
   std::uint32_t contacts = 0;       ///< contacts with depth > 0 in it
   std::uint32_t planes = 0;         ///< support planes of it
   double unbalanced_n = 0.0;        ///< residual of the contact solver in the last substep; 0 without planes
+  double overlap_m = 0.0;           ///< of the deepest plane at the beginning of the last substep; 0 without planes
   std::int64_t contact_age_ns = 0;  ///< age of the contact in use; 0 before the first
   double delivered_j = 0.0;         ///< energy delivered to the hand since the start
   double surplus_j = 0.0;           ///< what the passivity guard acts on
@@ -33,6 +35,7 @@ struct session_record {
   double rate_scale = 1.0;          ///< factor that late loops put on the wrench
   bool pulling = false;             ///< the linear contact would have pulled and was set to zero
   sample_verdict sample = sample_verdict::accepted;
+  tick_flag flags = tick_flag::none;          ///< what planes did not answer, in this tick or in the 50 ms before it
   status contact_status = status::not_ready;  ///< the renderer's answer behind the contact in use
   status probe_status = status::ok;
   device_state device = device_state::absent;

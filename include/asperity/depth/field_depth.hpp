@@ -15,6 +15,7 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/core/reserve_resident.hpp"
 #include "asperity/depth/concept.hpp"
+#include "asperity/depth/field_watch.hpp"
 #include "asperity/depth/near_plane.hpp"
 #include "asperity/depth/plane_source.hpp"
 #include "asperity/depth/support_plane.hpp"
@@ -40,7 +41,10 @@ class field_depth {
   /// @param reach_m  gaps up to this are told, m
   /// @param most     planes that a tick may tell: near_sample_limits::readings()
   field_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most)
-      : bodies_(std::move(bodies)), centre_of_mass_a_(of.probe->mass.centre_of_mass), reach_m_(reach_m) {
+      : bodies_(std::move(bodies)),
+        centre_of_mass_a_(of.probe->mass.centre_of_mass),
+        reach_m_(reach_m),
+        watch_(*bodies_, of) {
     detail::reserve_resident(told_, most);
     constexpr double of_the_diagonal = 0.03;
     double smaller_m = of.probe->box.diagonal();
@@ -62,6 +66,7 @@ class field_depth {
                                        -reach_m_);
       if (out[i].plane.depth_m > -reach_m_ && told_.size() < told_.capacity()) told_.push_back(out[i].plane);
     }
+    flags_ = watch_.look(*bodies_, at, told_, c_a_w);
     return status::ok;
   }
 
@@ -84,8 +89,10 @@ class field_depth {
 
   /// The planes of the last measure(), gaps included.
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return told_; }
+  /// What these planes do not answer.
+  [[nodiscard]] tick_flag flags() const noexcept { return flags_; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(told_) + sizeof(field_scene) + bodies_->heap_bytes();
+    return asperity::heap_bytes(told_, watch_) + sizeof(field_scene) + bodies_->heap_bytes();
   }
 
  private:
@@ -168,6 +175,8 @@ class field_depth {
   double reach_m_;
   double sinking_m_ = 0.0;  // of a sample that looks away
   std::vector<support_plane> told_;
+  field_watch watch_;
+  tick_flag flags_ = tick_flag::none;
 };
 
 static_assert(depth_backend<field_depth>);

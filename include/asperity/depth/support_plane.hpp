@@ -6,6 +6,7 @@
 #include <span>
 
 #include "asperity/core/spatial.hpp"
+#include "asperity/depth/tick_flag.hpp"
 
 namespace asperity {
 
@@ -35,6 +36,13 @@ template <class P>
 concept tells_support_planes = requires(const P& stage) {
   { stage.support_planes() }
   noexcept->std::same_as<std::span<const support_plane>>;
+};
+
+/// A stage of a renderer that knows what the planes of its last tick do not answer.
+template <class P>
+concept tells_tick_flags = requires(const P& stage) {
+  { stage.flags() }
+  noexcept->std::same_as<tick_flag>;
 };
 
 }  // namespace asperity

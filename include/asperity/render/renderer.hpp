@@ -26,6 +26,7 @@ struct tick {
   std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
   std::span<const support_plane> planes;  ///< gaps included; empty where depth backend and force model know none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
+  tick_flag flags = tick_flag::none;      ///< what the planes do not answer
 };
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
@@ -93,6 +94,7 @@ class basic_renderer {
     }
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
     out.dropped_contacts = found_.dropped();
+    if constexpr (tells_tick_flags<Depth>) out.flags = depth_.flags();
     if constexpr (finds_contacts) {
       out.contacts = found_.contacts();
       out.depths = readings;

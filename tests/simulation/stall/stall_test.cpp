@@ -28,7 +28,7 @@ void run_stalls(const seed_range& seeds) {
   int broken = 0;
   for (std::uint64_t i = 0; i < seeds.count; ++i) {
     const stall_outcome o = stall_checks(make_stall_scenario(seeds.first + i)).run();
-    EXPECT_EQ(o.broken, "") << "ASPERITY_SEED=" << seeds.first + i << " runs it alone";
+    EXPECT_EQ(o.broken, "") << "ASPERITY_SESSION=" << seeds.first + i << " runs it alone";
     broken += o.broken.empty() ? 0 : 1;
     ++faults[o.fault];
     force_share = std::max(force_share, o.force_over_share);
