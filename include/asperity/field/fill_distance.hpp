@@ -116,6 +116,7 @@ class distance_sweep {
           distance_[node] = std::numeric_limits<float>::max();
           const glm::vec3 p = place(i, j, k);
           ask(node, p, handed_[node]);
+          if (distance_[node] > 6.0F * pitch_) continue;  // one triangle or the next is all the same
           if (i > 0) ask_of(node, p, node - 1);
           if (i + 1 < nx) ask_of(node, p, node + 1);
           if (j > 0) ask_of(node, p, node - nx);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +12,7 @@
 
 #include "asperity/field/body_field.hpp"
 #include "asperity/field/fine_surface.hpp"
+#include "asperity/field/lanes.hpp"
 
 namespace asperity::detail {
 
@@ -59,7 +61,7 @@ class relief_fit {
       }
     }
     p.cell = static_cast<std::uint32_t>((brick[2] * out_.bricks_along[1] + brick[1]) * out_.bricks_along[0] + brick[0]);
-    for (std::size_t s = 0; s < 2; ++s) mark(first[s], last[s]);
+    for (std::size_t s = 0; s < 2; ++s) mark(first[s], last[s], marked_[s]);
     points_.push_back(p);
     lowest_ = std::min(lowest_, wanted);
     highest_ = std::max(highest_, wanted);
@@ -72,6 +74,7 @@ class relief_fit {
     sum_.assign(count, {});
     weight_.assign(count, {});
     residual_.assign(count, 0.0F);
+    rows_.assign(count, 0);
     for (std::size_t b = 1; b < count; ++b) average(b);
     correct(1.0F);
     std::fill(weight_.begin(), weight_.end(), relief_bricks::brick{});
@@ -104,54 +107,65 @@ class relief_fit {
     std::uint32_t cell;  // of its brick in the index
   };
 
-  /// A brick and two nodes around it, and four floats that a row may be read beyond its end.
-  static constexpr std::size_t across = side + 4, reach = 2;
-  struct alignas(16) dense {
-    std::array<float, across * across * across + 4> at{};
+  /// A brick and two nodes around it, x fastest.
+  static constexpr std::size_t reach = 2, across = side + 2 * reach, lanes_across = across / 4;
+  struct dense {
+    std::array<lanes, across * across * lanes_across> at{};
   };
 
-  /// Weights of the three nodes around a place.
+  /// Weights of the three nodes around a place along each axis.
   struct stencil {
-    std::size_t first;  // node of a dense copy
-    std::array<float, 4> x;
+    std::size_t first;                  // its first row in a dense copy, in lanes
+    std::array<lanes, lanes_across> x;  // of the nodes of a row, most of them 0
     std::array<float, 9> yz;
 
     explicit stencil(const glm::vec3& place) noexcept {
-      std::array<std::size_t, 3> from{};
-      std::array<std::array<float, 3>, 3> w{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const float g = place[static_cast<int>(k)] + (static_cast<float>(reach) + 0.5F);
-        const auto middle = static_cast<std::size_t>(static_cast<std::int32_t>(g));
-        const float f = g - 0.5F - static_cast<float>(static_cast<std::int32_t>(middle));
+      const float g = place.x + static_cast<float>(reach);
+      const lanes zero{}, node{0.0F, 1.0F, 2.0F, 3.0F};
+      for (std::size_t h = 0; h < lanes_across; ++h) {
+        const lanes from = node + (static_cast<float>(4 * h) - g), d = from > zero ? from : -from;
+        const lanes outer = d < 1.5F ? 1.5F - d : zero, inner = d < 0.5F ? 0.5F - d : zero;
+        x[h] = 0.5F * outer * outer - 1.5F * inner * inner;
+      }
+      std::array<std::int32_t, 2> from{};
+      std::array<std::array<float, 3>, 2> w{};
+      for (std::size_t k = 0; k < 2; ++k) {
+        const float c = place[static_cast<int>(k) + 1] + (static_cast<float>(reach) + 0.5F);
+        const auto middle = static_cast<std::int32_t>(c);
+        const float f = c - 0.5F - static_cast<float>(middle);
         from[k] = middle - 1;
         w[k] = {0.5F * (0.5F - f) * (0.5F - f), 0.75F - f * f, 0.5F * (0.5F + f) * (0.5F + f)};
       }
-      first = (from[2] * across + from[1]) * across + from[0];
-      x = {w[0][0], w[0][1], w[0][2], 0.0F};
+      first = (static_cast<std::size_t>(from[1]) * across + static_cast<std::size_t>(from[0])) * lanes_across;
       for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t j = 0; j < 3; ++j) yz[3 * k + j] = w[2][k] * w[1][j];
+        for (std::size_t j = 0; j < 3; ++j) yz[3 * k + j] = w[1][k] * w[0][j];
       }
     }
 
-    [[nodiscard]] std::size_t row(std::size_t n) const noexcept { return first + (n / 3 * across + n % 3) * across; }
+    /// Its rows of a dense copy, a bit each.
+    [[nodiscard]] std::uint64_t rows() const noexcept { return std::uint64_t{0x070707} << (first / lanes_across); }
 
     [[nodiscard]] float read(const dense& from) const noexcept {
-      std::array<float, 4> sum{};
-      for (std::size_t n = 0; n < 9; ++n) {
-        const float* const r = from.at.data() + row(n);
-        for (std::size_t i = 0; i < 4; ++i) sum[i] += yz[n] * r[i];
+      lanes low{}, high{};
+      const lanes* layer = from.at.data() + first;
+      for (std::size_t k = 0; k < 3; ++k, layer += across * lanes_across) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          low += yz[3 * k + j] * layer[lanes_across * j];
+          high += yz[3 * k + j] * layer[lanes_across * j + 1];
+        }
       }
-      return sum[0] * x[0] + sum[1] * x[1] + sum[2] * x[2];
+      return sum_of(low * x[0] + high * x[1]);
     }
 
-    /// Adds a number by the weights. Whole rows, so that what one point stores the next can load.
+    /// Adds a number by the weights.
     void add(dense& to, float number) const noexcept {
-      const std::size_t in_row = first % across, start = first - in_row;
-      std::array<float, across> wide{};
-      for (std::size_t i = 0; i < 3; ++i) wide[in_row + i] = number * x[i];
-      for (std::size_t n = 0; n < 9; ++n) {
-        float* const r = to.at.data() + start + (n / 3 * across + n % 3) * across;
-        for (std::size_t i = 0; i < across; ++i) r[i] += yz[n] * wide[i];
+      const lanes low = number * x[0], high = number * x[1];
+      lanes* layer = to.at.data() + first;
+      for (std::size_t k = 0; k < 3; ++k, layer += across * lanes_across) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          layer[lanes_across * j] += yz[3 * k + j] * low;
+          layer[lanes_across * j + 1] += yz[3 * k + j] * high;
+        }
       }
     }
   };
@@ -176,29 +190,28 @@ class relief_fit {
         slope[k][i] = static_cast<float>(w.slope[i]);
       }
     }
-    std::array<float, 4> s{}, sy{}, sz{};
+    lanes s{}, sy{}, sz{};
     for (std::size_t k = 0; k < 4; ++k) {
       for (std::size_t j = 0; j < 4; ++j) {
-        const float* const row = grid.value.data() + grid.at(first[0], first[1] + j, first[2] + k);
-        const float w = value[1][j] * value[2][k], wy = slope[1][j] * value[2][k], wz = value[1][j] * slope[2][k];
-        for (std::size_t i = 0; i < 4; ++i) s[i] += w * row[i];
-        for (std::size_t i = 0; i < 4; ++i) sy[i] += wy * row[i];
-        for (std::size_t i = 0; i < 4; ++i) sz[i] += wz * row[i];
+        const lanes row = load_lanes(grid.value.data() + grid.at(first[0], first[1] + j, first[2] + k));
+        s += value[1][j] * value[2][k] * row;
+        sy += slope[1][j] * value[2][k] * row;
+        sz += value[1][j] * slope[2][k] * row;
       }
     }
-    glm::vec3 by(0.0F);
-    float v = 0.0F;
-    for (std::size_t i = 0; i < 4; ++i) {
-      v += value[0][i] * s[i];
-      by += glm::vec3(slope[0][i] * s[i], value[0][i] * sy[i], value[0][i] * sz[i]);
-    }
+    const lanes x = load_lanes(value[0].data());
+    const glm::vec3 by(sum_of(load_lanes(slope[0].data()) * s), sum_of(x * sy), sum_of(x * sz));
+    const float v = sum_of(x * s);
     out.value_m = static_cast<double>(v);
     out.slope = vec3(by) / grid.pitch_m;
     return out;
   }
 
   /// Numbers the bricks that are asked for.
-  void mark(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last) {
+  void mark(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last,
+            std::array<std::array<std::size_t, 3>, 2>& before) {
+    if (first == before[0] && last == before[1]) return;
+    before = {first, last};
     for (std::size_t z = first[2]; z <= last[2]; ++z) {
       for (std::size_t y = first[1]; y <= last[1]; ++y) {
         for (std::size_t x = first[0]; x <= last[0]; ++x) {
@@ -243,27 +256,32 @@ class relief_fit {
     return out;
   }
 
-  /// Calls visit(three bricks, where their rows begin, where the dense row begins) for the rows around a brick.
+  /// Calls visit(three bricks, where their rows begin, dense row) for rows around a brick, by their bits.
   template <class Visit>
-  static void for_each_row(const std::array<std::uint32_t, 27>& around, std::size_t margin, Visit&& visit) noexcept {
-    for (std::size_t z = reach - margin; z < side + reach + margin; ++z) {
-      for (std::size_t y = reach - margin; y < side + reach + margin; ++y) {
-        const std::size_t bz = (z + side - reach) / side, by = (y + side - reach) / side;
-        const std::size_t row = ((z + side - reach) % side * side + (y + side - reach) % side) * side;
-        visit(around.data() + (3 * bz + by) * 3, row, (z * across + y) * across);
-      }
+  static void for_each_row(const std::array<std::uint32_t, 27>& around, std::uint64_t rows, Visit&& visit) noexcept {
+    for (; rows != 0; rows &= rows - 1) {
+      const auto at = static_cast<std::size_t>(std::countr_zero(rows));
+      const std::size_t z = at / across + side - reach, y = at % across + side - reach;
+      visit(around.data() + (3 * (z / side) + y / side) * 3, (z % side * side + y % side) * side, at * lanes_across);
     }
   }
 
-  static void scatter(const dense& from, const std::array<std::uint32_t, 27>& around, std::size_t margin,
+  static void scatter(const dense& from, const std::array<std::uint32_t, 27>& around, std::uint64_t rows,
                       std::vector<relief_bricks::brick>& to) noexcept {
-    for_each_row(around, margin, [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
-      const float* const r = from.at.data() + at;
-      float *const low = to[bricks[0]].data() + row, *const own = to[bricks[1]].data() + row;
-      float* const high = to[bricks[2]].data() + row;
-      for (std::size_t i = 0; i < reach; ++i) low[side - reach + i] += r[i];
-      for (std::size_t i = 0; i < side; ++i) own[i] += r[reach + i];
-      for (std::size_t i = 0; i < reach; ++i) high[i] += r[reach + side + i];
+    for_each_row(around, rows, [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
+      const lanes &a = from.at[at], &b = from.at[at + 1];
+      float* const own = to[bricks[1]].data() + row;
+      store_lanes(load_lanes(own) + lanes{a[2], a[3], b[0], b[1]}, own);
+      if (a[0] != 0.0F || a[1] != 0.0F) {
+        float* const low = to[bricks[0]].data() + row;
+        low[2] += a[0];
+        low[3] += a[1];
+      }
+      if (b[2] != 0.0F || b[3] != 0.0F) {
+        float* const high = to[bricks[2]].data() + row;
+        high[0] += b[2];
+        high[1] += b[3];
+      }
     });
   }
 
@@ -271,17 +289,21 @@ class relief_fit {
   void average(std::size_t brick) noexcept {
     if (first_[brick] == first_[brick + 1]) return;
     dense sum, weight;
+    std::uint64_t rows = 0, at_feet = 0;
     for (std::size_t i = first_[brick]; i < first_[brick + 1]; ++i) {
       const point& p = points_[i];
       for (const float way : {-1.0F, 1.0F}) {
         const stencil at(p.place + way * p.along);
         at.add(weight, 1.0F);
         at.add(sum, p.relief_m);
+        rows |= at.rows();
       }
+      at_feet |= stencil(p.place).rows();
     }
+    rows_[brick] = at_feet;
     const auto around = beside(brick);
-    scatter(sum, around, reach, sum_);
-    scatter(weight, around, reach, weight_);
+    scatter(sum, around, rows, sum_);
+    scatter(weight, around, rows, weight_);
   }
 
   /// What the points of a brick want, less what is read at their feet.
@@ -289,12 +311,10 @@ class relief_fit {
     if (first_[brick] == first_[brick + 1]) return;
     const auto around = beside(brick);
     dense value, sum, weight;
-    for_each_row(around, 1, [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
-      float* const r = value.at.data() + at;
-      const float *const own = out_.bricks[bricks[1]].data() + row, *const low = out_.bricks[bricks[0]].data() + row;
-      r[reach - 1] = low[side - 1];
-      for (std::size_t i = 0; i < side; ++i) r[reach + i] = own[i];
-      r[reach + side] = out_.bricks[bricks[2]][row];
+    for_each_row(around, rows_[brick], [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
+      const float *const low = out_.bricks[bricks[0]].data() + row, *const own = out_.bricks[bricks[1]].data() + row;
+      value.at[at] = lanes{0.0F, low[3], own[0], own[1]};
+      value.at[at + 1] = lanes{own[2], own[3], out_.bricks[bricks[2]][row], 0.0F};
     });
     float most = 0.0F;
     for (std::size_t i = first_[brick]; i < first_[brick + 1]; ++i) {
@@ -306,8 +326,8 @@ class relief_fit {
       if (weigh) at.add(weight, 1.0F);
     }
     residual_[brick] = most;
-    scatter(sum, around, 1, sum_);
-    if (weigh) scatter(weight, around, 1, weight_);
+    scatter(sum, around, rows_[brick], sum_);
+    if (weigh) scatter(weight, around, rows_[brick], weight_);
   }
 
   /// Whether points of a brick or beside it are not met yet. @param residual by brick
@@ -344,9 +364,11 @@ class relief_fit {
   const body_field& field_;
   float fine_enough_;
   std::vector<point> points_;
-  std::vector<std::uint32_t> cells_{0};  // of the bricks, in the index
-  std::vector<std::uint32_t> first_;     // of each brick's points
+  std::array<std::array<std::array<std::size_t, 3>, 2>, 2> marked_{};  // first and last bricks of a point, by side
+  std::vector<std::uint32_t> cells_{0};                                // of the bricks, in the index
+  std::vector<std::uint32_t> first_;                                   // of each brick's points
   std::vector<relief_bricks::brick> sum_, weight_;
+  std::vector<std::uint64_t> rows_;       // of each brick's dense copy, that its points' feet reach
   std::vector<float> residual_;           // the largest of each brick's points
   float lowest_ = 0.0F, highest_ = 0.0F;  // of the points' relief, and zero
 };
