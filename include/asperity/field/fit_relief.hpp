@@ -70,14 +70,14 @@ class relief_fit {
   void solve() {
     sort();
     const std::size_t count = cells_.size();
-    out_.bricks.assign(count, {});
-    sum_.assign(count, {});
-    weight_.assign(count, {});
+    work_.assign(count, {});
     residual_.assign(count, 0.0F);
     rows_.assign(count, 0);
     for (std::size_t b = 1; b < count; ++b) average(b);
     correct(1.0F);
-    std::fill(weight_.begin(), weight_.end(), relief_bricks::brick{});
+    for (work_brick& b : work_) {
+      for (work_row& row : b) row.weight = lanes{};
+    }
     for (std::size_t b = 1; b < count; ++b) compare(b, true);
     correct(1.816F);
     for (int pass = 0; pass < most_passes; ++pass) {
@@ -106,6 +106,12 @@ class relief_fit {
     float relief_m;
     std::uint32_t cell;  // of its brick in the index
   };
+
+  /// Four nodes of a brick along x, together because they are asked for together.
+  struct work_row {
+    lanes value{}, sum{}, weight{};
+  };
+  using work_brick = std::array<work_row, side * side>;
 
   /// A brick and two nodes around it, x fastest.
   static constexpr std::size_t reach = 2, across = side + 2 * reach, lanes_across = across / 4;
@@ -256,32 +262,23 @@ class relief_fit {
     return out;
   }
 
-  /// Calls visit(three bricks, where their rows begin, dense row) for rows around a brick, by their bits.
+  /// Calls visit(three bricks, row in each of them, dense row) for rows around a brick, by their bits.
   template <class Visit>
   static void for_each_row(const std::array<std::uint32_t, 27>& around, std::uint64_t rows, Visit&& visit) noexcept {
     for (; rows != 0; rows &= rows - 1) {
       const auto at = static_cast<std::size_t>(std::countr_zero(rows));
       const std::size_t z = at / across + side - reach, y = at % across + side - reach;
-      visit(around.data() + (3 * (z / side) + y / side) * 3, (z % side * side + y % side) * side, at * lanes_across);
+      visit(around.data() + (3 * (z / side) + y / side) * 3, z % side * side + y % side, at * lanes_across);
     }
   }
 
-  static void scatter(const dense& from, const std::array<std::uint32_t, 27>& around, std::uint64_t rows,
-                      std::vector<relief_bricks::brick>& to) noexcept {
+  void scatter(const dense& from, const std::array<std::uint32_t, 27>& around, std::uint64_t rows,
+               lanes work_row::*to) noexcept {
     for_each_row(around, rows, [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
       const lanes &a = from.at[at], &b = from.at[at + 1];
-      float* const own = to[bricks[1]].data() + row;
-      store_lanes(load_lanes(own) + lanes{a[2], a[3], b[0], b[1]}, own);
-      if (a[0] != 0.0F || a[1] != 0.0F) {
-        float* const low = to[bricks[0]].data() + row;
-        low[2] += a[0];
-        low[3] += a[1];
-      }
-      if (b[2] != 0.0F || b[3] != 0.0F) {
-        float* const high = to[bricks[2]].data() + row;
-        high[0] += b[2];
-        high[1] += b[3];
-      }
+      work_[bricks[1]][row].*to += lanes{a[2], a[3], b[0], b[1]};
+      if (a[0] != 0.0F || a[1] != 0.0F) work_[bricks[0]][row].*to += lanes{0.0F, 0.0F, a[0], a[1]};
+      if (b[2] != 0.0F || b[3] != 0.0F) work_[bricks[2]][row].*to += lanes{b[2], b[3], 0.0F, 0.0F};
     });
   }
 
@@ -302,8 +299,8 @@ class relief_fit {
     }
     rows_[brick] = at_feet;
     const auto around = beside(brick);
-    scatter(sum, around, rows, sum_);
-    scatter(weight, around, rows, weight_);
+    scatter(sum, around, rows, &work_row::sum);
+    scatter(weight, around, rows, &work_row::weight);
   }
 
   /// What the points of a brick want, less what is read at their feet.
@@ -312,9 +309,9 @@ class relief_fit {
     const auto around = beside(brick);
     dense value, sum, weight;
     for_each_row(around, rows_[brick], [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
-      const float *const low = out_.bricks[bricks[0]].data() + row, *const own = out_.bricks[bricks[1]].data() + row;
+      const lanes &low = work_[bricks[0]][row].value, &own = work_[bricks[1]][row].value;
       value.at[at] = lanes{0.0F, low[3], own[0], own[1]};
-      value.at[at + 1] = lanes{own[2], own[3], out_.bricks[bricks[2]][row], 0.0F};
+      value.at[at + 1] = lanes{own[2], own[3], work_[bricks[2]][row].value[0], 0.0F};
     });
     float most = 0.0F;
     for (std::size_t i = first_[brick]; i < first_[brick + 1]; ++i) {
@@ -326,8 +323,8 @@ class relief_fit {
       if (weigh) at.add(weight, 1.0F);
     }
     residual_[brick] = most;
-    scatter(sum, around, rows_[brick], sum_);
-    if (weigh) scatter(weight, around, rows_[brick], weight_);
+    scatter(sum, around, rows_[brick], &work_row::sum);
+    if (weigh) scatter(weight, around, rows_[brick], &work_row::weight);
   }
 
   /// Whether points of a brick or beside it are not met yet. @param residual by brick
@@ -339,25 +336,29 @@ class relief_fit {
   }
 
   void correct(float step) noexcept {
-    for (std::size_t b = 1; b < sum_.size(); ++b) {
-      for (std::size_t n = 0; n < relief_bricks::nodes_per_brick; ++n) {
-        out_.bricks[b][n] += step * sum_[b][n] / (weight_[b][n] + 1e-30F);  // no weight, no sum
-        sum_[b][n] = 0.0F;
+    for (work_brick& b : work_) {
+      for (work_row& row : b) {
+        row.value += step * row.sum / (row.weight + 1e-30F);  // no weight, no sum
+        row.sum = lanes{};
       }
     }
     // The first one stands for all places without a brick.
-    sum_[0] = {};
+    work_[0] = {};
   }
 
   void finish() {
-    for (std::size_t b = 1; b < out_.bricks.size(); ++b) {
-      for (float& c : out_.bricks[b]) {
-        // Beside few points, at sharp corners, a coefficient is not well known, and all of them bound the relief.
-        c = std::min(std::max(1.25F * lowest_, c), 1.25F * highest_);
+    points_ = {};
+    out_.bricks.assign(work_.size(), {});
+    for (std::size_t b = 1; b < work_.size(); ++b) {
+      for (std::size_t row = 0; row < side * side; ++row) {
+        for (std::size_t i = 0; i < side; ++i) {
+          // Beside few points, at sharp corners, a coefficient is not well known, and all of them bound the relief.
+          out_.bricks[b][row * side + i] =
+              std::min(std::max(1.25F * lowest_, work_[b][row].value[i]), 1.25F * highest_);
+        }
       }
     }
-    points_ = {};
-    sum_ = weight_ = {};
+    work_ = {};
   }
 
   relief_bricks& out_;
@@ -367,7 +368,7 @@ class relief_fit {
   std::array<std::array<std::array<std::size_t, 3>, 2>, 2> marked_{};  // first and last bricks of a point, by side
   std::vector<std::uint32_t> cells_{0};                                // of the bricks, in the index
   std::vector<std::uint32_t> first_;                                   // of each brick's points
-  std::vector<relief_bricks::brick> sum_, weight_;
+  std::vector<work_brick> work_;
   std::vector<std::uint64_t> rows_;       // of each brick's dense copy, that its points' feet reach
   std::vector<float> residual_;           // the largest of each brick's points
   float lowest_ = 0.0F, highest_ = 0.0F;  // of the points' relief, and zero
