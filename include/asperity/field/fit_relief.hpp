@@ -346,15 +346,27 @@ class relief_fit {
     work_[0] = {};
   }
 
+  /// Hands the coefficients over. Bricks with next to nothing in them, on flat faces, are left out.
   void finish() {
     points_ = {};
-    out_.bricks.assign(work_.size(), {});
+    const float nothing = 0.01F * fine_enough_;
+    std::uint32_t kept = 1;
     for (std::size_t b = 1; b < work_.size(); ++b) {
+      float most = 0.0F;
+      for (const work_row& row : work_[b]) {
+        for (std::size_t i = 0; i < side; ++i) most = std::max(most, std::fabs(row.value[i]));
+      }
+      out_.index[cells_[b]] = most > nothing ? kept++ : 0;
+    }
+    out_.bricks.reserve(kept);
+    out_.bricks.assign(1, relief_bricks::brick{});
+    for (std::size_t b = 1; b < work_.size(); ++b) {
+      if (out_.index[cells_[b]] == 0) continue;
+      relief_bricks::brick& to = out_.bricks.emplace_back();
       for (std::size_t row = 0; row < side * side; ++row) {
         for (std::size_t i = 0; i < side; ++i) {
           // Beside few points, at sharp corners, a coefficient is not well known, and all of them bound the relief.
-          out_.bricks[b][row * side + i] =
-              std::min(std::max(1.25F * lowest_, work_[b][row].value[i]), 1.25F * highest_);
+          to[row * side + i] = std::min(std::max(1.25F * lowest_, work_[b][row].value[i]), 1.25F * highest_);
         }
       }
     }
