@@ -101,8 +101,8 @@ class distance_sweep {
     }
     for (std::size_t k = 0; k < nz; ++k) sweep_layer(k, k > 0 ? nx * ny : 0, false);
     for (std::size_t k = nz; k-- > 0;) sweep_layer(k, k + 1 < nz ? nx * ny : 0, true);
-    for (std::vector<float>& m : middle_) m = {};
-    square_ = {};
+    middle_ = {};
+    square_ = std::vector<float>();
   }
 
   /// Of the triangles handed to a node and to those around it, the one that is nearest.

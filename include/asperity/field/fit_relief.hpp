@@ -348,7 +348,7 @@ class relief_fit {
 
   /// Hands the coefficients over. Bricks with next to nothing in them, on flat faces, are left out.
   void finish() {
-    points_ = {};
+    points_ = std::vector<point>();  // gives its memory back, as = {} does not
     const float nothing = 0.01F * fine_enough_;
     std::uint32_t kept = 1;
     for (std::size_t b = 1; b < work_.size(); ++b) {
@@ -370,7 +370,7 @@ class relief_fit {
         }
       }
     }
-    work_ = {};
+    work_ = std::vector<work_brick>();
   }
 
   relief_bricks& out_;

@@ -154,7 +154,7 @@ inline void lay_relief(body_field& out, const bounds& box, const field_settings&
   }
   out.thinnest_resolved_m = 3.0 * pitch;
   if (pitch != measured.pitch_m) {
-    surface = {};
+    surface = std::vector<detail::fine_triangle>();  // gives its memory back, as = {} does not
     surface = detail::cut_fine_surface(model, piece_per_pitch * pitch);
     crossings = detail::cross_lines(surface, out.smooth);
   }
@@ -169,7 +169,7 @@ inline void lay_relief(body_field& out, const bounds& box, const field_settings&
   const double texel = detail::measure_texture(model, detail::surface_index(model)).texel_m;
   const double area_m2 = detail::area_of(surface);
   detail::lay_relief(out, box, settings, texel, area_m2);
-  surface = {};
+  surface = std::vector<detail::fine_triangle>();
   const double step_m = 0.95 * out.fine.pitch_m;
   detail::relief_fit fit(out.fine, out, 1.1 * area_m2 / (step_m * step_m), 1e-6 * model.box.diagonal());
   detail::for_each_fine_point(model, step_m, [&](const vec3& p_b) { fit.add(p_b); });
