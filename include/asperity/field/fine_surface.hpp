@@ -25,49 +25,50 @@ using fine_triangle = std::array<vec3, 3>;
 /// Edges alone decide where to cut, so neighbours agree and there are no gaps but those of the texture's own seams. A
 /// sliver is cut along its length only.
 [[nodiscard]] inline std::vector<fine_triangle> cut_fine_surface(const textured_model& model, double edge_m) {
-  struct part {
-    std::array<vec3, 3> p;
-    std::array<vec2, 3> uv;
+  struct corner {
+    vec3 p;
+    vec2 uv;
+    vec3 fine;  // read once and handed on: most corners belong to several pieces
   };
+  using part = std::array<corner, 3>;
+  const auto corner_at = [&](const vec3& p, const vec2& uv) { return corner{p, uv, fine_point(model.texture, uv, p)}; };
   std::vector<fine_triangle> out;
   std::vector<part> waiting;
   for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
-    waiting.push_back({corners(model.mesh, t), model.mesh.triangles[t].uv});
+    const auto whole = corners(model.mesh, t);
+    const auto& uv = model.mesh.triangles[t].uv;
+    waiting.push_back({corner_at(whole[0], uv[0]), corner_at(whole[1], uv[1]), corner_at(whole[2], uv[2])});
     while (!waiting.empty()) {
       const part c = waiting.back();
       waiting.pop_back();
       std::array<bool, 3> cut{};
-      std::array<vec3, 3> m;
-      std::array<vec2, 3> n;
+      std::array<corner, 3> m;
       std::size_t cuts = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        const vec3 e = c.p[(k + 1) % 3] - c.p[k];
+        const corner &from = c[k], &to = c[(k + 1) % 3];
+        const vec3 e = to.p - from.p;
         cut[k] = glm::dot(e, e) > edge_m * edge_m;
-        cuts += cut[k] ? 1U : 0U;
-        m[k] = 0.5 * (c.p[k] + c.p[(k + 1) % 3]);
-        n[k] = 0.5 * (c.uv[k] + c.uv[(k + 1) % 3]);
+        if (!cut[k]) continue;
+        ++cuts;
+        m[k] = corner_at(0.5 * (from.p + to.p), 0.5 * (from.uv + to.uv));
       }
       if (cuts == 0) {
-        fine_triangle& f = out.emplace_back();
-        for (std::size_t k = 0; k < 3; ++k) f[k] = fine_point(model.texture, c.uv[k], c.p[k]);
+        out.push_back({c[0].fine, c[1].fine, c[2].fine});
       } else if (cuts == 3) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::size_t l = (k + 2) % 3;
-          waiting.push_back({{c.p[k], m[k], m[l]}, {c.uv[k], n[k], n[l]}});
-        }
-        waiting.push_back({{m[0], m[1], m[2]}, {n[0], n[1], n[2]}});
+        for (std::size_t k = 0; k < 3; ++k) waiting.push_back({c[k], m[k], m[(k + 2) % 3]});
+        waiting.push_back(m);
       } else {
         // One long edge: two halves. Two: the corner between them, and the rest halved across.
         std::size_t k = 0;
         while (!cut[k] || (cuts == 2 && !cut[(k + 1) % 3])) ++k;
         const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
         if (cuts == 1) {
-          waiting.push_back({{c.p[k], m[k], c.p[b]}, {c.uv[k], n[k], c.uv[b]}});
-          waiting.push_back({{m[k], c.p[a], c.p[b]}, {n[k], c.uv[a], c.uv[b]}});
+          waiting.push_back({c[k], m[k], c[b]});
+          waiting.push_back({m[k], c[a], c[b]});
         } else {
-          waiting.push_back({{m[k], c.p[a], m[a]}, {n[k], c.uv[a], n[a]}});
-          waiting.push_back({{c.p[k], m[k], m[a]}, {c.uv[k], n[k], n[a]}});
-          waiting.push_back({{c.p[k], m[a], c.p[b]}, {c.uv[k], n[a], c.uv[b]}});
+          waiting.push_back({m[k], c[a], m[a]});
+          waiting.push_back({c[k], m[k], m[a]});
+          waiting.push_back({c[k], m[a], c[b]});
         }
       }
     }

@@ -22,38 +22,45 @@ struct line_crossing {
   int step;            ///< of the winding number: 1 on the way in
 };
 
-/// Crossings of all lines along an axis, in order along each line. Line c * nodes[b] + b for the axes a, b, c in turn.
-[[nodiscard]] inline std::vector<line_crossing> cross_lines(std::span<const fine_triangle> surface,
-                                                            const coarse_grid& grid, std::size_t axis) {
-  const int a = static_cast<int>(axis), b = (a + 1) % 3, c = (a + 2) % 3;
-  const double last_b = static_cast<double>(grid.nodes[static_cast<std::size_t>(b)]) - 1.0;
-  const double last_c = static_cast<double>(grid.nodes[static_cast<std::size_t>(c)]) - 1.0;
-  std::vector<line_crossing> out;
+/// Crossings of the lines of nodes along x, y and z with a surface.
+using axis_crossings = std::array<std::vector<line_crossing>, 3>;
+
+/// Crossings of all lines of a grid, in order along each line. Line c * nodes[b] + b for the axes a, b, c in turn.
+[[nodiscard]] inline axis_crossings cross_lines(std::span<const fine_triangle> surface, const coarse_grid& grid) {
+  axis_crossings out;
+  const double per_pitch = 1.0 / grid.pitch_m;
   for (const fine_triangle& t : surface) {
-    const vec3 p = (t[0] - grid.low) / grid.pitch_m, q = (t[1] - grid.low) / grid.pitch_m;
-    const vec3 r = (t[2] - grid.low) / grid.pitch_m, n = glm::cross(q - p, r - p);
-    const double det = n[a];
-    if (!(std::fabs(det) > 1e-12)) continue;
-    const double low_c = std::max(0.0, std::ceil(std::min({p[c], q[c], r[c]})));
-    const double high_c = std::min(last_c, std::max({p[c], q[c], r[c]}));
-    const double low_b = std::max(0.0, std::ceil(std::min({p[b], q[b], r[b]})));
-    const double high_b = std::min(last_b, std::max({p[b], q[b], r[b]}));
-    for (double y = low_c; y <= high_c; y += 1.0) {
-      for (double x = low_b; x <= high_b; x += 1.0) {
-        const double u = ((x - p[b]) * (r[c] - p[c]) - (r[b] - p[b]) * (y - p[c])) / det;
-        const double v = ((q[b] - p[b]) * (y - p[c]) - (x - p[b]) * (q[c] - p[c])) / det;
-        if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
-        const vec3 unit = n / std::sqrt(glm::dot(n, n));
-        out.push_back({static_cast<std::uint32_t>(y * (last_b + 1.0) + x),
-                       static_cast<float>(p[a] + u * (q[a] - p[a]) + v * (r[a] - p[a])),
-                       {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)},
-                       det > 0.0 ? -1 : 1});
+    const vec3 p = (t[0] - grid.low) * per_pitch, q = (t[1] - grid.low) * per_pitch, r = (t[2] - grid.low) * per_pitch;
+    const vec3 n = glm::cross(q - p, r - p), least = glm::min(p, glm::min(q, r)), most = glm::max(p, glm::max(q, r));
+    vec3 low, high;  // of the nodes' numbers
+    for (int k = 0; k < 3; ++k) {
+      low[k] = std::max(0.0, std::ceil(least[k]));
+      high[k] = std::min(static_cast<double>(grid.nodes[static_cast<std::size_t>(k)]) - 1.0, most[k]);
+    }
+    for (int a = 0; a < 3; ++a) {
+      const int b = (a + 1) % 3, c = (a + 2) % 3;
+      const double det = n[a], lines = static_cast<double>(grid.nodes[static_cast<std::size_t>(b)]);
+      if (low[b] > high[b] || low[c] > high[c] || !(std::fabs(det) > 1e-12)) continue;
+      for (double y = low[c]; y <= high[c]; y += 1.0) {
+        for (double x = low[b]; x <= high[b]; x += 1.0) {
+          const double u = ((x - p[b]) * (r[c] - p[c]) - (r[b] - p[b]) * (y - p[c])) / det;
+          const double v = ((q[b] - p[b]) * (y - p[c]) - (x - p[b]) * (q[c] - p[c])) / det;
+          if (u < 0.0 || v < 0.0 || u + v > 1.0) continue;
+          const vec3 unit = n / std::sqrt(glm::dot(n, n));
+          out[static_cast<std::size_t>(a)].push_back(
+              {static_cast<std::uint32_t>(y * lines + x),
+               static_cast<float>(p[a] + u * (q[a] - p[a]) + v * (r[a] - p[a])),
+               {static_cast<float>(unit.x), static_cast<float>(unit.y), static_cast<float>(unit.z)},
+               det > 0.0 ? -1 : 1});
+        }
       }
     }
   }
-  std::sort(out.begin(), out.end(), [](const line_crossing& x, const line_crossing& y) {
-    return x.line != y.line ? x.line < y.line : x.place < y.place;
-  });
+  for (std::vector<line_crossing>& along : out) {
+    std::sort(along.begin(), along.end(), [](const line_crossing& x, const line_crossing& y) {
+      return x.line != y.line ? x.line < y.line : x.place < y.place;
+    });
+  }
   return out;
 }
 
@@ -72,13 +79,13 @@ void for_each_closed_line(std::span<const line_crossing> all, Visit&& visit) {
 
 /// Of every node: above zero inside, below zero outside, zero where the lines disagree. Each node is asked along three
 /// axes, so that a line lost at a seam is outvoted.
-[[nodiscard]] inline std::vector<std::int8_t> vote_inside(std::span<const fine_triangle> surface,
-                                                          const coarse_grid& grid) {
+/// @param crossings of the grid's lines
+[[nodiscard]] inline std::vector<std::int8_t> vote_inside(const axis_crossings& crossings, const coarse_grid& grid) {
   std::vector<std::int8_t> votes(grid.nodes[0] * grid.nodes[1] * grid.nodes[2], -3);
   const std::array<std::size_t, 3> stride{1, grid.nodes[0], grid.nodes[0] * grid.nodes[1]};
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-    const std::vector<line_crossing> all = cross_lines(surface, grid, a);
+    const std::vector<line_crossing>& all = crossings[a];
     // A line without crossings votes outside, as all do to begin with; one that does not close takes that back.
     for (std::size_t i = 0; i < all.size();) {
       std::size_t end = i;
@@ -104,15 +111,15 @@ void for_each_closed_line(std::span<const line_crossing> all, Visit&& visit) {
 ///
 /// Measured along the grid's lines between walls that face away from each other, so that the wedge at a sharp edge,
 /// which is thin wherever there is an edge, does not count.
-[[nodiscard]] inline double measure_thickness(std::span<const fine_triangle> surface, const coarse_grid& grid) {
+/// @param crossings of the grid's lines
+[[nodiscard]] inline double measure_thickness(const axis_crossings& crossings, const coarse_grid& grid) {
   struct way {
     double thickness, weight;
   };
   std::vector<way> ways;
   double total = 0.0;
   for (std::size_t a = 0; a < 3; ++a) {
-    const std::vector<line_crossing> all = cross_lines(surface, grid, a);
-    for_each_closed_line(all, [&](std::span<const line_crossing> line) {
+    for_each_closed_line(crossings[a], [&](std::span<const line_crossing> line) {
       int winding = 0;
       for (std::size_t i = 0; i + 1 < line.size(); ++i) {
         const int before = winding;

@@ -120,6 +120,7 @@ inline void lay_relief(body_field& out, const bounds& box, const field_settings&
     return error{error_code::invalid_argument,
                  "field settings: most_nodes must be 10000 or more, relief_bytes 100000 or more"};
   }
+  constexpr double piece_per_pitch = 0.75;  // longest edge of the pieces that distances are measured to
   const std::string& name = model.name;
   if (model.texture.width == 0 || model.texture.height == 0) {
     return error{error_code::bad_texture, "model \"" + name + "\" has no haptic texture; bake it first"};
@@ -131,12 +132,16 @@ inline void lay_relief(body_field& out, const bounds& box, const field_settings&
   }
 
   body_field out;
-  std::vector<detail::fine_triangle> surface = detail::cut_fine_surface(model, extent / 96.0);
+  const double usual = extent / 96.0;
+  std::vector<detail::fine_triangle> surface = detail::cut_fine_surface(model, piece_per_pitch * usual);
   const bounds box = detail::box_of(surface);
-  out.thickness_m = detail::measure_thickness(surface, detail::lay_grid(box, 0.0, extent / 96.0));
+  detail::coarse_grid measured;
+  detail::lay_smooth(measured, box, {.margin_m = settings.margin_m}, usual);
+  detail::axis_crossings crossings = detail::cross_lines(surface, measured);
+  out.thickness_m = detail::measure_thickness(crossings, measured);
   double pitch = settings.pitch_m;
   if (!(pitch > 0.0)) {
-    pitch = extent / 96.0;
+    pitch = usual;
     if (out.thickness_m > 0.0) pitch = std::min(pitch, out.thickness_m / 3.0);
   }
   detail::lay_smooth(out.smooth, box, settings, pitch);
@@ -148,8 +153,13 @@ inline void lay_relief(body_field& out, const bounds& box, const field_settings&
                      std::to_string(settings.most_nodes) + "; raise most_nodes, or make the walls thicker"};
   }
   out.thinnest_resolved_m = 3.0 * pitch;
-  surface = detail::cut_fine_surface(model, 0.75 * pitch);
-  detail::fill_distance(surface, out.smooth);
+  if (pitch != measured.pitch_m) {
+    surface = std::vector<detail::fine_triangle>();  // gives its memory back, as = {} does not
+    surface = detail::cut_fine_surface(model, piece_per_pitch * pitch);
+    crossings = detail::cross_lines(surface, out.smooth);
+  }
+  detail::fill_distance(surface, crossings, out.smooth);
+  crossings = {};
 
   if (std::none_of(out.smooth.value.begin(), out.smooth.value.end(), [](float d) { return d > 0.0F; })) {
     return error{error_code::bad_mesh, "model \"" + name +
@@ -157,10 +167,12 @@ inline void lay_relief(body_field& out, const bounds& box, const field_settings&
                                            "counter-clockwise seen from outside, around a volume"};
   }
   const double texel = detail::measure_texture(model, detail::surface_index(model)).texel_m;
-  detail::lay_relief(out, box, settings, texel, detail::area_of(surface));
-  surface = {};
-  detail::relief_fit fit(out.fine, out);
-  detail::for_each_fine_point(model, 0.95 * out.fine.pitch_m, [&](const vec3& p_b) { fit.add(p_b); });
+  const double area_m2 = detail::area_of(surface);
+  detail::lay_relief(out, box, settings, texel, area_m2);
+  surface = std::vector<detail::fine_triangle>();
+  const double step_m = 0.95 * out.fine.pitch_m;
+  detail::relief_fit fit(out.fine, out, 1.1 * area_m2 / (step_m * step_m), 1e-6 * model.box.diagonal());
+  detail::for_each_fine_point(model, step_m, [&](const vec3& p_b) { fit.add(p_b); });
   fit.solve();
   for (const detail::relief_bricks::brick& b : out.fine.bricks) {
     for (const float c : b) {

@@ -25,7 +25,7 @@ double amplitude(double wavelength_m, Function&& f) {
 }
 
 TEST(BodyFieldStripes, KeepTheirAmplitude) {
-  for (const double wavelength : {1e-3, 2e-3}) {
+  for (const double wavelength : {0.5e-3, 1e-3, 2e-3}) {
     const textured_model box = make_textured_box({0.025, 0.025, 0.025}, 1024, ridges(20e-6, wavelength));
     const body_field f = built_field(box).value();
     // What the texture holds of them: bilinear between texels, it has lost some.
@@ -34,7 +34,8 @@ TEST(BodyFieldStripes, KeepTheirAmplitude) {
       const double u = x / 0.05 + 0.5, v = 0.3;
       return box.texture.sample(top.uv[0] + u * (top.uv[1] - top.uv[0]) + v * (top.uv[2] - top.uv[1])).z;
     });
-    EXPECT_NEAR(held, 20e-6, 2e-6);
+    // Bilinear between texels loses a tenth at eight texels a wave, and a quarter at four: the bake's, not the field's.
+    EXPECT_NEAR(held, 20e-6, wavelength > 0.9e-3 ? 2e-6 : 6e-6);
     for (const double y : {0.0, 1.234e-3, -7.7e-3}) {
       // Height of the zero over the face: by Newton from the plane.
       const double at_zero = amplitude(wavelength, [&](double x) {
@@ -45,7 +46,9 @@ TEST(BodyFieldStripes, KeepTheirAmplitude) {
         }
         return p.z;
       });
-      EXPECT_NEAR(at_zero, held, 0.02 * held) << wavelength;
+      std::printf("  wavelength %.2f mm (%.1f relief pitches): texture holds %.2f um, the field %.1f %% of it\n",
+                  1e3 * wavelength, wavelength / f.fine.pitch_m, 1e6 * held, 100.0 * at_zero / held);
+      EXPECT_NEAR(at_zero, held, 0.012 * held) << wavelength;
       // What is frozen in a deep press: the relief that a point meets under and over the surface, with what is left of
       // the stripes in the smooth part.
       for (const double depth : {-0.3e-3, 0.5e-3, 2e-3}) {
