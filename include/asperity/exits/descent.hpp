@@ -99,8 +99,9 @@ inline void planes_at(const vec3& x, std::span<const mark> of, posed_samples& sa
 }
 
 /// From x to near a way out as seen from y. Adds the deepest samples that it meets to the witnesses.
+/// @param deepest_known the deepest sample at x is among them
 /// @rt safe: at most 14 steps, each with a search for the deepest sample
-[[nodiscard]] inline vec3 descend(const vec3& y, vec3 x, const descent_rule& rule, witnesses& met,
+[[nodiscard]] inline vec3 descend(const vec3& y, vec3 x, const descent_rule& rule, witnesses& met, bool deepest_known,
                                   posed_samples& samples) noexcept {
   constexpr double near_m = 1e-3;  // how far outside a sample may be and still tell its plane
   double longest_m = rule.longest_m;
@@ -109,7 +110,8 @@ inline void planes_at(const vec3& x, std::span<const mark> of, posed_samples& sa
     double above_m = -near_m;
     for (const mark& m : met) above_m = std::max(above_m, samples.depth(m, x));
     mark m;
-    if (samples.deepest(x, above_m + 1e-9, m)) {
+    const bool ask = i > 0 || !deepest_known;
+    if (ask && samples.deepest(x, above_m + 1e-9, m)) {
       above_m = m.depth_m;
       // The first half are the older and stay; the newer half is a queue.
       if (met.full()) {

@@ -113,7 +113,8 @@ class exit_solver {
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(directions_, samples_, patch_); }
 
  private:
-  // The nearest way out, as if it were alone. False where nothing overlaps.
+  // A way out, as if it were alone: the one that a descent from here leads to, or the nearest that a search finds where
+  // the descent ends inside, half way between two walls. False where nothing overlaps.
   [[nodiscard]] bool find_first() noexcept {
     constexpr double shallow_m = 30e-6;  // from here the iteration finds its way alone
     mark m;
@@ -123,9 +124,19 @@ class exit_solver {
     if (m.depth_m > shallow_m) {
       met_.clear();
       static_cast<void>(met_.push_back(m));
-      z = descend(vec3(0.0), z, descent_, met_, samples_);
+      z = descend(vec3(0.0), z, descent_, met_, true, samples_);
     }
     way_out first = settle_from(springs_.one, vec3(0.0), z);
+    double most_m = 1.5 * m.depth_m;
+    for (int wider = 0; wider < 8 && !is_out(first) && samples_.count.left(); ++wider, most_m *= 1.6) {
+      others_.search({vec3(0.0), most_m, shallow_m}, {}, directions_, samples_, found_);
+      for (const vec3& start : found_) {
+        const way_out w = settle_from(springs_.one, vec3(0.0), start);
+        if (is_out(w) && (!is_out(first) || w.cost_j(springs_, vec3(0.0)) < first.cost_j(springs_, vec3(0.0)))) {
+          first = w;
+        }
+      }
+    }
     if (samples_.count.cut) {
       // Too little to settle: what the descent has come to, and in add_up() no more push than the spring's pull.
       first = {};
@@ -134,43 +145,69 @@ class exit_solver {
     } else if (!(first.bed.deepest_m > 0.0)) {
       return false;
     }
+    first.settled = first.settled && is_out(first);
     first.weight = 1.0;
     static_cast<void>(ways_.push_back(first));
     return true;
   }
 
+  // The bed gives way by a fiftieth of the motion. Deeper than a tenth is a place where it pushes from both sides.
+  [[nodiscard]] bool is_out(const way_out& w) const noexcept {
+    return w.bed.deepest_m <= 0.1 * glm::length(w.z_w) + 4.0 * bed_.onset_m;
+  }
+
   // Adds ways out until none is missing that would be cheaper than the mixture of those there are.
   void find_others() noexcept {
-    constexpr int most_rounds = 40, settling_rounds = 12;
+    constexpr int most_rounds = 60;
     constexpr double beyond = 1.2;       // descents end a little off
     constexpr double clear_of_m = 2e-6;  // outside: not deeper than the bed gives way, and this
     vec3 y = mix(ways_, springs_);
-    for (int round = 0;; ++round) {
-      if (round == most_rounds) {
-        hit_.rounds = true;
-        return;
+    bool at_rest = true;  // a single way out was settled as it is
+    for (int round = 0; round < most_rounds; ++round) {
+      if (!at_rest) {
+        at_rest = settle_again(y);
+        y = mix(ways_, springs_);
+        continue;
       }
       double least_j = ways_[0].cost_j(springs_, y), sunk_m = 0.0;
       for (const way_out& w : ways_) {
         least_j = std::min(least_j, w.cost_j(springs_, y));
-        sunk_m = std::max(sunk_m, w.bed.deepest_m);
+        if (w.weight > 0.0) sunk_m = std::max(sunk_m, w.bed.deepest_m);
       }
-      bool added = false;
-      const std::size_t known = ways_.size();
-      if (round > 0 || known > 1) {
-        for (std::size_t i = 0; i < known; ++i) {
-          if (ways_[i].weight > 1e-9) added |= add(settle_from(springs_.each, y, ways_[i].z_w), y, least_j);
-        }
+      const double most_m = beyond * std::sqrt(2.0 * least_j / springs_.each);
+      others_.search({y, most_m, sunk_m + clear_of_m}, {ways_.data(), ways_.size()}, directions_, samples_, found_);
+      for (const vec3& z : found_) {
+        if (add(settle_from(springs_.each, y, z), y, least_j)) at_rest = false;
       }
-      // First the known ones come to rest, then others are looked for.
-      if (!added || round >= settling_rounds) {
-        const double most_m = beyond * std::sqrt(2.0 * least_j / springs_.each);
-        others_.search({y, most_m, sunk_m + clear_of_m}, {ways_.data(), ways_.size()}, directions_, samples_, found_);
-        for (const vec3& z : found_) added |= add(settle_from(springs_.each, y, z), y, least_j);
-      }
-      if (!added) return;
+      if (at_rest || samples_.count.cut) return;
       y = mix(ways_, springs_);
     }
+    hit_.rounds = true;
+  }
+
+  // Settles the ways out that count, or nearly so, as seen from y. True where none has moved.
+  [[nodiscard]] bool settle_again(const vec3& y) noexcept {
+    constexpr double still_m = 1e-10, same_m = 50e-6, nearly = 1.05;
+    bool at_rest = true;
+    double most_j = 0.0;
+    for (const way_out& w : ways_) {
+      if (w.weight > 0.0) most_j = std::max(most_j, nearly * w.cost_j(springs_, y));
+    }
+    const std::size_t known = ways_.size();
+    for (std::size_t i = 0; i < known && !samples_.count.cut; ++i) {
+      if (ways_[i].cost_j(springs_, y) > most_j) continue;
+      way_out now = settle_from(springs_.each, y, ways_[i].z_w);
+      if (samples_.count.cut) return true;
+      const double moved_m = glm::length(now.z_w - ways_[i].z_w);
+      if (moved_m < same_m) {
+        now.weight = ways_[i].weight;
+        ways_[i] = now;
+        at_rest = at_rest && (moved_m < still_m || now.weight == 0.0);
+      } else {
+        at_rest = !add(now, y, most_j) && at_rest;
+      }
+    }
+    return at_rest;
   }
 
   [[nodiscard]] way_out settle_from(double k_n_per_m, const vec3& y, const vec3& z) noexcept {
@@ -182,8 +219,8 @@ class exit_solver {
 
   // True where it is new and cheaper than all there are.
   bool add(way_out w, const vec3& y, double least_j) noexcept {
-    constexpr double same_m = 1e-9, cheaper = 1.0 - 1e-10;
-    if (samples_.count.cut) return false;  // its bed may lack samples
+    constexpr double same_m = 1e-7, cheaper = 1.0 - 1e-10;
+    if (samples_.count.cut || !is_out(w)) return false;  // where the count is cut its bed may lack samples
     if (!(w.cost_j(springs_, y) < cheaper * least_j)) return false;
     for (const way_out& k : ways_) {
       if (glm::length(k.z_w - w.z_w) < same_m) return false;
@@ -207,11 +244,12 @@ class exit_solver {
       const double share = w.settled ? w.weight : w.weight * bounded_share(w.z_w);
       way_out_stiffness own;
       patch_.for_each_inside(w.z_w, samples_, [&](const mark& m, const coarse_reading& d) noexcept {
-        const vec3 smooth = d.slope, relief = samples_.relief_slope(m);
-        const vec6 by_pose{smooth + relief,
-                           glm::cross(samples_.lever_w(m, w.z_w), smooth) + glm::cross(samples_.lever_w(m), relief)};
-        wrench_ += to_wrench((-share * bed_.push_n(d.value_m)) * by_pose);
-        own.add(bed_.rise_n_per_m(d.value_m), by_pose, smooth);
+        const vec3 lever = samples_.lever_w(m, w.z_w), relief = samples_.relief_slope(m);
+        const vec6 by_pose{d.slope + relief, glm::cross(lever, d.slope) + glm::cross(samples_.lever_w(m), relief)};
+        const double push_n = bed_.push_n(d.value_m);
+        wrench_ += to_wrench((-share * push_n) * by_pose);
+        own.add(bed_.rise_n_per_m(d.value_m), w.settled ? push_n : 0.0,
+                {by_pose, d.slope, d.hessian_per_m, lever, samples_.meeting_of(m).of_probe});
       });
       stiffness.add(share, own);
     }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "asperity/core/math.hpp"
@@ -70,9 +72,21 @@ class field_bounds {
     return std::max(rim_m_, static_cast<double>(highest_[nearest(c_b)]) + steepest_ * inside_m);
   }
 
-  /// No second derivative of S within 1.5 pitches of a point is larger (spectral norm), 1/m. @rt safe
-  [[nodiscard]] double bend_per_m(const vec3& p_b) const noexcept {
-    return static_cast<double>(bend_[nearest(grid_->clamped(p_b))]);
+  /// No second derivative of S within radius_m of a point is larger (Frobenius norm), 1/m. Infinity beyond 15 pitches
+  /// and for points outside the grid. @rt safe
+  [[nodiscard]] double bend_per_m(const vec3& p_b, double radius_m) const noexcept {
+    if (grid_->clamped(p_b) != p_b) return std::numeric_limits<double>::infinity();
+    std::size_t l = 0;
+    while (l < bend_.size() && radius_m > bend_[l].radius_m) ++l;
+    if (l == bend_.size()) return std::numeric_limits<double>::infinity();
+    const bend_level& at = bend_[l];
+    std::size_t n[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const double node = (p_b[axis] - grid_->low[axis]) / grid_->pitch_m + 0.5;
+      n[k] = std::min(static_cast<std::size_t>(node) >> at.shift, at.cells[k] - 1);
+    }
+    return static_cast<double>(at.most[(n[2] * at.cells[1] + n[1]) * at.cells[0] + n[0]]);
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(highest_, bend_); }
@@ -92,16 +106,27 @@ class field_bounds {
     return axis == 0 ? 1 : (axis == 1 ? grid_->nodes[0] : grid_->nodes[0] * grid_->nodes[1]);
   }
 
+  /// The largest second derivative about cells of 2^shift nodes.
+  struct bend_level {
+    std::size_t shift = 0;
+    double radius_m = 0.0;  ///< within which it holds for every point of a cell
+    std::array<std::size_t, 3> cells{};
+    std::vector<float> most;
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(most); }
+  };
+
   // Each number becomes the largest of its 27 neighbours.
-  void spread(std::vector<float>& v) const {
+  static void spread(std::vector<float>& v, const std::array<std::size_t, 3>& nodes) {
+    std::size_t d = 1;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::vector<float> in = v;
-      const std::size_t d = stride(axis), n = grid_->nodes[axis];
+      const std::size_t n = nodes[axis];
       for (std::size_t i = 0; i < in.size(); ++i) {
         const std::size_t along = i / d % n;
         if (along > 0) v[i] = std::max(v[i], in[i - d]);
         if (along + 1 < n) v[i] = std::max(v[i], in[i + d]);
       }
+      d *= n;
     }
   }
 
@@ -110,7 +135,7 @@ class field_bounds {
   // there by a pitch at most: that is added.
   void find_highest() {
     highest_ = grid_->value;
-    spread(highest_);
+    spread(highest_, grid_->nodes);
     const auto more = static_cast<float>(3.0 / 48.0 * 2.0 * grid_->pitch_m);
     for (float& v : highest_) v += more;
     const auto& n = grid_->nodes;
@@ -121,21 +146,47 @@ class field_bounds {
     }
   }
 
-  // Second differences of the coefficients bound the spline's second derivatives, which are averages of them.
+  // Second differences of the coefficients bound the spline's second derivatives, which are averages of those at up to
+  // two nodes away. A ball about a point of a cell reaches no further than the cells next to it, less half a node.
   void find_bend() {
-    const auto& v = grid_->value;
     const auto& n = grid_->nodes;
     const double per_square = 1.0 / (grid_->pitch_m * grid_->pitch_m);
-    bend_.assign(v.size(), 0.0F);
+    bend_level level{0, 0.5 * grid_->pitch_m, n, std::vector<float>(grid_->value.size(), 0.0F)};
     for (std::size_t z = 1; z + 1 < n[2]; ++z) {
       for (std::size_t y = 1; y + 1 < n[1]; ++y) {
         for (std::size_t x = 1; x + 1 < n[0]; ++x) {
           const std::size_t i = grid_->at(x, y, z);
-          bend_[i] = static_cast<float>(1.0001 * per_square * second_difference(i));
+          level.most[i] = static_cast<float>(1.0001 * per_square * second_difference(i));
         }
       }
     }
-    for (int nodes = 0; nodes < 3; ++nodes) spread(bend_);
+    spread(level.most, n);
+    spread(level.most, n);
+    for (;;) {
+      bend_level next = halved(level);
+      spread(level.most, level.cells);
+      bend_.push_back(std::move(level));
+      if (next.shift > 4) return;
+      level = std::move(next);
+    }
+  }
+
+  [[nodiscard]] bend_level halved(const bend_level& of) const {
+    bend_level to;
+    to.shift = of.shift + 1;
+    to.radius_m = (static_cast<double>(std::size_t{1} << to.shift) - 0.5) * grid_->pitch_m;
+    for (std::size_t k = 0; k < 3; ++k) to.cells[k] = (of.cells[k] + 1) / 2;
+    to.most.assign(to.cells[0] * to.cells[1] * to.cells[2], 0.0F);
+    std::size_t i = 0;
+    for (std::size_t z = 0; z < of.cells[2]; ++z) {
+      for (std::size_t y = 0; y < of.cells[1]; ++y) {
+        for (std::size_t x = 0; x < of.cells[0]; ++x, ++i) {
+          float& cell = to.most[((z / 2) * to.cells[1] + y / 2) * to.cells[0] + x / 2];
+          cell = std::max(cell, of.most[i]);
+        }
+      }
+    }
+    return to;
   }
 
   [[nodiscard]] double second_difference(std::size_t i) const noexcept {
@@ -188,7 +239,8 @@ class field_bounds {
   }
 
   const detail::coarse_grid* grid_ = nullptr;
-  std::vector<float> highest_, bend_;
+  std::vector<float> highest_;
+  std::vector<bend_level> bend_;
   double steepest_ = 1.0;
   double rim_m_ = -std::numeric_limits<double>::infinity();
 };

@@ -64,7 +64,7 @@ class other_ways_out {
             remember(m);
             go = ball(m.depth_m, in, samples);
           } else {
-            add(descend(in.y_w, z, rule_, met_, samples), known, out);
+            add(descend(in.y_w, z, rule_, met_, false, samples), known, out);
           }
           look_again(in, known, samples, out);
           if (go <= 0.0) break;

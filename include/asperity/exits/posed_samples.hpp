@@ -186,17 +186,18 @@ class posed_samples {
     const vec3 c_y = m.turn_yx * vec3(b.centre_b) + m.shift_y + moved_y;
     ++count.spent;
     double smooth_m = bounds.most_by_table(c_y, radius_m);
-    if (smooth_m + relief_m <= above_m || radius_m > 8.0 * grid.pitch_m) return smooth_m + relief_m;
+    if (smooth_m + relief_m <= above_m || radius_m > 15.0 * grid.pitch_m) return smooth_m + relief_m;
     ++count.spent;
-    if (radius_m > grid.pitch_m || grid.clamped(c_y) != c_y) {
+    const double bend = bounds.bend_per_m(c_y, radius_m);
+    if (!(bend * radius_m < 2.0 * steepest)) {
       return std::min(smooth_m, smooth_depth(grid, c_y) + steepest * radius_m) + relief_m;
     }
     const coarse_reading s = grid.read(c_y);
     const double along = std::fabs(glm::dot(m.turn_yx * vec3(b.axis_b), s.slope));
     const double across = std::sqrt(std::max(0.0, glm::dot(s.slope, s.slope) - along * along));
-    const double bent = 0.5 * bounds.bend_per_m(c_y) * radius_m * radius_m;
-    smooth_m = std::min({smooth_m, s.value_m + steepest * radius_m,
-                         s.value_m + along * static_cast<double>(b.half_m) + across * radius_m + bent});
+    smooth_m = std::min(
+        {smooth_m, s.value_m + steepest * radius_m,
+         s.value_m + along * static_cast<double>(b.half_m) + across * radius_m + 0.5 * bend * radius_m * radius_m});
     return smooth_m + relief_m;
   }
 
