@@ -30,7 +30,7 @@ struct exit_rule {
   double stiffness_n_per_m = 2000.0;    ///< k: of a contact
   double onset_m = 15e-6;               ///< see bed_rule
   double bed = 50.0;                    ///< stiffness of the bed for each sample, in units of k
-  double mixed = 12.0;                  ///< bound of the force's slope where ways out are mixed, in units of k
+  double mixed = 4.0;                   ///< bound of the force's slope where ways out are mixed, in units of k
   std::size_t most_readings = 400'000;  ///< of the search; the sum at its end may take a quarter more
   std::size_t most_marks = 16'384;      ///< samples that may touch at one way out
 
