@@ -1,6 +1,7 @@
 // The renderer for programs that have poses and no control loop: depth fields, and the least motion that clears.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -9,14 +10,14 @@
 
 namespace asperity {
 
-/// Its wrench is a function of the pose alone, conservative and held at any depth. It tells the same support planes as
-/// the field_renderer.
+/// Its wrench is a function of the pose alone, conservative and held at any depth. Asked for, it tells the support
+/// planes of the field_renderer as well.
 using pose_renderer = basic_renderer<field_finder, field_depth, least_motion>;
 
 /// Settings of make_pose_renderer().
 struct pose_renderer_settings {
   field_body_settings bodies{};
-  /// Gaps up to this are told as support planes, m. 0: as make_field_renderer() does.
+  /// Gaps up to this are told as support planes, m. 0: no planes, which cost more than the wrench of a light touch.
   double reach_m = 0.0;
   least_motion_settings force{};
   near_sample_limits limits{};
@@ -29,7 +30,8 @@ struct pose_renderer_settings {
                                                               const pose_renderer_settings& settings = {}) {
   if (const result<void> ok = check_field_scene(bodies, made.get(), settings.reach_m); !ok) return ok.error();
   if (const result<void> ok = check(settings.force); !ok) return ok.error();
-  const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : detail::usual_reach_m(bodies);
+  // A gap that no sample can have, and the finder finds nothing at its first look.
+  const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : -std::numeric_limits<double>::infinity();
   field_depth depth(made, bodies, reach_m, settings.limits.readings());
   least_motion force(*made, bodies.probe->mass.centre_of_mass, settings.force);
   return pose_renderer(std::move(bodies), field_finder(std::move(made), reach_m), std::move(depth), std::move(force),
