@@ -119,6 +119,7 @@ class exit_solver {
     constexpr double shallow_m = 30e-6;  // from here the iteration finds its way alone
     mark m;
     if (!samples_.deepest(vec3(0.0), 0.0, m)) return false;
+    deepest_ = m;
     deepest_m_ = m.depth_m;
     vec3 z(0.0);
     if (m.depth_m > shallow_m) {
@@ -138,9 +139,11 @@ class exit_solver {
       }
     }
     if (samples_.count.cut) {
-      // Too little to settle: what the descent has come to, and in add_up() no more push than the spring's pull.
-      first = {};
-      first.z_w = z;
+      // Too little to settle: what the descent has come to, or what a settled way was known.
+      if (!(first.settled && is_out(first))) {
+        first = {};
+        first.z_w = z;
+      }
       first.settled = false;
     } else if (!(first.bed.deepest_m > 0.0)) {
       return false;
@@ -159,7 +162,7 @@ class exit_solver {
   // Adds ways out until none is missing that would be cheaper than the mixture of those there are.
   void find_others() noexcept {
     constexpr int most_rounds = 60;
-    constexpr double beyond = 1.2;       // descents end a little off
+    constexpr double beyond = 1.1;       // descents end a little off
     constexpr double clear_of_m = 2e-6;  // outside: not deeper than the bed gives way, and this
     vec3 y = mix(ways_, springs_);
     bool at_rest = true;  // a single way out was settled as it is
@@ -237,31 +240,39 @@ class exit_solver {
 
   void add_up() noexcept {
     energy_j_ = mixed_energy_j(ways_, springs_);
+    unsettled_stiffness_ = {};
     mixed_stiffness stiffness(springs_);
     for (const way_out& w : ways_) {
       if (!(w.weight > 0.0)) continue;
       if (!patch_.covers(w.z_w)) patch_.gather(w.z_w, samples_);
-      const double share = w.settled ? w.weight : w.weight * bounded_share(w.z_w);
+      const double share = w.weight;
+      if (!w.settled) {
+        pull_out(w);
+        continue;
+      }
       way_out_stiffness own;
       patch_.for_each_inside(w.z_w, samples_, [&](const mark& m, const coarse_reading& d) noexcept {
         const vec3 lever = samples_.lever_w(m, w.z_w), relief = samples_.relief_slope(m);
         const vec6 by_pose{d.slope + relief, glm::cross(lever, d.slope) + glm::cross(samples_.lever_w(m), relief)};
         const double push_n = bed_.push_n(d.value_m);
         wrench_ += to_wrench((-share * push_n) * by_pose);
-        own.add(bed_.rise_n_per_m(d.value_m), w.settled ? push_n : 0.0,
+        own.add(bed_.rise_n_per_m(d.value_m), push_n,
                 {by_pose, d.slope, d.hessian_per_m, lever, samples_.meeting_of(m).of_probe});
       });
       stiffness.add(share, own);
     }
-    stiffness_ = stiffness.sum();
+    stiffness_ = stiffness.sum() + unsettled_stiffness_;
   }
 
-  // Balance says that the bed pushes as hard as the spring pulls. Where an iteration was cut short the bed may push
-  // much harder: it then counts with what the spring would pull.
-  [[nodiscard]] double bounded_share(const vec3& z) noexcept {
-    const double pushed_n = glm::length(patch_.at(z, bed_, samples_).gradient_n);
-    const double pulled_n = springs_.one * glm::length(z);
-    return pushed_n <= pulled_n ? 1.0 : pulled_n / pushed_n;
+  // Where an iteration was cut short the bed's push may be anything. In balance it is the spring's pull: that, at the
+  // deepest sample.
+  void pull_out(const way_out& w) noexcept {
+    const vec3 pull_n = (w.weight * springs_.one) * w.z_w, lever = samples_.lever_w(deepest_);
+    wrench_ += wrench{pull_n, glm::cross(lever, pull_n)};
+    const double length = glm::length(w.z_w);
+    if (!(length > 0.0)) return;
+    const vec3 along = w.z_w / length;
+    add_outer(unsettled_stiffness_, -w.weight * rule_.stiffness_n_per_m, {along, glm::cross(lever, along)});
   }
 
   exit_rule rule_;
@@ -276,7 +287,8 @@ class exit_solver {
   ways_out ways_;
   found_places found_;
   wrench wrench_;
-  mat6 stiffness_;
+  mat6 stiffness_, unsettled_stiffness_;
+  mark deepest_;  // at the pose as given
   double energy_j_ = 0.0, deepest_m_ = 0.0;
   exit_limits_hit hit_;
 };

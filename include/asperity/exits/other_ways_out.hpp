@@ -38,6 +38,7 @@ class other_ways_out {
               posed_samples& samples, found_places& out) noexcept {
     out.clear();
     met_.clear();
+    leads_to_.clear();
     mark m;
     if (!samples.deepest(in.y_w, in.deepest_m, m)) {
       static_cast<void>(out.push_back(in.y_w));
@@ -51,23 +52,23 @@ class other_ways_out {
         if (met_.size() < witnesses_from_known) static_cast<void>(met_.push_back(t));
       }
     }
-    look_again(in, known, samples, out);
+    for (const way_out& k : known) {
+      const vec3 z = relax(in.y_w, k.z_w, seen(), rule_, {}, 0.0, samples);
+      if (glm::length(z - k.z_w) < 5e-5 + 4.0 * in.deepest_m) static_cast<void>(leads_to_.push_back(z));
+    }
     for (const vec3& u : directions) {
       for (double r = from_m; r < in.most_m && samples.count.left();) {
         const vec3 x = in.y_w + r * u;
         double go = stride(x, in, samples);
         if (go <= 0.0) {
-          const vec3 z = relax(in.y_w, x, {met_.data(), met_.size()}, rule_, {leads_to_.data(), leads_to_.size()},
-                               same_m, samples);
+          const vec3 z = relax(in.y_w, x, seen(), rule_, {leads_to_.data(), leads_to_.size()}, same_m, samples);
           if (leads_to_known(z)) break;
-          if (samples.deepest(x, in.deepest_m, m)) {
-            remember(m);
-            go = ball(m.depth_m, in, samples);
-          } else {
-            add(descend(in.y_w, z, rule_, met_, false, samples), known, out);
+          if (!samples.deepest(x, in.deepest_m, m)) {
+            follow(z, in, known, samples, out);
+            break;
           }
-          look_again(in, known, samples, out);
-          if (go <= 0.0) break;
+          remember(m, in, samples);
+          go = ball(m.depth_m, in, samples);
         }
         r += std::max(go, least_step * in.most_m);
       }
@@ -76,7 +77,7 @@ class other_ways_out {
 
  private:
   static constexpr std::size_t witnesses_from_known = 24, most_witnesses = 32;
-  static constexpr double same_m = 3e-6, least_step = 0.002;
+  static constexpr double same_m = 10e-6, least_step = 0.002;
 
   // A sample this deep is inside within this of where it is.
   [[nodiscard]] static double ball(double depth_m, const search_region& in, const posed_samples& samples) noexcept {
@@ -94,26 +95,41 @@ class other_ways_out {
     return 0.0;
   }
 
-  void remember(const mark& m) noexcept {
+  [[nodiscard]] std::span<const mark> seen() const noexcept { return {met_.data(), met_.size()}; }
+
+  // A new witness. Where it is inside, or nearly, at what the others make of a way out, that has to move.
+  void remember(const mark& m, const search_region& in, posed_samples& samples) noexcept {
+    constexpr double nearly_m = 2e-6;
     if (met_.size() < most_witnesses) {
       static_cast<void>(met_.push_back(m));
     } else {
       met_[most_witnesses - 1] = m;
     }
     std::swap(met_[0], met_.back());
+    for (vec3& z : leads_to_) {
+      if (samples.depth(m, z) > -nearly_m) z = relax(in.y_w, z, seen(), rule_, {}, 0.0, samples);
+    }
   }
 
-  // What the witnesses alone make of the ways out that are known.
-  void look_again(const search_region& in, std::span<const way_out> known, posed_samples& samples,
-                  const found_places& found) noexcept {
-    leads_to_.clear();
-    const std::span<const mark> of{met_.data(), met_.size()};
-    for (const way_out& k : known) {
-      const vec3 z = relax(in.y_w, k.z_w, of, rule_, {}, 0.0, samples);
-      if (glm::length(z - k.z_w) < 5e-5 + 4.0 * in.deepest_m) static_cast<void>(leads_to_.push_back(z));
+  // From outside to a way out, with witnesses of its own; those that decide it are remembered.
+  void follow(const vec3& from, const search_region& in, std::span<const way_out> known, posed_samples& samples,
+              found_places& out) noexcept {
+    own_ = met_;
+    const vec3 z = descend(in.y_w, from, rule_, own_, false, samples);
+    add(z, known, out);
+    fixed_vector<mark, 4> decide;
+    for (mark m : own_) {
+      m.depth_m = samples.depth(m, z);
+      keep_deepest(decide, m);
     }
-    for (const vec3& f : found) static_cast<void>(leads_to_.push_back(relax(in.y_w, f, of, rule_, {}, 0.0, samples)));
+    for (const mark& m : decide) {
+      const bool is_known = std::any_of(met_.begin(), met_.end(),
+                                        [&](const mark& o) { return o.sample == m.sample && o.meeting == m.meeting; });
+      if (!is_known) remember(m, in, samples);
+    }
+    static_cast<void>(leads_to_.push_back(relax(in.y_w, z, seen(), rule_, {}, 0.0, samples)));
   }
+
   [[nodiscard]] bool leads_to_known(const vec3& z) const noexcept {
     return std::any_of(leads_to_.begin(), leads_to_.end(), [&](const vec3& k) { return glm::length(z - k) < same_m; });
   }
@@ -127,8 +143,8 @@ class other_ways_out {
   }
 
   descent_rule rule_;
-  witnesses met_;
-  fixed_vector<vec3, 48> leads_to_;
+  witnesses met_, own_;
+  fixed_vector<vec3, 48> leads_to_;  // what the witnesses alone make of the ways out that are known
 };
 
 }  // namespace asperity::exits

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/math.hpp"
@@ -60,15 +61,17 @@ void keep_deepest(fixed_vector<mark, N>& among, const mark& m) noexcept {
   const auto cost = [&](const vec3& at, const bed_sum& bed) {
     return 0.5 * k_n_per_m * glm::dot(at - y, at - y) + bed.energy_j;
   };
-  double cost_j = cost(z, out.bed), damping = 0.0;
+  double cost_j = cost(z, out.bed), damping = 0.0, before = std::numeric_limits<double>::infinity();
   out.settled = false;
   for (int step = 0; step < most_steps && !out.settled && samples.count.left(); ++step) {
     const vec3 r = k_n_per_m * (z - y) + out.bed.gradient_n;
     const double left = glm::length(r), scale = 1e-12 + glm::length(out.bed.gradient_n);
-    if (left < 1e-9 * scale) {
+    // Below a millionth the steps go on while they help: rounding ends that.
+    if (left < 1e-9 * scale || (left < 1e-6 * scale && left > 0.3 * before)) {
       out.settled = true;
       break;
     }
+    before = left;
     bool moved = false;
     for (int n = 0; n < most_dampings && !moved; ++n) {
       mat3 h = out.bed.hessian_n_per_m;
