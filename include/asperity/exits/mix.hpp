@@ -34,19 +34,22 @@ using ways_out = fixed_vector<way_out, 24>;
   return sum + 0.5 * k.each * k.each / (k.mixed - k.each) * glm::dot(mean, mean);
 }
 
-/// The weights of a few ways out that make them equally dear, adding up to 1; some may be negative. False where the
-/// ways out do not determine them: more than four in general.
+/// The weights of a few ways out that make them equally dear, adding up to 1; some may be negative. Where the ways out
+/// do not determine them, being more than four or in one line, those that lead to the cheapest mixture. False where a
+/// number is not finite.
 /// @param cost  each/2 z^2 + bed, in the order of z, N/m times square metres   @rt safe
 template <std::size_t N>
 [[nodiscard]] bool even_weights(const fixed_vector<vec3, N>& z, const fixed_vector<double, N>& cost, double curvature,
                                 std::array<double, N>& weight) noexcept {
-  // Rows: curvature z_i . sum w z - nu = -cost_i, and sum w = 1; in units in which the longest way is 1.
+  // Rows: curvature z_i . sum w z + slight w_i - nu = -cost_i, and sum w = 1; in units in which the longest way is 1.
+  constexpr double slight = 1e-10;
   const std::size_t n = z.size();
   double unit = 1e-30;
   for (const vec3& p : z) unit = std::max(unit, curvature * glm::dot(p, p));
   std::array<std::array<double, N + 2>, N + 1> a{};
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) a[i][j] = curvature * glm::dot(z[i], z[j]) / unit;
+    a[i][i] += slight;
     a[i][n] = -1.0;
     a[n][i] = 1.0;
     a[i][n + 1] = -cost[i] / unit;
@@ -57,7 +60,7 @@ template <std::size_t N>
     for (std::size_t i = k + 1; i <= n; ++i) {
       if (std::fabs(a[i][k]) > std::fabs(a[pivot][k])) pivot = i;
     }
-    if (!(std::fabs(a[pivot][k]) > 1e-12)) return false;
+    if (!(std::fabs(a[pivot][k]) > 0.0)) return false;
     std::swap(a[k], a[pivot]);
     for (std::size_t i = k + 1; i <= n; ++i) {
       const double f = a[i][k] / a[k][k];
@@ -77,10 +80,10 @@ template <std::size_t N>
 /// Sets the weights to those of the least energy, a convex problem, and returns the place that they look from.
 ///
 /// By active sets: makes the ways out with weight equally dear; where one would get less than none it goes; where
-/// another is cheaper it comes. At most four are needed, since their motions lie in three dimensions.
+/// another is cheaper it comes. Four are enough in general, since their motions lie in three dimensions.
 /// @rt safe: at most 100 sets
 inline vec3 mix(ways_out& ways, const exit_springs& k) noexcept {
-  constexpr std::size_t most_active = 6;
+  constexpr std::size_t most_active = 8;
   const double curvature = k.each * k.each / (k.mixed - k.each);
   const auto own_cost = [&](const way_out& w) { return k.pull_j(w.z_w, vec3(0.0)) + w.bed.energy_j; };
   fixed_vector<way_out*, most_active> active;
@@ -103,17 +106,7 @@ inline vec3 mix(ways_out& ways, const exit_springs& k) noexcept {
       static_cast<void>(cost.push_back(own_cost(*w)));
     }
     std::array<double, most_active> even{};
-    if (!even_weights(z, cost, curvature, even)) {
-      // They lie in a plane, in a line or in a point: one of them is not needed.
-      std::size_t lightest = 0;
-      for (std::size_t i = 1; i < active.size(); ++i) {
-        if (active[i]->weight < active[lightest]->weight) lightest = i;
-      }
-      const double weight = active[lightest]->weight;
-      drop(lightest);
-      active[0]->weight += weight;
-      continue;
-    }
+    if (!even_weights(z, cost, curvature, even)) break;
     double share = 1.0;
     std::size_t first = active.size();
     for (std::size_t i = 0; i < active.size(); ++i) {

@@ -75,9 +75,9 @@ TEST(NegativePart, TakesThePositiveDirectionsAway) {
 
 // At the least energy no way out with weight is dearer than another, and none without is cheaper.
 TEST(Mix, LeavesNoCheaperWeights) {
-  drawing draw{std::mt19937_64(fresh_seed("Mix.LeavesNoCheaperWeights", "300 sets"))};
+  drawing draw{std::mt19937_64(fresh_seed("Mix.LeavesNoCheaperWeights", "3000 sets"))};
   const exit_springs k = exit_rule{}.springs();
-  for (int n = 0; n < 300; ++n) {
+  for (int n = 0; n < 3000; ++n) {
     ways_out ways;
     const int count = 1 + static_cast<int>(draw.between(0.0, 8.0));
     for (int i = 0; i < count; ++i) {
@@ -89,7 +89,7 @@ TEST(Mix, LeavesNoCheaperWeights) {
     }
     const double before = mixed_energy_j(ways, k);
     const vec3 y = mix(ways, k);
-    EXPECT_LE(mixed_energy_j(ways, k), before);
+    EXPECT_LE(mixed_energy_j(ways, k), before * (1.0 + 1e-12));
     EXPECT_LT(glm::length(y - seen_from(ways, k)), 1e-15);
     double sum = 0.0, cheapest = 1e30, dearest = 0.0;
     for (const way_out& w : ways) {
@@ -99,7 +99,7 @@ TEST(Mix, LeavesNoCheaperWeights) {
       if (w.weight > 0.0) dearest = std::max(dearest, w.cost_j(k, y));
     }
     EXPECT_NEAR(sum, 1.0, 1e-9);
-    EXPECT_LT(dearest - cheapest, 1e-9 * cheapest);
+    EXPECT_LT(dearest - cheapest, 1e-8 * cheapest);
   }
 }
 
