@@ -43,7 +43,7 @@ class kept_relief {
   }
 
  private:
-  static constexpr double kept_none = 0.6, kept_full = 0.9;  // |grad S|^2 from which some relief is kept, and all
+  static constexpr double kept_none = 0.75, kept_full = 0.95;  // |grad S|^2 from which some relief is kept, and all
 
   // As it is up to half the limit, then less and less; two continuous derivatives.
   [[nodiscard]] field_reading limited(const field_reading& t) const noexcept {
