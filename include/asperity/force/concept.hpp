@@ -7,6 +7,8 @@
 // - J is symmetric negative semidefinite, so that an implicit step may use it whatever its size.
 // - Nothing in accumulate() allocates, locks, throws, prints or reads a clock. The model may keep nothing between
 // calls.
+// - capacity_reached says that the wrench is usable and lacks something; what is neither that nor ok leaves a zero.
+// - A model whose wrench is not made of the depths alone takes the poses as well, as accumulate()'s first argument.
 #pragma once
 
 #include <concepts>
@@ -15,6 +17,7 @@
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/depth/concept.hpp"
+#include "asperity/model/scene.hpp"
 
 namespace asperity {
 
@@ -27,12 +30,24 @@ struct contact_force {
 /// Base of a force model's `policy_tag`: naming it says "I keep the contract above".
 struct force_tag {};
 
+/// A force model that is given the poses too.
 template <class P>
-concept force_model = std::derived_from<typename P::policy_tag, force_tag> &&
-    requires(const P& model, const found_by<P>& found, std::span<const reading_of<P>> depths, contact_force& out) {
+concept takes_poses = requires(const P& model, const scene_pose& at, const found_by<P>& found,
+                               std::span<const reading_of<P>> depths, contact_force& out) {
+  { model.accumulate(at, found, depths, out) }
+  noexcept->std::same_as<status>;
+};
+
+/// A force model that makes its wrench of the depths alone.
+template <class P>
+concept takes_depths = requires(const P& model, const found_by<P>& found, std::span<const reading_of<P>> depths,
+                                contact_force& out) {
   { model.accumulate(found, depths, out) }
   noexcept->std::same_as<status>;
 };
+
+template <class P>
+concept force_model = std::derived_from<typename P::policy_tag, force_tag> &&(takes_poses<P> || takes_depths<P>);
 
 /// A force model whose finder knows no contacts tells afterwards what a person would call them: for reports only.
 template <class P>

@@ -44,21 +44,28 @@ namespace detail {
 
 }  // namespace detail
 
+/// Says what a scene lacks to be rendered with these fields.
+/// @param made of the bodies, or nullptr   @param reach_m see field_renderer_settings
+[[nodiscard]] inline result<void> check_field_scene(const scene& bodies, const field_scene* made, double reach_m) {
+  const auto bad = [](const char* what) { return error{error_code::invalid_argument, what}; };
+  if (bodies.fixed.empty()) return bad("the scene has no fixed body: give the probe something to touch");
+  bool all = bodies.probe && made != nullptr && made->probe && made->fixed.size() == bodies.fixed.size();
+  for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && made->fixed[b];
+  if (!all) {
+    return bad("the fields are not as many as the scene's bodies: make_field_scene() makes one for each");
+  }
+  if (!(std::isfinite(reach_m) && reach_m >= 0.0)) {
+    return bad("field renderer settings: reach_m must be a finite length, or 0 for automatic");
+  }
+  return {};
+}
+
 /// The field renderer for bodies that were made before, by make_field_scene(): several renderers can share them.
 /// @pre made are of these bodies, in their order
 /// @return invalid_argument (no probe, no fixed body, bodies missing, a setting out of range)
 [[nodiscard]] inline result<field_renderer> make_field_renderer(scene bodies, std::shared_ptr<const field_scene> made,
                                                                 const field_renderer_settings& settings = {}) {
-  const auto bad = [](const char* what) { return error{error_code::invalid_argument, what}; };
-  if (bodies.fixed.empty()) return bad("the scene has no fixed body: give the probe something to touch");
-  bool all = bodies.probe && made && made->probe && made->fixed.size() == bodies.fixed.size();
-  for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && made->fixed[b];
-  if (!all) {
-    return bad("the fields are not as many as the scene's bodies: make_field_scene() makes one for each");
-  }
-  if (!(std::isfinite(settings.reach_m) && settings.reach_m >= 0.0)) {
-    return bad("field renderer settings: reach_m must be a finite length, or 0 for automatic");
-  }
+  if (const result<void> ok = check_field_scene(bodies, made.get(), settings.reach_m); !ok) return ok.error();
   if (const result<void> ok = check(settings.springs); !ok) return ok.error();
   const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : detail::usual_reach_m(bodies);
   field_depth depth(made, bodies, reach_m, settings.limits.readings());

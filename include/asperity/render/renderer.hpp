@@ -84,9 +84,10 @@ class basic_renderer {
         if (found_.contacts()[i].held) readings[i].flags |= depth_flag::held_direction;
       }
     }
-    if (const status s = force_.accumulate(found_, readings, out.force); s != status::ok) {
+    const status felt = feel(at, readings, out.force);
+    if (felt != status::ok && felt != status::capacity_reached) {
       out.force = {};
-      return s;
+      return felt;
     }
     if (!is_finite(out.force.on_probe_w)) {
       out.force = {};
@@ -113,7 +114,7 @@ class basic_renderer {
     } else if constexpr (tells_support_planes<Force>) {
       out.planes = force_.support_planes();
     }
-    return found;
+    return found == status::ok ? felt : found;
   }
 
   /// What the last tick's planes_near tells; see plane_source.
@@ -175,6 +176,14 @@ class basic_renderer {
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(T_wb); }
   };
   struct nothing {};
+
+  [[nodiscard]] status feel(const scene_pose& at, std::span<const reading_type> readings, contact_force& to) noexcept {
+    if constexpr (takes_poses<Force>) {
+      return std::as_const(force_).accumulate(at, found_, readings, to);
+    } else {
+      return force_.accumulate(found_, readings, to);
+    }
+  }
 
   asperity::scene scene_;
   [[no_unique_address]] Finder finder_;

@@ -1,0 +1,296 @@
+// The law of least motion at one pose: energy, wrench and stiffness from all ways out that compete.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "asperity/core/memory.hpp"
+#include "asperity/core/spatial.hpp"
+#include "asperity/core/status.hpp"
+#include "asperity/exits/bed.hpp"
+#include "asperity/exits/descent.hpp"
+#include "asperity/exits/directions.hpp"
+#include "asperity/exits/mix.hpp"
+#include "asperity/exits/other_ways_out.hpp"
+#include "asperity/exits/posed_samples.hpp"
+#include "asperity/exits/stiffness.hpp"
+#include "asperity/exits/way_out.hpp"
+
+namespace asperity::exits {
+
+/// Numbers of the law.
+struct exit_rule {
+  double stiffness_n_per_m = 2000.0;    ///< k: of a contact
+  double onset_m = 15e-6;               ///< see bed_rule
+  double bed = 50.0;                    ///< stiffness of the bed for each sample, in units of k
+  double mixed = 4.0;                   ///< bound of the force's slope where ways out are mixed, in units of k
+  std::size_t most_readings = 400'000;  ///< of the search; the sum at its end may take a quarter more
+  std::size_t most_marks = 16'384;      ///< samples that may touch at one way out
+
+  [[nodiscard]] bed_rule bed_of_samples() const noexcept { return {bed * stiffness_n_per_m, onset_m}; }
+  /// The springs in series with the bed make k: exactly for a contact of two samples, within 1 % for one and for many.
+  [[nodiscard]] exit_springs springs() const noexcept {
+    exit_springs out;
+    const double compliance = (1.0 - 0.5 / bed) / stiffness_n_per_m;
+    out.mixed = mixed * stiffness_n_per_m;
+    out.one = 1.0 / compliance;
+    out.each = 1.0 / (compliance + 1.0 / out.mixed);
+    return out;
+  }
+};
+
+/// What a solve had to leave out.
+struct exit_limits_hit {
+  bool readings = false;   ///< exit_rule::most_readings: ways out may be missing
+  bool marks = false;      ///< exit_rule::most_marks: the bed of one way out is incomplete
+  bool unsettled = false;  ///< a way out with weight did not come to rest
+  bool rounds = false;     ///< the weights still changed at the last round
+
+  [[nodiscard]] bool any() const noexcept { return readings || marks || unsettled || rounds; }
+};
+
+/// Solves, for one pose q,
+///
+///     U(q) = min over ways out z and weights w of   sum w (K/2 z^2 + bed(q, z)) + K^2 / (2 (C - K)) (sum w z)^2
+///
+/// the least motion that clears, with the regularisation of Lasry and Lions: the force of one way out is k times the
+/// motion, and where several compete it changes by no more than C per metre. W = -dU/dq at the minimum: the derivative
+/// of the bed by the pose alone, since everything else is at its best (the envelope theorem).
+/// Keeps nothing from pose to pose: the wrench is a function of the pose. All memory is taken when it is made.
+/// @source J.-M. Lasry and P.-L. Lions, A remark on regularization in Hilbert spaces (1986), for the regularisation
+class exit_solver {
+ public:
+  exit_solver(std::shared_ptr<const exit_scene> bodies, const vec3& centre_of_mass_a, const exit_rule& rule)
+      : rule_(rule),
+        springs_(rule.springs()),
+        bed_(rule.bed_of_samples()),
+        directions_(even_directions(4)),
+        samples_(std::move(bodies), centre_of_mass_a),
+        others_(descent_),
+        patch_(rule.most_marks) {}
+
+  // A copy would have no room for marks.
+  exit_solver(const exit_solver&) = delete;
+  exit_solver& operator=(const exit_solver&) = delete;
+  exit_solver(exit_solver&&) noexcept = default;
+  exit_solver& operator=(exit_solver&&) noexcept = default;
+  ~exit_solver() = default;
+
+  /// @pre one pose per fixed body   @rt safe
+  void solve(const scene_pose& at) noexcept {
+    samples_.place(at, rule_.most_readings);
+    ways_.clear();
+    energy_j_ = deepest_m_ = 0.0;
+    wrench_ = {};
+    stiffness_ = {};
+    hit_ = {};
+    if (find_first()) {
+      find_others();
+      for (const way_out& w : ways_) hit_.unsettled |= w.weight > 0.0 && !w.settled;
+      hit_.readings = samples_.count.cut;
+      samples_.count.most += rule_.most_readings / 4;
+      add_up();
+    }
+    hit_.readings |= samples_.count.cut;
+  }
+
+  [[nodiscard]] const wrench& on_probe_w() const noexcept { return wrench_; }
+  /// dW/dq; the weights count as fixed.
+  [[nodiscard]] const mat6& stiffness() const noexcept { return stiffness_; }
+  [[nodiscard]] double energy_j() const noexcept { return energy_j_; }
+  [[nodiscard]] double deepest_m() const noexcept { return deepest_m_; }  ///< sample at the pose as given
+  [[nodiscard]] const ways_out& ways() const noexcept { return ways_; }
+  [[nodiscard]] const posed_samples& samples() const noexcept { return samples_; }
+  [[nodiscard]] const exit_limits_hit& hit() const noexcept { return hit_; }
+  [[nodiscard]] std::size_t readings() const noexcept { return samples_.count.spent; }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(directions_, samples_, patch_); }
+
+ private:
+  // A way out, as if it were alone: the one that a descent from here leads to, or the nearest that a search finds where
+  // the descent ends inside, half way between two walls. False where nothing overlaps.
+  [[nodiscard]] bool find_first() noexcept {
+    constexpr double shallow_m = 30e-6;  // from here the iteration finds its way alone
+    mark m;
+    if (!samples_.deepest(vec3(0.0), 0.0, m)) return false;
+    deepest_ = m;
+    deepest_m_ = m.depth_m;
+    vec3 z(0.0);
+    if (m.depth_m > shallow_m) {
+      met_.clear();
+      static_cast<void>(met_.push_back(m));
+      z = descend(vec3(0.0), z, descent_, met_, true, samples_);
+    }
+    way_out first = settle_from(springs_.one, vec3(0.0), z);
+    double most_m = 1.5 * m.depth_m;
+    for (int wider = 0; wider < 8 && !is_out(first) && samples_.count.left(); ++wider, most_m *= 1.6) {
+      others_.search({vec3(0.0), most_m, shallow_m}, {}, directions_, samples_, found_);
+      for (const vec3& start : found_) {
+        const way_out w = settle_from(springs_.one, vec3(0.0), start);
+        if (is_out(w) && (!is_out(first) || w.cost_j(springs_, vec3(0.0)) < first.cost_j(springs_, vec3(0.0)))) {
+          first = w;
+        }
+      }
+    }
+    if (samples_.count.cut) {
+      // Too little to settle: what the descent has come to, or what a settled way was known.
+      if (!(first.settled && is_out(first))) {
+        first = {};
+        first.z_w = z;
+      }
+      first.settled = false;
+    } else if (!(first.bed.deepest_m > 0.0)) {
+      return false;
+    }
+    first.settled = first.settled && is_out(first);
+    first.weight = 1.0;
+    static_cast<void>(ways_.push_back(first));
+    return true;
+  }
+
+  // The bed gives way by a fiftieth of the motion. Deeper than a tenth is a place where it pushes from both sides.
+  [[nodiscard]] bool is_out(const way_out& w) const noexcept {
+    return w.bed.deepest_m <= 0.1 * glm::length(w.z_w) + 4.0 * bed_.onset_m;
+  }
+
+  // Adds ways out until none is missing that would be cheaper than the mixture of those there are.
+  void find_others() noexcept {
+    constexpr int most_rounds = 60;
+    constexpr double beyond = 1.1;       // descents end a little off
+    constexpr double clear_of_m = 2e-6;  // outside: not deeper than the bed gives way, and this
+    vec3 y = mix(ways_, springs_);
+    bool at_rest = true;  // a single way out was settled as it is
+    for (int round = 0; round < most_rounds; ++round) {
+      if (!at_rest) {
+        at_rest = settle_again(y);
+        y = mix(ways_, springs_);
+        continue;
+      }
+      double least_j = ways_[0].cost_j(springs_, y), sunk_m = 0.0;
+      for (const way_out& w : ways_) {
+        least_j = std::min(least_j, w.cost_j(springs_, y));
+        if (w.weight > 0.0) sunk_m = std::max(sunk_m, w.bed.deepest_m);
+      }
+      const double most_m = beyond * std::sqrt(2.0 * least_j / springs_.each);
+      others_.search({y, most_m, sunk_m + clear_of_m}, {ways_.data(), ways_.size()}, directions_, samples_, found_);
+      for (const vec3& z : found_) {
+        if (add(settle_from(springs_.each, y, z), y, least_j)) at_rest = false;
+      }
+      if (at_rest || samples_.count.cut) return;
+      y = mix(ways_, springs_);
+    }
+    hit_.rounds = true;
+  }
+
+  // Settles the ways out that count, or nearly so, as seen from y. True where none has moved.
+  [[nodiscard]] bool settle_again(const vec3& y) noexcept {
+    constexpr double still_m = 1e-10, same_m = 50e-6, nearly = 1.05;
+    bool at_rest = true;
+    double most_j = 0.0;
+    for (const way_out& w : ways_) {
+      if (w.weight > 0.0) most_j = std::max(most_j, nearly * w.cost_j(springs_, y));
+    }
+    const std::size_t known = ways_.size();
+    for (std::size_t i = 0; i < known && !samples_.count.cut; ++i) {
+      if (ways_[i].cost_j(springs_, y) > most_j) continue;
+      way_out now = settle_from(springs_.each, y, ways_[i].z_w);
+      if (samples_.count.cut) return true;
+      const double moved_m = glm::length(now.z_w - ways_[i].z_w);
+      if (moved_m < same_m) {
+        now.weight = ways_[i].weight;
+        ways_[i] = now;
+        at_rest = at_rest && (moved_m < still_m || now.weight == 0.0);
+      } else {
+        at_rest = !add(now, y, most_j) && at_rest;
+      }
+    }
+    return at_rest;
+  }
+
+  [[nodiscard]] way_out settle_from(double k_n_per_m, const vec3& y, const vec3& z) noexcept {
+    patch_.clear();
+    const way_out out = settle(k_n_per_m, y, z, bed_, patch_, samples_);
+    hit_.marks |= patch_.crowded;
+    return out;
+  }
+
+  // True where it is new and cheaper than all there are.
+  bool add(way_out w, const vec3& y, double least_j) noexcept {
+    constexpr double same_m = 1e-7, cheaper = 1.0 - 1e-10;
+    if (samples_.count.cut || !is_out(w)) return false;  // where the count is cut its bed may lack samples
+    if (!(w.cost_j(springs_, y) < cheaper * least_j)) return false;
+    for (const way_out& k : ways_) {
+      if (glm::length(k.z_w - w.z_w) < same_m) return false;
+    }
+    if (ways_.full()) {
+      const auto idle = std::remove_if(ways_.begin(), ways_.end(), [](const way_out& k) { return k.weight == 0.0; });
+      ways_.truncate(static_cast<std::size_t>(idle - ways_.begin()));
+    }
+    w.weight = 0.0;
+    const bool fits = ways_.push_back(w);
+    hit_.rounds |= !fits;
+    return fits;
+  }
+
+  void add_up() noexcept {
+    energy_j_ = mixed_energy_j(ways_, springs_);
+    unsettled_stiffness_ = {};
+    mixed_stiffness stiffness(springs_);
+    for (const way_out& w : ways_) {
+      if (!(w.weight > 0.0)) continue;
+      if (!patch_.covers(w.z_w)) patch_.gather(w.z_w, samples_);
+      const double share = w.weight;
+      if (!w.settled) {
+        pull_out(w);
+        continue;
+      }
+      way_out_stiffness own;
+      patch_.for_each_inside(w.z_w, samples_, [&](const mark& m, const coarse_reading& d) noexcept {
+        const vec3 lever = samples_.lever_w(m, w.z_w), relief = samples_.relief_slope(m);
+        const vec6 by_pose{d.slope + relief, glm::cross(lever, d.slope) + glm::cross(samples_.lever_w(m), relief)};
+        const double push_n = bed_.push_n(d.value_m);
+        wrench_ += to_wrench((-share * push_n) * by_pose);
+        own.add(bed_.rise_n_per_m(d.value_m), push_n,
+                {by_pose, d.slope, d.hessian_per_m, lever, samples_.meeting_of(m).of_probe});
+      });
+      stiffness.add(share, own);
+    }
+    stiffness_ = stiffness.sum() + unsettled_stiffness_;
+  }
+
+  // Where an iteration was cut short the bed's push may be anything. In balance it is the spring's pull: that, at the
+  // deepest sample.
+  void pull_out(const way_out& w) noexcept {
+    const vec3 pull_n = (w.weight * springs_.one) * w.z_w, lever = samples_.lever_w(deepest_);
+    wrench_ += wrench{pull_n, glm::cross(lever, pull_n)};
+    const double length = glm::length(w.z_w);
+    if (!(length > 0.0)) return;
+    const vec3 along = w.z_w / length;
+    add_outer(unsettled_stiffness_, -w.weight * rule_.stiffness_n_per_m, {along, glm::cross(lever, along)});
+  }
+
+  exit_rule rule_;
+  exit_springs springs_;
+  bed_rule bed_;
+  descent_rule descent_;
+  std::vector<vec3> directions_;
+  posed_samples samples_;
+  other_ways_out others_;
+  bed_patch patch_;
+  witnesses met_;
+  ways_out ways_;
+  found_places found_;
+  wrench wrench_;
+  mat6 stiffness_, unsettled_stiffness_;
+  mark deepest_;  // at the pose as given
+  double energy_j_ = 0.0, deepest_m_ = 0.0;
+  exit_limits_hit hit_;
+};
+
+}  // namespace asperity::exits

@@ -1,0 +1,263 @@
+// The samples of all bodies in each other's fields, at one pose and at motions of the probe from there.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "asperity/core/memory.hpp"
+#include "asperity/core/pose.hpp"
+#include "asperity/exits/exit_scene.hpp"
+#include "asperity/model/scene.hpp"
+
+namespace asperity::exits {
+
+/// One sample in the field of the body across, and how deep it was where it was found.
+struct mark {
+  vec3 place_y{0.0};         ///< in the frame of the field's body, at the pose as given
+  double relief_m = 0.0;     ///< read at the pose as given
+  double depth_m = 0.0;      ///< S + relief at the motion of the probe where the mark was found
+  std::uint32_t sample = 0;  ///< of its body
+  std::uint32_t meeting = 0;
+};
+
+/// Samples of body X in the field of body Y; one of the two is the probe.
+struct meeting {
+  const exit_body *of_x = nullptr, *in_y = nullptr;
+  pose T_wx;
+  mat3 turn_yx{1.0};  ///< with shift_y: from X's frame to Y's, at the pose as given
+  vec3 shift_y{0.0};
+  mat3 motion_y{1.0};            ///< what a motion of the probe, world axes, does to X's points in Y's frame
+  std::uint32_t body = 0;        ///< index in scene::fixed of the body that is not the probe
+  bool of_probe = true;          ///< X is the probe
+  std::size_t first_relief = 0;  ///< in what posed_samples keeps per sample
+};
+
+/// What a solve may spend, and what it has spent: readings of a field or of a table of its bounds.
+struct reading_count {
+  std::size_t spent = 0, most = 0;
+  bool cut = false;  ///< something was left out because nothing was left
+
+  [[nodiscard]] bool left() noexcept {
+    if (spent < most) return true;
+    cut = true;
+    return false;
+  }
+};
+
+/// The depth that the law of least motion sees,
+///
+///     D_i(q, x) = S(place of sample i at pose q, moved by x) + t(place of sample i at pose q)
+///
+/// x is a translation of the probe, world axes. The smooth part S of the field moves with x; the relief t stays as it
+/// is at the pose, as far as it is a texture (kept_relief). All memory is taken when it is made.
+/// @rt place() and all that follows: safe
+class posed_samples {
+ public:
+  posed_samples(std::shared_ptr<const exit_scene> bodies, const vec3& centre_of_mass_a)
+      : bodies_(std::move(bodies)), centre_of_mass_a_(centre_of_mass_a) {
+    std::size_t reliefs = 0;
+    for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
+      for (const bool of_probe : {true, false}) {
+        meeting m;
+        m.of_x = of_probe ? bodies_->probe.get() : bodies_->fixed[b].get();
+        m.in_y = of_probe ? bodies_->fixed[b].get() : bodies_->probe.get();
+        m.body = b;
+        m.of_probe = of_probe;
+        m.first_relief = reliefs;
+        reliefs += m.of_x->marks.samples().size();
+        meetings_.push_back(m);
+      }
+      steepest_ = std::max(steepest_, bodies_->fixed[b]->bounds.steepest());
+    }
+    steepest_ = std::max(steepest_, bodies_->probe->bounds.steepest());
+    reliefs_.resize(reliefs);
+  }
+
+  /// Takes a pose; motions start from here.   @pre one pose per fixed body
+  void place(const scene_pose& at, std::size_t most_readings) noexcept {
+    count = {0, most_readings, false};
+    ++turn_;
+    centre_w_ = at.T_wa * centre_of_mass_a_;
+    for (meeting& m : meetings_) {
+      const pose &T_wa = at.T_wa, &T_wb = at.T_wb[m.body];
+      m.T_wx = m.of_probe ? T_wa : T_wb;
+      const pose T_yx = inverse(m.of_probe ? T_wb : T_wa) * m.T_wx;
+      m.turn_yx = glm::mat3_cast(T_yx.rotation);
+      m.shift_y = T_yx.position;
+      const mat3 from_w = glm::mat3_cast(glm::conjugate(m.of_probe ? T_wb.rotation : T_wa.rotation));
+      m.motion_y = m.of_probe ? from_w : -1.0 * from_w;
+    }
+  }
+
+  [[nodiscard]] const meeting& meeting_of(const mark& m) const noexcept { return meetings_[m.meeting]; }
+  /// No smooth field changes by more per metre of a motion.
+  [[nodiscard]] double steepest() const noexcept { return steepest_; }
+  [[nodiscard]] const vec3& centre_w() const noexcept { return centre_w_; }
+
+  /// D at a motion x of the probe, m.
+  [[nodiscard]] double depth(const mark& m, const vec3& x_w) noexcept {
+    const meeting& a = meetings_[m.meeting];
+    ++count.spent;
+    return smooth_depth(a.in_y->body->field.smooth, m.place_y + a.motion_y * x_w) + m.relief_m;
+  }
+
+  /// D and its first two derivatives by x, world axes.
+  [[nodiscard]] coarse_reading read(const mark& m, const vec3& x_w) noexcept {
+    const meeting& a = meetings_[m.meeting];
+    ++count.spent;
+    coarse_reading out = a.in_y->body->field.coarse(m.place_y + a.motion_y * x_w);
+    const mat3 back = glm::transpose(a.motion_y);
+    out.value_m += m.relief_m;
+    out.slope = back * out.slope;
+    out.hessian_per_m = back * out.hessian_per_m * a.motion_y;
+    return out;
+  }
+
+  /// Slope of the relief by the sample's place at the pose, world axes; as for read(), what a translation of the probe
+  /// does to it.
+  [[nodiscard]] vec3 relief_slope(const mark& m) noexcept {
+    const meeting& a = meetings_[m.meeting];
+    ++count.spent;
+    return glm::transpose(a.motion_y) * relief_at(a, m.place_y).slope;
+  }
+
+  /// From the probe's centre of mass to the sample, at the pose as given; world axes.
+  [[nodiscard]] vec3 lever_w(const mark& m) const noexcept {
+    const meeting& a = meetings_[m.meeting];
+    return a.T_wx * vec3(a.of_x->marks.samples()[m.sample].position_b) - centre_w_;
+  }
+  /// The same at a motion x: where the sample meets the field, as seen from the probe as given. The probe's own samples
+  /// keep their lever; those of a fixed body come nearer by x.
+  [[nodiscard]] vec3 lever_w(const mark& m, const vec3& x_w) const noexcept {
+    return meetings_[m.meeting].of_probe ? lever_w(m) : lever_w(m) - x_w;
+  }
+
+  /// Calls take(mark) for samples that are deeper than above_m at x; take may raise it. Visits the deeper branches
+  /// first, so that raising it leaves the others out.
+  template <class Take>
+  void walk(const vec3& x_w, double& above_m, Take&& take) noexcept {
+    for (std::uint32_t i = 0; i < meetings_.size(); ++i) walk_meeting(i, x_w, above_m, take);
+  }
+
+  /// The deepest sample at x, where one is deeper than above_m.
+  [[nodiscard]] bool deepest(const vec3& x_w, double above_m, mark& out) noexcept {
+    bool any = false;
+    walk(x_w, above_m, [&](const mark& m) noexcept {
+      out = m;
+      above_m = m.depth_m;
+      any = true;
+    });
+    return any;
+  }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(meetings_, reliefs_) + sizeof(exit_scene) + bodies_->heap_bytes();
+  }
+
+  reading_count count;
+
+ private:
+  struct known_relief {
+    double relief_m = 0.0;
+    std::uint64_t turn = 0;  // of the pose that it was read at
+  };
+
+  [[nodiscard]] static field_reading relief_at(const meeting& m, const vec3& place_y) noexcept {
+    return m.in_y->relief.read(m.in_y->body->field, place_y);
+  }
+  [[nodiscard]] static double most_relief(const meeting& m) noexcept {
+    return m.in_y->relief.limited(m.in_y->body->field.highest_relief_m);
+  }
+
+  // No sample of a branch, moved, is deeper. Bounds from the cheap to the sharp: the table, the slope from the middle
+  // of the ball, and along the branch's planes the slope and the bend.
+  [[nodiscard]] double most_in(const meeting& m, std::uint32_t index, const vec3& moved_y, double relief_m,
+                               double above_m) noexcept {
+    const branch& b = m.of_x->marks.branches()[index];
+    const field_bounds& bounds = m.in_y->bounds;
+    const detail::coarse_grid& grid = m.in_y->body->field.smooth;
+    const double radius_m = static_cast<double>(b.radius_m), steepest = bounds.steepest();
+    const vec3 c_y = m.turn_yx * vec3(b.centre_b) + m.shift_y + moved_y;
+    ++count.spent;
+    double smooth_m = bounds.most_by_table(c_y, radius_m);
+    if (smooth_m + relief_m <= above_m || radius_m > 15.0 * grid.pitch_m) return smooth_m + relief_m;
+    ++count.spent;
+    const double bend = bounds.bend_per_m(c_y, radius_m);
+    if (!(bend * radius_m < 2.0 * steepest)) {
+      return std::min(smooth_m, smooth_depth(grid, c_y) + steepest * radius_m) + relief_m;
+    }
+    const coarse_reading s = grid.read(c_y);
+    const double along = std::fabs(glm::dot(m.turn_yx * vec3(b.axis_b), s.slope));
+    const double across = std::sqrt(std::max(0.0, glm::dot(s.slope, s.slope) - along * along));
+    smooth_m = std::min(
+        {smooth_m, s.value_m + steepest * radius_m,
+         s.value_m + along * static_cast<double>(b.half_m) + across * radius_m + 0.5 * bend * radius_m * radius_m});
+    return smooth_m + relief_m;
+  }
+
+  template <class Take>
+  void walk_meeting(std::uint32_t index, const vec3& x_w, double& above_m, Take& take) noexcept {
+    const meeting& m = meetings_[index];
+    const std::span<const branch> branches = m.of_x->marks.branches();
+    if (branches.empty()) return;
+    const vec3 moved_y = m.motion_y * x_w;
+    const double relief_m = most_relief(m);
+    struct item {
+      std::uint32_t branch;
+      double most_m;
+    };
+    // Halving leaves one waiting sibling at each of at most 32 levels.
+    std::array<item, 64> waiting;
+    std::size_t n = 0;
+    waiting[n++] = {0, most_in(m, 0, moved_y, relief_m, above_m)};
+    while (n > 0) {
+      const item it = waiting[--n];
+      if (!(it.most_m > above_m)) continue;
+      if (!count.left()) return;
+      const branch& b = branches[it.branch];
+      if (b.right == 0) {
+        for (std::uint32_t s = b.first; s < b.first + b.count; ++s) meet(index, s, moved_y, relief_m, above_m, take);
+        continue;
+      }
+      item near{it.branch + 1, most_in(m, it.branch + 1, moved_y, relief_m, above_m)};
+      item far{b.right, most_in(m, b.right, moved_y, relief_m, above_m)};
+      if (near.most_m < far.most_m) std::swap(near, far);
+      if (far.most_m > above_m) waiting[n++] = far;
+      if (near.most_m > above_m) waiting[n++] = near;
+    }
+  }
+
+  template <class Take>
+  void meet(std::uint32_t index, std::uint32_t sample, const vec3& moved_y, double most_relief_m, double above_m,
+            Take& take) noexcept {
+    const meeting& m = meetings_[index];
+    const body_field& field = m.in_y->body->field;
+    const vec3 place_y = m.turn_yx * vec3(m.of_x->marks.samples()[sample].position_b) + m.shift_y;
+    const vec3 at_y = place_y + moved_y;
+    ++count.spent;
+    const double smooth_m = smooth_depth(field.smooth, at_y);
+    if (!(smooth_m + most_relief_m > above_m)) return;
+    known_relief& t = reliefs_[m.first_relief + sample];
+    if (t.turn != turn_) {
+      ++count.spent;
+      t = {relief_at(m, place_y).value_m, turn_};
+    }
+    const double depth_m = smooth_m + t.relief_m;
+    if (depth_m > above_m) take(mark{place_y, t.relief_m, depth_m, sample, index});
+  }
+
+  std::shared_ptr<const exit_scene> bodies_;
+  vec3 centre_of_mass_a_, centre_w_{0.0};
+  std::vector<meeting> meetings_;
+  std::vector<known_relief> reliefs_;  // of every sample of every meeting, read once per pose where needed
+  std::uint64_t turn_ = 0;
+  double steepest_ = 1.0;
+};
+
+}  // namespace asperity::exits

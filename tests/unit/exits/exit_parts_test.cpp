@@ -1,0 +1,143 @@
+// The parts of the law, each for itself.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <numbers>
+
+#include "asperity/exits/eigen6.hpp"
+#include "asperity/exits/mix.hpp"
+#include "exit_lab.hpp"
+#include "support/fresh_seed.hpp"
+
+namespace asperity {
+namespace {
+
+using namespace test_support;
+using namespace exits;
+
+TEST(BedRule, PushAndRiseAreDerivativesOfTheEnergy) {
+  const bed_rule bed{1e5, 15e-6};
+  for (double depth = 1e-9; depth < 1e-2; depth *= 1.7) {
+    const double h = 1e-4 * depth;
+    EXPECT_NEAR((bed.energy_j(depth + h) - bed.energy_j(depth - h)) / (2.0 * h), bed.push_n(depth),
+                1e-6 * bed.push_n(depth));
+    EXPECT_NEAR((bed.push_n(depth + h) - bed.push_n(depth - h)) / (2.0 * h), bed.rise_n_per_m(depth),
+                1e-6 * bed.rise_n_per_m(depth));
+    EXPECT_LE(bed.rise_n_per_m(depth), 1e5);
+  }
+  EXPECT_EQ(bed.energy_j(0.0), 0.0);
+}
+
+TEST(EvenDirections, LeaveNoGap) {
+  drawing draw{std::mt19937_64(fresh_seed("EvenDirections.LeaveNoGap", "2000 directions"))};
+  const std::vector<vec3> all = even_directions(4);
+  EXPECT_EQ(all.size(), 162U);
+  for (int i = 0; i < 2000; ++i) {
+    const vec3 d = glm::normalize(draw.vector());
+    double nearest = 10.0;
+    for (const vec3& u : all) nearest = std::min(nearest, std::acos(std::clamp(glm::dot(u, d), -1.0, 1.0)));
+    EXPECT_LT(nearest, 12.0 * std::numbers::pi / 180.0);
+  }
+}
+
+// What is taken away is positive, what stays is not, and the two have no direction in common.
+TEST(NegativePart, TakesThePositiveDirectionsAway) {
+  drawing draw{std::mt19937_64(fresh_seed("NegativePart.TakesThePositiveDirectionsAway", "200 matrices"))};
+  for (int n = 0; n < 200; ++n) {
+    mat6 a;
+    const double length = 0.01;
+    for (int k = 0; k < 6; ++k) {
+      add_outer(a, draw.between(-2e3, 1e3), {draw.vector(), length * draw.vector()});
+    }
+    const mat6 low = negative_part(a, length), high = a - low;
+    double product = 0.0, size = 0.0;
+    for (int k = 0; k < 20; ++k) {
+      const vec6 x{draw.vector(), draw.vector() / length};
+      EXPECT_LE(dot(x, low * x), 1e-9);
+      EXPECT_GE(dot(x, high * x), -1e-6);
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+      for (std::size_t j = 0; j < 6; ++j) {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < 6; ++k) {
+          const double per = k < 3 ? 1.0 : 1.0 / (length * length);
+          sum += low(i, k) * per * high(k, j);
+        }
+        const double scale = (i < 3 ? 1.0 : 1.0 / length) * (j < 3 ? 1.0 : 1.0 / length);
+        product = std::max(product, std::fabs(scale * sum));
+        size = std::max(size, std::fabs(scale * a(i, j)));
+        EXPECT_EQ(low(i, j), low(j, i));
+      }
+    }
+    EXPECT_LT(product, 1e-9 * size * size);
+  }
+}
+
+// At the least energy no way out with weight is dearer than another, and none without is cheaper.
+TEST(Mix, LeavesNoCheaperWeights) {
+  drawing draw{std::mt19937_64(fresh_seed("Mix.LeavesNoCheaperWeights", "3000 sets"))};
+  const exit_springs k = exit_rule{}.springs();
+  for (int n = 0; n < 3000; ++n) {
+    ways_out ways;
+    const int count = 1 + static_cast<int>(draw.between(0.0, 8.0));
+    for (int i = 0; i < count; ++i) {
+      way_out w;
+      w.z_w = (1.0 + 0.1 * draw.between(-1.0, 1.0)) * mm * glm::normalize(draw.vector());
+      w.bed.energy_j = 1e-5 * draw.between(0.0, 1.0);
+      w.weight = i == 0 ? 1.0 : 0.0;
+      ASSERT_TRUE(ways.push_back(w));
+    }
+    const double before = mixed_energy_j(ways, k);
+    const vec3 y = mix(ways, k);
+    EXPECT_LE(mixed_energy_j(ways, k), before * (1.0 + 1e-12));
+    EXPECT_LT(glm::length(y - seen_from(ways, k)), 1e-15);
+    double sum = 0.0, cheapest = 1e30, dearest = 0.0;
+    for (const way_out& w : ways) {
+      EXPECT_GE(w.weight, 0.0);
+      sum += w.weight;
+      cheapest = std::min(cheapest, w.cost_j(k, y));
+      if (w.weight > 0.0) dearest = std::max(dearest, w.cost_j(k, y));
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-9);
+    EXPECT_LT(dearest - cheapest, 1e-8 * cheapest);
+  }
+}
+
+TEST(LeastMotionOver, ClearsTheWallsOfACorner) {
+  exit_planes planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    vec3 n(0.0);
+    n[axis] = -1.0;
+    static_cast<void>(planes.push_back({(axis + 1) * mm, n}));
+  }
+  const vec3 p = least_motion_over(planes, vec3(0.0), vec3(0.0), 50.0);
+  // Each wall and the spring share its depth as 50 to 1.
+  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(p[axis], 50.0 / 51.0 * (axis + 1) * mm, 1e-9);
+}
+
+// The minimum of spring and bed on a half space: their forces are equal, and it is settled from any side.
+TEST(Settle, BalancesSpringAndBed) {
+  drawing draw{std::mt19937_64(fresh_seed("Settle.BalancesSpringAndBed", "50 starts"))};
+  const field_body_ptr ground =
+      make_formula_body({}, vec3(-20.0 * mm), vec3(20.0 * mm), 0.3 * mm, [](const vec3& p) { return -p.z; });
+  const field_body_ptr probe = make_points_body(sphere_points(10.0 * mm, 4000));
+  posed_samples samples(std::make_shared<const exit_scene>(field_scene{probe, {ground}}), vec3(0.0));
+  const exit_rule rule;
+  bed_patch patch(4000);
+  const pose T_wb;
+  for (int i = 0; i < 50; ++i) {
+    const double depth = draw.between(0.1, 3.0) * mm;
+    const pose T_wa{draw.rotation(), vec3(0.0, 0.0, 10.0 * mm - depth)};
+    samples.place({T_wa, {&T_wb, 1}}, 10'000'000);
+    patch.clear();
+    const vec3 start = vec3(0.0, 0.0, depth) + 0.1 * mm * draw.vector();
+    const way_out w = settle(2000.0, vec3(0.0), start, rule.bed_of_samples(), patch, samples);
+    EXPECT_TRUE(w.settled);
+    EXPECT_LT(glm::length(2000.0 * w.z_w + w.bed.gradient_n), 1e-6 * 2000.0 * depth);
+    EXPECT_NEAR(w.z_w.z, depth, 0.04 * depth + 10e-6);
+    EXPECT_FALSE(w.touching.empty());
+  }
+}
+
+}  // namespace
+}  // namespace asperity
