@@ -77,9 +77,8 @@ std::vector<press_pair> round_pairs() {
   std::vector<press_pair> out = balls_on_boxes();
   for (const press_pair& p : press_pairs()) {
     const bool hollow = p.fixed == "cup" || p.fixed == "groove" || p.fixed == "corner";
-    const bool scan = p.fixed == "rocker-arm" || p.fixed == "igea" || p.fixed == "stanford-bunny";
     const bool rods = p.probe == "rod_128" || p.probe == "pyramid_30";
-    if (rods || (p.probe.starts_with("ball_") && (hollow || scan))) out.push_back(p);
+    if (rods || (hollow && p.probe.starts_with("ball_"))) out.push_back(p);
   }
   return out;
 }

@@ -95,6 +95,7 @@ class exit_solver {
       find_others();
       for (const way_out& w : ways_) hit_.unsettled |= w.weight > 0.0 && !w.settled;
       hit_.readings = samples_.count.cut;
+      if (samples_.count.cut) patch_.clear();  // what was being gathered then lacks samples
       samples_.count.most += rule_.most_readings / 4;
       add_up();
     }
@@ -162,7 +163,7 @@ class exit_solver {
   // Adds ways out until none is missing that would be cheaper than the mixture of those there are.
   void find_others() noexcept {
     constexpr int most_rounds = 60;
-    constexpr double beyond = 1.1;       // descents end a little off
+    constexpr double beyond = 1.3;       // a ray comes out beside a way out, further away; with 1.1 some are missed
     constexpr double clear_of_m = 2e-6;  // outside: not deeper than the bed gives way, and this
     vec3 y = mix(ways_, springs_);
     bool at_rest = true;  // a single way out was settled as it is
@@ -210,7 +211,21 @@ class exit_solver {
         at_rest = !add(now, y, most_j) && at_rest;
       }
     }
+    drop_doubles();
     return at_rest;
+  }
+
+  // Two that have come to rest in one place are one.
+  void drop_doubles() noexcept {
+    constexpr double same_m = 1e-7;
+    for (std::size_t i = 0; i < ways_.size(); ++i) {
+      for (std::size_t j = ways_.size(); --j > i;) {
+        if (!(glm::length(ways_[i].z_w - ways_[j].z_w) < same_m)) continue;
+        ways_[i].weight += ways_[j].weight;
+        ways_[j] = ways_[ways_.size() - 1];
+        ways_.truncate(ways_.size() - 1);
+      }
+    }
   }
 
   [[nodiscard]] way_out settle_from(double k_n_per_m, const vec3& y, const vec3& z) noexcept {

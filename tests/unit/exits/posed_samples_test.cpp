@@ -21,6 +21,7 @@ struct two_boxes {
   field_body_ptr probe = waved_box(vec3(7, 6, 5) * mm, 0.04 * mm, 0.4 * mm);
   field_body_ptr fixed = waved_box(vec3(12, 11, 6) * mm, 0.06 * mm, 0.7 * mm);
   std::shared_ptr<const exit_scene> scene = std::make_shared<const exit_scene>(field_scene{probe, {fixed}});
+  std::shared_ptr<const exit_scene> swapped = std::make_shared<const exit_scene>(field_scene{fixed, {probe}});
 };
 
 const two_boxes& boxes() {
@@ -97,10 +98,14 @@ TEST(PosedSamples, GathersAllAboveALimit) {
 TEST(PosedSamples, SlopesAreThoseOfTheDepth) {
   drawing draw{std::mt19937_64(fresh_seed("PosedSamples.SlopesAreThoseOfTheDepth", "200 samples"))};
   const vec3 centre_of_mass_a = 2.0 * mm * draw.vector();
-  posed_samples here(boxes().scene, centre_of_mass_a), there(boxes().scene, centre_of_mass_a);
-  int seen = 0;
+  // The small box's corners lie in the large one: as the probe, and as the fixed body.
+  posed_samples of_small(boxes().scene, centre_of_mass_a), of_large(boxes().swapped, centre_of_mass_a);
+  posed_samples small_again(boxes().scene, centre_of_mass_a), large_again(boxes().swapped, centre_of_mass_a);
+  int seen = 0, of_fixed = 0;
   for (int i = 0; i < 200; ++i) {
-    const pose T_wa = drawn_pose(draw), T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
+    posed_samples &here = i % 2 == 0 ? of_small : of_large, &there = i % 2 == 0 ? small_again : large_again;
+    pose T_wa = drawn_pose(draw), T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
+    if (i % 2 != 0) std::swap(T_wa, T_wb);
     const vec3 x_w = 1.0 * mm * draw.vector(), axis = glm::normalize(draw.vector());
     const auto place = [&](posed_samples& s, const pose& T) { s.place({T, {&T_wb, 1}}, 10'000'000); };
     place(here, T_wa);
@@ -125,14 +130,16 @@ TEST(PosedSamples, SlopesAreThoseOfTheDepth) {
       });
       return depth_m;
     };
-    if (seen > 12) continue;  // it visits all samples
+    if (seen > 16) continue;  // it visits all samples
+    of_fixed += here.meeting_of(m).of_probe ? 0 : 1;
     const double shifted = (depth_at(h * axis, {}) - depth_at(-h * axis, {})) / (2.0 * h);
     EXPECT_NEAR(shifted, glm::dot(d.slope + relief, axis), 2e-5);
     const double r = h / 0.01, turned = (depth_at({}, r * axis) - depth_at({}, -r * axis)) / (2.0 * r);
     const vec3 by_rotation = glm::cross(here.lever_w(m, x_w), d.slope) + glm::cross(here.lever_w(m), relief);
     EXPECT_NEAR(turned, glm::dot(by_rotation, axis), 2e-7);
   }
-  EXPECT_GT(seen, 12);
+  EXPECT_GT(seen, 16);
+  EXPECT_GT(of_fixed, 3);
 }
 
 TEST(PosedSamples, AWalkEndsWhereNoReadingsAreLeft) {
