@@ -20,7 +20,7 @@ namespace asperity {
 struct contact_law {
   /// k of each plane, N/m. A probe of 10 g under a coupling of 5 N/mm keeps 0.91 of it on one plane of 50 N/mm and 0.97
   /// on three. 200 N/mm is stable as well and rings longer after a blow.
-  double stiffness_n_per_m = 5e4;
+  double stiffness_n_per_m = 2e5;
   /// alpha, s/m, of Hunt and Crossley: the loss grows with the depth, so that a touch begins without a jump.
   /// A slow blow of speed v comes back with about 1 - alpha v of it.
   double dissipation_s_per_m = 5.0;

@@ -70,19 +70,35 @@ class field_depth {
     return status::ok;
   }
 
-  /// The planes of the samples that are deeper than above_m at any pose; where there are more than `out` takes, the
-  /// deepest.
+  /// The planes of the samples that are deeper than above_m at a pose near that of the last measure(), of leaves that
+  /// can have come so deep by this motion. Where there are more than `out` takes, the deepest.
+  /// @param found, read of the last measure()   @param moved from its pose to this one, about c_A
   /// @return ok | capacity_reached
   /// @rt safe
-  [[nodiscard]] status planes_at(const scene_pose& at, double above_m, plane_list& out) const noexcept {
+  [[nodiscard]] status planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane> read,
+                                 const vec6& moved, double above_m, plane_list& out) const noexcept {
+    // No depth grows faster than this with the way of its point: smooth part and relief together.
+    constexpr double steepest = 3.0;
     const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
-    for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
-      const field_body &A = *bodies_->probe, &B = *bodies_->fixed[b];
-      const pose T_ba = inverse(at.T_wb[b]) * at.T_wa;
-      deeper_than(above_m, A.samples, B.field, T_ba, at.T_wb[b].rotation, at.T_wa, {.body = b, .of_probe = true}, c_a_w,
-                  out);
-      deeper_than(above_m, B.samples, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[b],
-                  {.body = b, .of_probe = false}, c_a_w, out);
+    const double slid_m = std::sqrt(glm::dot(moved.linear, moved.linear));
+    const double turned_rad = std::sqrt(glm::dot(moved.angular, moved.angular));
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      const support_plane& before = read[i].plane;
+      const double way_m = slid_m + turned_rad * std::sqrt(glm::dot(before.r_w, before.r_w));
+      if (!(before.depth_m + steepest * way_m > above_m)) continue;
+      const near_leaf& leaf = found.leaves()[i];
+      const field_body &A = *bodies_->probe, &B = *bodies_->fixed[leaf.body];
+      const pose T_ba = inverse(at.T_wb[leaf.body]) * at.T_wa;
+      near_leaf one = leaf;
+      one.count = 1;
+      for (const field_sample& sample : leaf.samples()) {
+        one.first = &sample;
+        const near_plane now =
+            leaf.of_probe
+                ? deepest(one, B.field, T_ba, at.T_wb[leaf.body].rotation, at.T_wa, 1.0, c_a_w, above_m)
+                : deepest(one, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[leaf.body], -1.0, c_a_w, above_m);
+        if (now.plane.depth_m > above_m) keep_deepest(now.plane, out);
+      }
     }
     return out.dropped() > 0 ? status::capacity_reached : status::ok;
   }
@@ -96,28 +112,11 @@ class field_depth {
   }
 
  private:
-  // Samples of X in the field of Y, as in deepest(), each by itself.
-  void deeper_than(double above_m, const sample_tree& of_x, const body_field& in_y, const pose& T_yx,
-                   const quat& rotation_wy, const pose& T_wx, const near_leaf& whose, const vec3& c_a_w,
-                   plane_list& out) const noexcept {
-    of_x.query([&](const vec3& centre_x,
-                   double radius_m) noexcept { return in_y.most_near(T_yx * centre_x, radius_m) > above_m; },
-               [&](const vec3&, double, std::span<const field_sample> samples) noexcept {
-                 near_leaf one = whose;
-                 one.count = 1;
-                 for (const field_sample& sample : samples) {
-                   one.first = &sample;
-                   one.centre_b = vec3(sample.position_b);
-                   one.radius_m = 0.0;
-                   const near_plane found =
-                       deepest(one, in_y, T_yx, rotation_wy, T_wx, whose.of_probe ? 1.0 : -1.0, c_a_w, above_m);
-                   if (!(found.plane.depth_m > above_m) || out.push_back(found.plane)) continue;
-                   const auto least = std::min_element(
-                       out.begin(), out.end(),
-                       [](const support_plane& p, const support_plane& q) { return p.depth_m < q.depth_m; });
-                   if (least->depth_m < found.plane.depth_m) *least = found.plane;
-                 }
-               });
+  static void keep_deepest(const support_plane& p, plane_list& in) noexcept {
+    if (in.push_back(p)) return;
+    support_plane* const least =
+        std::min_element(in.begin(), in.end(), [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
+    if (least->depth_m < p.depth_m) *least = p;
   }
 
   // How far a sample whose surface looks away from the direction that it would be pushed in may count: in full up to 35
@@ -129,33 +128,36 @@ class field_depth {
     return full > none ? smoothstep((cosine - none) / (full - none)) : 1.0;
   }
 
-  // Samples of X in the field of Y. The depth grows where X's point moves along the field's slope; where X is the fixed
-  // body, the probe's motion takes the field along, and the sign turns.
+  // The deepest sample of X in the field of Y where it is deeper than above_m. The depth grows where X's point moves
+  // along the field's slope; where X is the fixed body, the probe's motion takes the field along, and the sign turns.
   [[nodiscard]] near_plane deepest(const near_leaf& leaf, const body_field& in_y, const pose& T_yx,
                                    const quat& rotation_wy, const pose& T_wx, double sign, const vec3& c_a_w,
                                    double above_m) const noexcept {
     // Half way through a body no way out is shorter than another: a sample there holds nothing.
     constexpr double least_slope = 0.05;
     near_plane out;
-    // A smooth distance grows by little more than a metre per metre.
-    constexpr double steepest = 1.2;
-    const double most_m = in_y.coarse(T_yx * leaf.centre_b).value_m + steepest * leaf.radius_m + in_y.highest_relief_m;
-    if (most_m <= above_m) return out;
+    if (leaf.count > 1) {
+      // A smooth distance grows by little more than a metre per metre.
+      constexpr double steepest = 1.2;
+      const double smooth_m = in_y.coarse(T_yx * leaf.centre_b).value_m;
+      if (smooth_m + steepest * leaf.radius_m + in_y.highest_relief_m <= above_m) return out;
+    }
+    double deepest_m = above_m;
     vec3 slope_y(0.0), point_x(0.0);
     const quat rotation_xy = glm::conjugate(T_yx.rotation);
     for (const field_sample& s : leaf.samples()) {
       const vec3 p_y = T_yx * vec3(s.position_b);
       const coarse_reading smooth = in_y.coarse(p_y);
-      if (!(smooth.value_m + in_y.highest_relief_m > out.plane.depth_m)) continue;
+      if (!(smooth.value_m + in_y.highest_relief_m > deepest_m)) continue;
       const field_reading relief = in_y.relief(p_y, smooth);
       const field_reading d{smooth.value_m + relief.value_m, smooth.slope + relief.slope};
-      if (!(d.value_m > out.plane.depth_m)) continue;
+      if (!(d.value_m > deepest_m)) continue;
       const double squared = glm::dot(d.slope, d.slope);
       if (!(squared > least_slope * least_slope)) continue;
       const double facing = glm::dot(vec3(s.axis_b), rotation_xy * d.slope) / std::sqrt(squared);
       const double depth_m = d.value_m - sinking_m_ * (1.0 - facing_share(facing, static_cast<double>(s.cone_rad)));
-      if (!(depth_m > out.plane.depth_m)) continue;
-      out.plane.depth_m = depth_m;
+      if (!(depth_m > deepest_m)) continue;
+      out.plane.depth_m = deepest_m = depth_m;
       slope_y = d.slope;
       point_x = vec3(s.position_b);
     }
@@ -180,6 +182,6 @@ class field_depth {
 };
 
 static_assert(depth_backend<field_depth>);
-static_assert(tells_planes_anywhere<field_depth>);
+static_assert(tells_planes_nearby<field_depth>);
 
 }  // namespace asperity

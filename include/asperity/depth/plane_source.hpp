@@ -2,6 +2,7 @@
 #pragma once
 
 #include <concepts>
+#include <span>
 
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/spatial.hpp"
@@ -44,10 +45,12 @@ class plane_source {
   status (*ask_)(void*, const vec6&, double, plane_list&) noexcept = nullptr;
 };
 
-/// A depth backend that can be asked for the planes of any pose, whatever its last measure() saw.
+/// A depth backend that can be asked for the planes of a pose near that of its last measure(); see field_depth.
 template <class D>
-concept tells_planes_anywhere = requires(const D& depth, const scene_pose& at, double above_m, plane_list& out) {
-  { depth.planes_at(at, above_m, out) }
+concept tells_planes_nearby = requires(const D& depth, const scene_pose& at, const typename D::found_type& found,
+                                       std::span<const typename D::reading_type> read, const vec6& moved,
+                                       double above_m, plane_list& out) {
+  { depth.planes_at(at, found, read, moved, above_m, out) }
   noexcept->std::same_as<status>;
 };
 

@@ -57,7 +57,7 @@ class basic_renderer {
         force_(std::move(force)),
         found_(limits),
         readings_(limits.readings()) {
-    if constexpr (tells_planes_anywhere<Depth>) at_.T_wb.resize(scene_.fixed.size());
+    if constexpr (tells_planes_nearby<Depth>) at_.T_wb.resize(scene_.fixed.size());
   }
 
   /// Wrench on the probe at these poses.
@@ -104,7 +104,7 @@ class basic_renderer {
       out.contacts = told_.contacts.contacts();
       out.depths = std::span(told_.depths).first(told_.contacts.size());
     }
-    if constexpr (tells_planes_anywhere<Depth>) {
+    if constexpr (tells_planes_nearby<Depth>) {
       at_.T_wa = at.T_wa;
       std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
       out.planes_near = plane_source(*this);
@@ -121,14 +121,14 @@ class basic_renderer {
   /// @pre a step before, which answered ok or capacity_reached
   /// @rt safe
   [[nodiscard]] status planes_at(const vec6& moved, double above_m,
-                                 plane_list& out) noexcept requires tells_planes_anywhere<Depth> {
+                                 plane_list& out) noexcept requires tells_planes_nearby<Depth> {
     out.clear();
     const vec3 c_a_w = centre_of_mass_w(scene_, at_.T_wa);
     const quat turn = exp_rotation(moved.angular);
     const pose T_wa{glm::normalize(turn * at_.T_wa.rotation),
                     c_a_w + moved.linear + turn * (at_.T_wa.position - c_a_w)};
     if (!is_valid(T_wa)) return status::invalid_pose;
-    return depth_.planes_at({T_wa, at_.T_wb}, above_m, out);
+    return depth_.planes_at({T_wa, at_.T_wb}, found_, std::span(readings_).first(found_.size()), moved, above_m, out);
   }
 
   [[nodiscard]] const asperity::scene& scene() const noexcept { return scene_; }
@@ -192,7 +192,7 @@ class basic_renderer {
   found_type found_;
   std::vector<reading_type> readings_;
   [[no_unique_address]] std::conditional_t<finds_contacts, nothing, told_contacts> told_;
-  [[no_unique_address]] std::conditional_t<tells_planes_anywhere<Depth>, kept_poses, nothing> at_;
+  [[no_unique_address]] std::conditional_t<tells_planes_nearby<Depth>, kept_poses, nothing> at_;
 };
 
 }  // namespace asperity
