@@ -147,7 +147,7 @@ session_row press_sessions(const press_pair& pair, const press_body& probe, cons
 }
 
 rest_row rest_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
-                       const render_function& render, const press_choice& which) {
+                       const render_function& render, const press_choice& which, double plane_stiffness_n_per_m) {
   const auto start = std::chrono::steady_clock::now();
   rest_row row{pair.probe, pair.fixed, {}, 0.0};
   touch_finder finder(pair.name(), probe.full, fixed.full, pair.region);
@@ -155,8 +155,9 @@ rest_row rest_sessions(const press_pair& pair, const press_body& probe, const pr
     const std::optional<press_touch> touch = finder.next(which.seed);
     if (!touch) break;
     if (i < which.first) continue;
-    row.rests.push_back(rest_session(render, *touch, probe.model->mass.centre_of_mass,
-                                     drawn_rest(which.seed, pair.name(), touch->index),
+    rest_rules rules = drawn_rest(which.seed, pair.name(), touch->index);
+    rules.plane_stiffness_n_per_m = plane_stiffness_n_per_m;
+    row.rests.push_back(rest_session(render, *touch, probe.model->mass.centre_of_mass, rules,
                                      test_support::seed_of(which.seed, pair.name(), touch->index)));
   }
   row.seconds = seconds(std::chrono::steady_clock::now() - start);

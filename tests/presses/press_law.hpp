@@ -56,7 +56,9 @@ struct press_choice {
                                          const render_function& render, const press_choice& which);
 
 /// Hands at rest on one pair under a renderer, each by rules drawn anew.
+/// @param plane_stiffness_n_per_m of the sessions' contact law
 [[nodiscard]] rest_row rest_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
-                                     const render_function& render, const press_choice& which);
+                                     const render_function& render, const press_choice& which,
+                                     double plane_stiffness_n_per_m = contact_law{}.stiffness_n_per_m);
 
 }  // namespace asperity::presses

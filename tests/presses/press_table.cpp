@@ -19,12 +19,9 @@ using namespace asperity::presses;
 
 constexpr char usage[] =
     "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
-    "[--sessions | --rests] [--dump]
-"
-    "  --law NAME    default, paper or pose (renderers), field (the renderer for control loops, with --sessions or
-"
-    "                --rests) or exit (the originals' own true depth, slow, with neither)
-"
+    "[--sessions | --rests] [--dump]\n"
+    "  --law NAME    default, paper or pose (renderers), field (the renderer for control loops, with --sessions or\n"
+    "                --rests) or exit (the originals' own true depth, slow, with neither)\n"
     "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
     "  --touches N   presses on each pair (24)\n"
     "  --first N     leave the first N of the day's touches out (0)\n"

@@ -50,6 +50,7 @@ rest_result rest_session(render_function render, const press_touch& touch, const
   made.capabilities.workspace_high_d = vec3(1.0);
   control_config control;
   control.map.T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a};
+  control.contact.stiffness_n_per_m = rules.plane_stiffness_n_per_m;
   motion_config& m = made.motion;
   m.kind = motion_kind::press;
   m.T_dh = touch.touching_T_wa * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a};

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "asperity/control/contact_solver.hpp"
 #include "asperity/control/vibration_monitor.hpp"
 #include "presses/press_session.hpp"
 #include "presses/press_touch.hpp"
@@ -24,6 +25,7 @@ struct rest_rules {
   std::int64_t contact_period_ns = 1'000'000;
   std::int64_t device_period_ns = 1'000'000;
   bool one_period_late = true;  ///< contacts take their whole period
+  double plane_stiffness_n_per_m = contact_law{}.stiffness_n_per_m;
   double ramp_s = 0.5, settle_s = 0.3, rest_s = 1.0;
 };
 

@@ -18,8 +18,9 @@ namespace asperity {
 /// What a support plane does where the probe is in it: lambda = k max(0, d + 1.5 alpha d_0 d'), d the depth, d' its
 /// rate and d_0 the depth at the beginning of the step.
 struct contact_law {
-  /// k of each plane, N/m. A probe of 10 g under a coupling of 5 N/mm keeps 0.91 of it on one plane of 50 N/mm and 0.97
-  /// on three. 200 N/mm is stable as well and rings longer after a blow.
+  /// k of each plane, N/m. A contact of 50 N/mm lets textured faces overlap by 5 to 20 um, so that hundreds of samples
+  /// press of which a list of planes holds some, each time others: the block rested on the gear with 131 mN of
+  /// vibration above 60 Hz, and rests with 4 mN on planes of 200 N/mm.
   double stiffness_n_per_m = 2e5;
   /// alpha, s/m, of Hunt and Crossley: the loss grows with the depth, so that a touch begins without a jump.
   /// A slow blow of speed v comes back with about 1 - alpha v of it.

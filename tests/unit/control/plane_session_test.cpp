@@ -74,7 +74,7 @@ TEST(plane_session, holds_a_block_that_is_pressed) {
                   newtons, 1e3 * o.deepest_m, o.settled_step_n_per_ms, o.step_n_per_ms);
       expect_calm(o, "block");
       EXPECT_NEAR(o.force_n.z, newtons, 0.02 * newtons);
-      // Four corners of 50 N/mm at least.
+      // Four corners of 200 N/mm at least; a quarter of that is asked for.
       EXPECT_LE(o.deepest_m, newtons / 2e5 + 5e-5);
       EXPECT_LE(o.settled_step_n_per_ms, 0.1);
       EXPECT_LE(o.step_n_per_ms, 1.0);
@@ -94,7 +94,8 @@ TEST(plane_session, holds_a_block_that_is_pressed) {
     const plane_outcome without = run(line);
     const plane_outcome single = run(one);
     EXPECT_TRUE(without.deepest_m > 3e-4 || without.settled_step_n_per_ms > 1.0) << r.contact_hz;
-    EXPECT_TRUE(single.deepest_m > 1e-3 || single.settled_step_n_per_ms > 1.0) << r.contact_hz;
+    EXPECT_TRUE(single.deepest_m > (fast ? 2e-4 : 6e-4) || single.settled_step_n_per_ms > 1.0)
+        << r.contact_hz << ' ' << single.deepest_m << ' ' << single.settled_step_n_per_ms;
   }
 }
 
