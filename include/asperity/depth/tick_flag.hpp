@@ -19,7 +19,7 @@ enum class tick_flag : std::uint8_t {
   unbalanced = 16,  ///< the contact solver left more than most_unbalanced_n, or found no solution; device ticks only
 };
 
-/// Overlap beyond which planes do not hold the probe, m: the load of one plane of the usual 50 N/mm is 50 N there.
+/// Overlap beyond which planes do not hold the probe, m: the load of one plane of the usual 200 N/mm is 200 N there.
 inline constexpr double deepest_held_m = 1e-3;
 /// Force out of balance in one plane above which a device tick tells it, N: a tenth of what a hand can feel.
 inline constexpr double most_unbalanced_n = 1e-3;
