@@ -52,7 +52,7 @@ class relief_fit {
       const int axis = static_cast<int>(k);
       // Three nodes around the places above and below.
       if (!(q[axis] >= 3.0 && q[axis] < static_cast<double>(side * out_.bricks_along[k]) - 3.0)) return;
-      brick[k] = static_cast<std::size_t>(q[axis] + 0.5) / side;
+      brick[k] = static_cast<std::size_t>(std::floor(q[axis] + 0.5)) / side;
       p.place[axis] = static_cast<float>(q[axis] - static_cast<double>(side * brick[k]));
       for (std::size_t s = 0; s < 2; ++s) {
         const auto middle = static_cast<std::size_t>(q[axis] + 0.5 + (s == 0 ? -along[axis] : along[axis]));
