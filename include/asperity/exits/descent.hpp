@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "asperity/core/fixed_vector.hpp"
@@ -21,7 +22,7 @@ struct exit_plane {
   double depth_m = 0.0;
   vec3 normal_w{0.0};
 };
-using exit_planes = fixed_vector<exit_plane, witnesses::capacity()>;
+using exit_planes = fixed_vector<exit_plane, 64>;
 
 /// min over p of |p - y|^2 / 2 + stiffness/2 sum (depth + normal . (p - x))+^2: convex, quadratic by parts; Newton's
 /// method ends where the planes that push stay the same.
@@ -81,14 +82,60 @@ inline void planes_at(const vec3& x, std::span<const mark> of, posed_samples& sa
   samples.count.spent += 3 * of.size();
 }
 
+/// Planes of earlier steps that still hold. In a notch whose bottom is round the plane of one place swings about with
+/// the place, further each time where the way out is longer than the radius; two planes of one sample, from either
+/// side, hold the bottom between them. Where the surface bends the other way, an earlier plane would be a wall that is
+/// not there: it goes as soon as the sample is found to be less deep than the plane has it.
+class earlier_planes {
+ public:
+  /// Adds those that hold at x to the planes of the witnesses there, and keeps these for later.
+  /// @param planes of the witnesses, in their order   @rt safe
+  void add_to(exit_planes& planes, const vec3& x, std::span<const mark> of) noexcept {
+    constexpr double wrong_m = 1e-6, near_m = 1e-4;
+    std::size_t held = 0;
+    for (const cut& c : cuts_) {
+      const auto same = std::find_if(of.begin(), of.end(),
+                                     [&](const mark& m) { return m.sample == c.sample && m.meeting == c.meeting; });
+      if (same == of.end()) continue;
+      const double depth_m = c.plane.depth_m + glm::dot(c.plane.normal_w, x - c.place_w);
+      if (depth_m > planes[static_cast<std::size_t>(same - of.begin())].depth_m + wrong_m) continue;
+      cuts_[held++] = c;
+    }
+    cuts_.truncate(held);
+    const std::size_t witnesses_here = of.size();
+    for (const cut& c : cuts_) {
+      static_cast<void>(
+          planes.push_back({c.plane.depth_m + glm::dot(c.plane.normal_w, x - c.place_w), c.plane.normal_w}));
+    }
+    for (std::size_t i = 0; i < witnesses_here; ++i) {
+      if (!(planes[i].depth_m > -near_m)) continue;
+      if (cuts_.full()) {
+        std::copy(cuts_.begin() + 1, cuts_.end(), cuts_.begin());
+        cuts_.truncate(cuts_.size() - 1);
+      }
+      static_cast<void>(cuts_.push_back({planes[i], x, of[i].sample, of[i].meeting}));
+    }
+  }
+
+ private:
+  struct cut {
+    exit_plane plane;
+    vec3 place_w{0.0};
+    std::uint32_t sample = 0, meeting = 0;
+  };
+  fixed_vector<cut, 24> cuts_;
+};
+
 /// The way out that some witnesses alone make, near x, as seen from y. Ends early within `same_m` of one of `known`.
 /// @rt safe: at most 12 readings of each witness
 [[nodiscard]] inline vec3 relax(const vec3& y, vec3 x, std::span<const mark> of, const descent_rule& rule,
                                 std::span<const vec3> known, double same_m, posed_samples& samples) noexcept {
   double longest_m = rule.longest_m;
   exit_planes planes;
+  earlier_planes earlier;
   for (int i = 0; i < 12 && samples.count.left(); ++i) {
     planes_at(x, of, samples, planes);
+    earlier.add_to(planes, x, of);
     vec3 step = least_motion_over(planes, x, y, rule.stiffness) - x;
     const double length = glm::length(step);
     if (length > longest_m) step *= longest_m / length;
@@ -108,6 +155,7 @@ inline void planes_at(const vec3& x, std::span<const mark> of, posed_samples& sa
   constexpr double near_m = 1e-3;  // how far outside a sample may be and still tell its plane
   double longest_m = rule.longest_m;
   exit_planes planes;
+  earlier_planes earlier;
   for (int i = 0; i < 14 && samples.count.left(); ++i) {
     double above_m = -near_m;
     for (const mark& m : met) above_m = std::max(above_m, samples.depth(m, x));
@@ -123,6 +171,7 @@ inline void planes_at(const vec3& x, std::span<const mark> of, posed_samples& sa
       static_cast<void>(met.push_back(m));
     }
     planes_at(x, {met.data(), met.size()}, samples, planes);
+    earlier.add_to(planes, x, {met.data(), met.size()});
     vec3 step = least_motion_over(planes, x, y, rule.stiffness) - x;
     const double length = glm::length(step), cap_m = std::max(longest_m, 0.7 * above_m);
     if (length > cap_m) step *= cap_m / length;

@@ -11,6 +11,7 @@
 #include "asperity/exits/field_bounds.hpp"
 #include "asperity/exits/kept_relief.hpp"
 #include "asperity/exits/mark_tree.hpp"
+#include "asperity/exits/relief_bounds.hpp"
 #include "asperity/field/field_scene.hpp"
 
 namespace asperity::exits {
@@ -20,6 +21,7 @@ struct exit_body {
   field_body_ptr body;
   field_bounds bounds;
   kept_relief relief;
+  relief_bounds most_relief;
   mark_tree marks;
 
   /// @pre made
@@ -27,8 +29,9 @@ struct exit_body {
       : body(std::move(made)),
         bounds(body->field.smooth),
         relief(usual_relief(body->field, body->samples.samples())),
+        most_relief(body->field.fine),
         marks(body->samples.samples()) {}
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(bounds, marks); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(bounds, most_relief, marks); }
 };
 
 using exit_body_ptr = std::shared_ptr<const exit_body>;

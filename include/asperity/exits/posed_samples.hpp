@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -35,7 +36,8 @@ struct meeting {
   mat3 motion_y{1.0};            ///< what a motion of the probe, world axes, does to X's points in Y's frame
   std::uint32_t body = 0;        ///< index in scene::fixed of the body that is not the probe
   bool of_probe = true;          ///< X is the probe
-  std::size_t first_relief = 0;  ///< in what posed_samples keeps per sample
+  std::size_t first_sample = 0;  ///< in what posed_samples keeps per sample, and
+  std::size_t first_branch = 0;  ///< per branch
 };
 
 /// What a solve may spend, and what it has spent: readings of a field or of a table of its bounds.
@@ -61,7 +63,7 @@ class posed_samples {
  public:
   posed_samples(std::shared_ptr<const exit_scene> bodies, const vec3& centre_of_mass_a)
       : bodies_(std::move(bodies)), centre_of_mass_a_(centre_of_mass_a) {
-    std::size_t reliefs = 0;
+    std::size_t samples = 0, branches = 0;
     for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
       for (const bool of_probe : {true, false}) {
         meeting m;
@@ -69,14 +71,17 @@ class posed_samples {
         m.in_y = of_probe ? bodies_->fixed[b].get() : bodies_->probe.get();
         m.body = b;
         m.of_probe = of_probe;
-        m.first_relief = reliefs;
-        reliefs += m.of_x->marks.samples().size();
+        m.first_sample = samples;
+        m.first_branch = branches;
+        samples += m.of_x->marks.samples().size();
+        branches += m.of_x->marks.branches().size();
         meetings_.push_back(m);
       }
       steepest_ = std::max(steepest_, bodies_->fixed[b]->bounds.steepest());
     }
     steepest_ = std::max(steepest_, bodies_->probe->bounds.steepest());
-    reliefs_.resize(reliefs);
+    samples_.resize(samples);
+    branches_.resize(branches);
   }
 
   /// Takes a pose; motions start from here.   @pre one pose per fixed body
@@ -157,15 +162,25 @@ class posed_samples {
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(meetings_, reliefs_) + sizeof(exit_scene) + bodies_->heap_bytes();
+    return asperity::heap_bytes(meetings_, samples_, branches_) + sizeof(exit_scene) + bodies_->heap_bytes();
   }
 
   reading_count count;
 
  private:
-  struct known_relief {
-    double relief_m = 0.0;
+  // What was read of a branch at the pose, where a motion had taken its middle: S and its slope there bound S for other
+  // motions near by, without another reading.
+  struct kept_branch {
+    vec3 moved_y{0.0}, place_y{0.0};
+    coarse_reading at;
+    double bend_per_m = 0.0, bend_within_m = 0.0;
+    double relief_m = 0.0;   // no sample of the branch has more
     std::uint64_t turn = 0;  // of the pose that it was read at
+  };
+  struct kept_sample {
+    vec3 moved_y{0.0};
+    double smooth_m = 0.0, relief_m = 0.0;
+    std::uint64_t turn = 0;
   };
 
   [[nodiscard]] static field_reading relief_at(const meeting& m, const vec3& place_y) noexcept {
@@ -175,30 +190,78 @@ class posed_samples {
     return m.in_y->relief.limited(m.in_y->body->field.highest_relief_m);
   }
 
-  // No sample of a branch, moved, is deeper. Bounds from the cheap to the sharp: the table, the slope from the middle
-  // of the ball, and along the branch's planes the slope and the bend.
-  [[nodiscard]] double most_in(const meeting& m, std::uint32_t index, const vec3& moved_y, double relief_m,
+  // S at `off_m` or less from where a kept branch was read, where its slope alone would add `along_m`.
+  [[nodiscard]] static double most_near(kept_branch& k, double off_m, double along_m,
+                                        const field_bounds& bounds) noexcept {
+    const double by_steepest = k.at.value_m + bounds.steepest() * off_m;
+    learn_bend(k, off_m, bounds);
+    return std::min(by_steepest, k.at.value_m + along_m + 0.5 * k.bend_per_m * off_m * off_m);
+  }
+  static void learn_bend(kept_branch& k, double off_m, const field_bounds& bounds) noexcept {
+    if (off_m <= k.bend_within_m) return;
+    k.bend_within_m = off_m;
+    k.bend_per_m = bounds.bend_per_m(k.place_y, k.bend_within_m);
+  }
+
+  // No relief is larger that points within radius_m of where a branch was read have at the pose. Their feet lie as near
+  // to each other as they do, but for what the slope turns; where it has less than the length from which relief is kept
+  // that is not known.
+  [[nodiscard]] static double most_relief_near(const meeting& m, kept_branch& k, double radius_m) noexcept {
+    constexpr double kept_from = 0.75;  // |grad S|^2, as kept_relief has it
+    const double square = glm::dot(k.at.slope, k.at.slope);
+    learn_bend(k, radius_m, m.in_y->bounds);
+    if (!(square > kept_from) || !(k.bend_per_m * radius_m < 0.3)) return k.relief_m;
+    const vec3 foot_y = k.place_y - (k.at.value_m / (square + 1e-3)) * k.at.slope;
+    const double turned = k.bend_per_m * radius_m;
+    const double deep_m = std::fabs(k.at.value_m) + 1.2 * radius_m;
+    const double far_m = radius_m * (1.0 + 0.7 * turned) + (1.6 * turned + 1e-3) * deep_m;
+    return m.in_y->relief.limited(m.in_y->most_relief.most_m(foot_y, far_m));
+  }
+
+  // No sample of a branch, moved, is deeper. Bounds from the cheap to the sharp: what was read of it for another
+  // motion, the table, and along the branch's planes the slope and the bend.
+  [[nodiscard]] double most_in(const meeting& m, std::uint32_t index, const vec3& moved_y, double most_relief_m,
                                double above_m) noexcept {
+    constexpr double table_beyond = 15.0;  // pitches: larger balls are bounded by the table alone
     const branch& b = m.of_x->marks.branches()[index];
     const field_bounds& bounds = m.in_y->bounds;
     const detail::coarse_grid& grid = m.in_y->body->field.smooth;
     const double radius_m = static_cast<double>(b.radius_m), steepest = bounds.steepest();
-    const vec3 c_y = m.turn_yx * vec3(b.centre_b) + m.shift_y + moved_y;
-    ++count.spent;
-    double smooth_m = bounds.most_by_table(c_y, radius_m);
-    if (smooth_m + relief_m <= above_m || radius_m > 15.0 * grid.pitch_m) return smooth_m + relief_m;
-    ++count.spent;
-    const double bend = bounds.bend_per_m(c_y, radius_m);
-    if (!(bend * radius_m < 2.0 * steepest)) {
-      return std::min(smooth_m, smooth_depth(grid, c_y) + steepest * radius_m) + relief_m;
+    kept_branch& k = branches_[m.first_branch + index];
+    const bool known = k.turn == turn_;
+    const vec3 axis_y = m.turn_yx * vec3(b.axis_b);
+    const auto bound = [&](const vec3& further_y) noexcept {
+      const vec3 &slope = k.at.slope, more = further_y;
+      const double along = std::fabs(glm::dot(axis_y, slope));
+      const double across = std::sqrt(std::max(0.0, glm::dot(slope, slope) - along * along));
+      return most_near(k, radius_m + std::sqrt(glm::dot(more, more)),
+                       glm::dot(slope, more) + along * static_cast<double>(b.half_m) + across * radius_m, bounds);
+    };
+    double smooth_m = std::numeric_limits<double>::infinity();
+    if (known) {
+      const vec3 further_y = moved_y - k.moved_y;
+      smooth_m = bound(further_y);
+      // A reading for every motion would cost more than the halves' own bounds, as long as it is near by.
+      const double near_m = std::max(radius_m, grid.pitch_m);
+      if (smooth_m + k.relief_m <= above_m || glm::dot(further_y, further_y) < near_m * near_m) {
+        return smooth_m + k.relief_m;
+      }
     }
-    const coarse_reading s = grid.read(c_y);
-    const double along = std::fabs(glm::dot(m.turn_yx * vec3(b.axis_b), s.slope));
-    const double across = std::sqrt(std::max(0.0, glm::dot(s.slope, s.slope) - along * along));
-    smooth_m = std::min(
-        {smooth_m, s.value_m + steepest * radius_m,
-         s.value_m + along * static_cast<double>(b.half_m) + across * radius_m + 0.5 * bend * radius_m * radius_m});
-    return smooth_m + relief_m;
+    const vec3 c_y = m.turn_yx * vec3(b.centre_b) + m.shift_y + moved_y;
+    const double relief_m = known ? k.relief_m : most_relief_m;
+    ++count.spent;
+    smooth_m = std::min(smooth_m, bounds.most_by_table(c_y, radius_m));
+    if (smooth_m + relief_m <= above_m || radius_m > table_beyond * grid.pitch_m) return smooth_m + relief_m;
+    count.spent += 2;
+    k.turn = turn_;
+    k.relief_m = relief_m;
+    k.moved_y = moved_y;
+    k.at = grid.read(c_y);
+    k.place_y = c_y;
+    k.bend_within_m = -1.0;
+    smooth_m = std::min(smooth_m, bound(vec3(0.0)));
+    if (!known && moved_y == vec3(0.0)) k.relief_m = std::min(k.relief_m, most_relief_near(m, k, radius_m));
+    return smooth_m + k.relief_m;
   }
 
   template <class Take>
@@ -212,8 +275,9 @@ class posed_samples {
       std::uint32_t branch;
       double most_m;
     };
-    // Halving leaves one waiting sibling at each of at most 32 levels.
-    std::array<item, 64> waiting;
+    // Halving leaves a waiting sibling and a parent that is to learn at each of at most 32 levels.
+    std::array<item, 96> waiting;
+    constexpr double learns = std::numeric_limits<double>::infinity();
     std::size_t n = 0;
     waiting[n++] = {0, most_in(m, 0, moved_y, relief_m, above_m)};
     while (n > 0) {
@@ -221,41 +285,87 @@ class posed_samples {
       if (!(it.most_m > above_m)) continue;
       if (!count.left()) return;
       const branch& b = branches[it.branch];
-      if (b.right == 0) {
-        for (std::uint32_t s = b.first; s < b.first + b.count; ++s) meet(index, s, moved_y, relief_m, above_m, take);
+      if (it.most_m == learns) {
+        learn_relief(m, it.branch, b.right);
         continue;
       }
-      item near{it.branch + 1, most_in(m, it.branch + 1, moved_y, relief_m, above_m)};
-      item far{b.right, most_in(m, b.right, moved_y, relief_m, above_m)};
+      if (b.right == 0) {
+        visit_leaf(index, it.branch, moved_y, relief_m, above_m, take);
+        continue;
+      }
+      const kept_branch& parent = branches_[m.first_branch + it.branch];
+      const double of_both_m = parent.turn == turn_ ? parent.relief_m : relief_m;
+      item near{it.branch + 1, most_in(m, it.branch + 1, moved_y, of_both_m, above_m)};
+      item far{b.right, most_in(m, b.right, moved_y, of_both_m, above_m)};
+      waiting[n++] = {it.branch, learns};
       if (near.most_m < far.most_m) std::swap(near, far);
       if (far.most_m > above_m) waiting[n++] = far;
       if (near.most_m > above_m) waiting[n++] = near;
     }
   }
 
+  // A branch has no more relief than its halves have.
+  void learn_relief(const meeting& m, std::uint32_t parent, std::uint32_t right) noexcept {
+    kept_branch& k = branches_[m.first_branch + parent];
+    const kept_branch &a = branches_[m.first_branch + parent + 1], &b = branches_[m.first_branch + right];
+    if (k.turn == turn_ && a.turn == turn_ && b.turn == turn_) k.relief_m = std::max(a.relief_m, b.relief_m);
+  }
+
   template <class Take>
-  void meet(std::uint32_t index, std::uint32_t sample, const vec3& moved_y, double most_relief_m, double above_m,
-            Take& take) noexcept {
+  void visit_leaf(std::uint32_t index, std::uint32_t leaf, const vec3& moved_y, double most_relief_m, double& above_m,
+                  Take& take) noexcept {
     const meeting& m = meetings_[index];
+    const branch& b = m.of_x->marks.branches()[leaf];
     const body_field& field = m.in_y->body->field;
-    const vec3 place_y = m.turn_yx * vec3(m.of_x->marks.samples()[sample].position_b) + m.shift_y;
-    const vec3 at_y = place_y + moved_y;
-    ++count.spent;
-    const double smooth_m = smooth_depth(field.smooth, at_y);
-    if (!(smooth_m + most_relief_m > above_m)) return;
-    known_relief& t = reliefs_[m.first_relief + sample];
-    if (t.turn != turn_) {
+    const double steepest = m.in_y->bounds.steepest();
+    kept_branch& k = branches_[m.first_branch + leaf];
+    const bool bounded = k.turn == turn_;
+    if (bounded) most_relief_m = k.relief_m;
+    double highest_relief_m = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = b.first; i < b.first + b.count; ++i) {
+      kept_sample& s = samples_[m.first_sample + i];
+      const bool known = s.turn == turn_;
+      const double relief_m = known ? s.relief_m : most_relief_m;
+      highest_relief_m = std::max(highest_relief_m, relief_m);
+      if (known) {
+        const vec3 further_y = moved_y - s.moved_y;
+        const double far_m = std::sqrt(glm::dot(further_y, further_y));
+        double most_m = s.smooth_m + steepest * far_m;
+        if (bounded) {
+          const vec3 from_leaf_y = s.moved_y - k.moved_y;
+          const double off_m = static_cast<double>(b.radius_m) + std::sqrt(glm::dot(from_leaf_y, from_leaf_y)) + far_m;
+          learn_bend(k, off_m, m.in_y->bounds);
+          most_m = std::min(most_m, s.smooth_m + glm::dot(k.at.slope, further_y) + k.bend_per_m * off_m * far_m);
+        }
+        if (!(most_m + relief_m > above_m)) continue;
+      }
+      const vec3 place_y = m.turn_yx * vec3(m.of_x->marks.samples()[i].position_b) + m.shift_y;
+      const vec3 at_y = place_y + moved_y;
+      if (bounded && !known) {
+        const vec3 off_y = at_y - k.place_y;
+        const double off_m = std::sqrt(glm::dot(off_y, off_y));
+        if (!(most_near(k, off_m, glm::dot(k.at.slope, off_y), m.in_y->bounds) + relief_m > above_m)) continue;
+      }
       ++count.spent;
-      t = {relief_at(m, place_y).value_m, turn_};
+      s.smooth_m = smooth_depth(field.smooth, at_y);
+      s.moved_y = moved_y;
+      if (!known) {
+        if (!(s.smooth_m + most_relief_m > above_m)) continue;
+        ++count.spent;
+        s.relief_m = relief_at(m, place_y).value_m;
+        s.turn = turn_;
+      }
+      const double depth_m = s.smooth_m + s.relief_m;
+      if (depth_m > above_m) take(mark{place_y, s.relief_m, depth_m, i, index});
     }
-    const double depth_m = smooth_m + t.relief_m;
-    if (depth_m > above_m) take(mark{place_y, t.relief_m, depth_m, sample, index});
+    if (bounded) k.relief_m = highest_relief_m;
   }
 
   std::shared_ptr<const exit_scene> bodies_;
   vec3 centre_of_mass_a_, centre_w_{0.0};
   std::vector<meeting> meetings_;
-  std::vector<known_relief> reliefs_;  // of every sample of every meeting, read once per pose where needed
+  std::vector<kept_sample> samples_;  // of every meeting, read once per pose where needed
+  std::vector<kept_branch> branches_;
   std::uint64_t turn_ = 0;
   double steepest_ = 1.0;
 };

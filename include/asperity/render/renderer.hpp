@@ -151,7 +151,7 @@ class basic_renderer {
         return 0;
       }
     };
-    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, told_) + held(finder_) + held(depth_) +
+    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, told_, at_) + held(finder_) + held(depth_) +
            held(force_);
   }
 
@@ -175,7 +175,9 @@ class basic_renderer {
     std::vector<pose> T_wb;
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(T_wb); }
   };
-  struct nothing {};
+  struct nothing {
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return 0; }
+  };
 
   [[nodiscard]] status feel(const scene_pose& at, std::span<const reading_type> readings, contact_force& to) noexcept {
     if constexpr (takes_poses<Force>) {

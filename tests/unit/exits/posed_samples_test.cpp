@@ -70,6 +70,51 @@ TEST(PosedSamples, FindsTheDeepestOfAll) {
   EXPECT_LT(inside, 60);
 }
 
+// What a search has read at a pose bounds what it asks for next; a bound that is too low hides a sample.
+TEST(PosedSamples, FindsTheDeepestOfAllAtMotionAfterMotion) {
+  drawing draw{std::mt19937_64(fresh_seed("PosedSamples.MotionAfterMotion", "6 poses, 8 motions each"))};
+  posed_samples samples(boxes().scene, vec3(0.0));
+  std::size_t first = 0, later = 0;
+  for (int i = 0; i < 6; ++i) {
+    const pose T_wa = drawn_pose(draw), T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
+    samples.place({T_wa, {&T_wb, 1}}, 100'000'000);
+    for (int n = 0; n < 8; ++n) {
+      const vec3 x_w = n == 0 ? vec3(0.0) : draw.between(0.0, 3.0) * mm * draw.vector();
+      const std::vector<double> all = all_depths(T_wa, T_wb, x_w);
+      const double most = *std::max_element(all.begin(), all.end());
+      const std::size_t before = samples.count.spent;
+      mark m;
+      ASSERT_FALSE(samples.deepest(x_w, most + 1e-12, m)) << i << ", " << n;
+      ASSERT_TRUE(samples.deepest(x_w, most - draw.between(0.0, 0.3) * mm - 1e-9, m)) << i << ", " << n;
+      ASSERT_NEAR(m.depth_m, most, 1e-12) << i << ", " << n;
+      (n == 0 ? first : later) += samples.count.spent - before;
+    }
+  }
+  EXPECT_LT(later, 7 * first) << "what was read before saves nothing";
+}
+
+TEST(ReliefBounds, HoldForEveryFootInABall) {
+  drawing draw{std::mt19937_64(fresh_seed("ReliefBounds.HoldForEveryFootInABall", "20000 balls"))};
+  const exit_body& body = *boxes().scene->fixed[0];
+  double highest = 0.0, mean_of_small = 0.0;
+  int small = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const vec3 c = vec3(13, 12, 7) * mm * draw.vector();
+    const double radius = std::exp(draw.between(std::log(0.01), std::log(30.0))) * mm;
+    vec3 step;
+    do step = draw.vector();
+    while (glm::dot(step, step) > 1.0);
+    const double bound = body.most_relief.most_m(c, radius);
+    ASSERT_LE(body.body->field.fine.read(c + radius * step).value, bound + 1e-12);
+    highest = std::max(highest, bound);
+    if (radius > 0.1 * mm) continue;
+    mean_of_small += bound;
+    ++small;
+  }
+  EXPECT_LT(mean_of_small / small, 0.5 * highest);  // and say something
+  EXPECT_EQ(relief_bounds(detail::relief_bricks{}).most_m(vec3(0.0), 1.0), 0.0);
+}
+
 TEST(PosedSamples, GathersAllAboveALimit) {
   drawing draw{std::mt19937_64(fresh_seed("PosedSamples.GathersAllAboveALimit", "40 poses"))};
   posed_samples samples(boxes().scene, vec3(0.0));
