@@ -73,8 +73,9 @@ void print(const light_touches& t) {
 // Wished for: within 5 % of k d. By closed form that holds (stripes_truth_test.cpp); on baked models 3 of 10 touches
 // keep it. What the others lack:
 // - 4 % is the bed: under a single sample it gives way by 10 um with the softness of a loop of 1 kHz.
-// - bakes cut tips and edges off, half of the touching ones by more than 8 to 12 um, some by 140 um: of a press of 200
-// um.
+// - bakes cut tips off and samples lie beside them: half of the touching tips lack 8 to 12 um and more, some 140 um, of
+// a
+//   press of 200 um.
 // - at edges the field's shape is the smooth part's, which is round there by a part of its pitch, and the pose law
 // keeps
 //   no relief beside edges: one touch in ten of edge on edge is not felt at 0.2 mm.
