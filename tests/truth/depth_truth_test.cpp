@@ -205,7 +205,7 @@ const planted shifted{"texture moved aside by a texel",
                       [](const truth_body& b) { return built_field_body(with_shifted_relief(*b.model)); },
                       {}};
 const planted fewer{
-    "seven of eight samples left out", [](const truth_body& b) { return with_fewer_samples(*b.field, 8); }, {}};
+    "23 of 24 samples left out", [](const truth_body& b) { return with_fewer_samples(*b.field, 24); }, {}};
 const planted tilted{
     "directions tilted by 2 degrees", [](const truth_body& b) { return b.field; },
     [](told_plane& p) { p.n_ab_w = exp_rotation(2.0 * degree * any_orthogonal(p.n_ab_w)) * p.n_ab_w; }};

@@ -125,8 +125,8 @@ class distance_sweep {
           if (j + 1 < ny) ask_of(node, p, node + nx);
           if (k > 0) ask_of(node, p, node - nx * ny);
           if (k + 1 < nz) ask_of(node, p, node + nx * ny);
-          // Near by triangles are large as seen from the node, and inside a press is as deep as this says. The grid goes
-          // on for a node more at least, in both cases.
+          // Near by triangles are large as seen from the node, and inside a press is as deep as this says. The grid
+          // goes on for a node more at least, in both cases.
           if (distance_[node] > 3.0F * pitch_ && votes[node] <= 0) continue;
           for (const std::size_t layer : {node - nx * ny, node, node + nx * ny}) {
             for (const std::size_t row : {layer - nx, layer, layer + nx}) {
