@@ -56,7 +56,7 @@ class contact_loop {
     const timed_pose& at = shared_->poses.front();
     const pose T_wa = at.T_wc * inverse(placement_.T_ac());
     const status answer = renderer_.step({T_wa, placement_.T_wb}, last_);
-    linearise(last_, answer, at, selection_, shared_->contacts.back());
+    linearise(last_, answer, at, selection_, rest_, shared_->contacts.back());
     shared_->contacts.back().flags = flags_.held(shared_->contacts.back().flags, at.time_ns);
     pending_ = true;
     ++computed_;
@@ -84,6 +84,7 @@ class contact_loop {
   scene_placement placement_;
   exchange* shared_;
   plane_selection selection_;
+  rest_prediction rest_;
   held_flags flags_;
   asperity::tick last_{};
   bool pending_ = false;

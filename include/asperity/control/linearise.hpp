@@ -30,9 +30,10 @@ namespace asperity {
 /// not answer, or told a number that is not finite, the contact is empty and carries the status: the wrench goes to
 /// zero.
 /// @param answer of the renderer, to this pose
+/// @param rest   where the contact before was going to rest
 /// @rt safe
 inline void linearise(const tick& found, status answer, const timed_pose& at, const plane_selection& selection,
-                      linear_contact& out) noexcept {
+                      rest_prediction& rest, linear_contact& out) noexcept {
   out = {};
   out.T_wc = at.T_wc;
   out.time_ns = at.time_ns;
@@ -49,7 +50,7 @@ inline void linearise(const tick& found, status answer, const timed_pose& at, co
   if (selected == status::capacity_reached && lacks_a_wall(found.planes, out.planes, selection.same_direction)) {
     out.flags |= tick_flag::planes_left_out;
   }
-  predict_planes(found.planes_near, at.pull, out.planes);
+  rest.complete(found.planes_near, at.pull, at.T_wc, out.planes);
   out.on_probe_w = found.force.on_probe_w;
   out.stiffness = found.force.stiffness;
   out.dropped = static_cast<std::uint32_t>(found.dropped_contacts);

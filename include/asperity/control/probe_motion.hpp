@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
@@ -33,6 +35,7 @@ class probe_motion {
   void place(const pose& target_T_wc) noexcept {
     target_T_wc_ = target_T_wc;
     target_velocity_w_ = {};
+    recent_.fill({});
     probe_.reset(target_T_wc);
     caught_up_ = true;
   }
@@ -64,7 +67,7 @@ class probe_motion {
     }
     if (!(dt_s > 0.0)) return status::ok;
 
-    target_velocity_w_ = to_twist((1.0 / dt_s) * way);
+    target_velocity_w_ = velocity_over(way, dt_s);
     for (int i = 1; i <= substeps_; ++i) {
       const double passed = static_cast<double>(i) / substeps_;
       const pose target{exp_rotation(passed * way.angular) * from.rotation, from.position + passed * way.linear};
@@ -112,6 +115,22 @@ class probe_motion {
     return (p.inertia_kg_m2[0][0] + p.inertia_kg_m2[1][1] + p.inertia_kg_m2[2][2]) / 3.0;
   }
 
+  // The target's velocity, over this period and as many before it as make a millisecond: one, at 1 kHz. An encoder's
+  // step of 1 um in a period of 0.25 ms would be a velocity of 4 mm/s, which is 18 mN through the coupling's damper.
+  [[nodiscard]] twist velocity_over(const vec6& way, double dt_s) noexcept {
+    constexpr double shortest_s = 1e-3 * (1.0 - 1e-9);
+    std::rotate(recent_.begin(), recent_.end() - 1, recent_.end());
+    recent_.front() = {way, dt_s};
+    vec6 sum;
+    double time_s = 0.0;
+    for (const stretch& s : recent_) {
+      if (time_s >= shortest_s || !(s.time_s > 0.0)) break;
+      sum += s.way;
+      time_s += s.time_s;
+    }
+    return to_twist((1.0 / time_s) * sum);
+  }
+
   [[nodiscard]] status substep(double h_s, const pose& target, const linear_contact& contact) noexcept {
     if (contact.planes.empty()) {
       const status s = probe_.step(h_s, coupling_, target, target_velocity_w_, touched_);
@@ -124,12 +143,20 @@ class probe_motion {
     return s;
   }
 
+  /// What the target did in one period.
+  struct stretch {
+    vec6 way{};
+    double time_s = 0.0;
+  };
+  static constexpr std::size_t most_recent = 10;  // of 10 kHz
+
   contact_law law_;
   int substeps_;
   virtual_coupling coupling_;
   asperity::probe probe_;
   pose target_T_wc_{};
   twist target_velocity_w_{};
+  std::array<stretch, most_recent> recent_{};  // the newest first
   bool caught_up_ = true;
   contact_evaluation touched_{};
   contact_solution pressed_{};

@@ -8,9 +8,9 @@
 
 namespace asperity {
 
-/// Most support planes that a contact carries. A rigid body that rests needs six at most; the others are those that it
-/// meets next when it tilts or slides.
-inline constexpr std::size_t most_support_planes = 32;
+/// Most support planes that a contact carries: those that press where the probe will rest, one for each sample, and
+/// those that it meets next when it tilts or slides.
+inline constexpr std::size_t most_support_planes = 64;
 /// Of these, how many are chosen for test motions; the rest is for where the probe will come to rest.
 inline constexpr std::size_t most_selected_planes = 20;
 

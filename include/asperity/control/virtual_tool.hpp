@@ -47,6 +47,7 @@ class virtual_tool {
   /// @pre is_valid(T_wh)
   void place(const pose& T_wh) noexcept {
     motion_.forget_contact();
+    rest_.forget();
     motion_.place(T_wh * T_hc_);
   }
 
@@ -71,7 +72,7 @@ class virtual_tool {
       return {};
     }
     const pose then_T_wc = T_wa_then * inverse(T_ca_);
-    linearise(found, answer, {then_T_wc, 0, motion_.coupling().pull(T_wh * T_hc_, then_T_wc)}, config_.selection,
+    linearise(found, answer, {then_T_wc, 0, motion_.coupling().pull(T_wh * T_hc_, then_T_wc)}, config_.selection, rest_,
               contact_);
     last_ = motion_.move(std::min(dt_s, config_.longest_step_s), T_wh * T_hc_, 1.0, contact_);
     const wrench felt = transport(motion_.on_hand_w(), motion_.target().position, T_wh.position);
@@ -90,6 +91,7 @@ class virtual_tool {
   pose T_hc_;
   pose T_ca_;
   probe_motion motion_;
+  rest_prediction rest_;
   linear_contact contact_{};
   status last_ = status::not_ready;
 };

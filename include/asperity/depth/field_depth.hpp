@@ -143,6 +143,7 @@ class field_depth {
       if (smooth_m + steepest * leaf.radius_m + in_y.highest_relief_m <= above_m) return out;
     }
     double deepest_m = above_m;
+    const field_sample* found = nullptr;
     vec3 slope_y(0.0), point_x(0.0);
     const quat rotation_xy = glm::conjugate(T_yx.rotation);
     for (const field_sample& s : leaf.samples()) {
@@ -160,12 +161,16 @@ class field_depth {
       out.plane.depth_m = deepest_m = depth_m;
       slope_y = d.slope;
       point_x = vec3(s.position_b);
+      found = &s;
     }
     const double steep = std::sqrt(glm::dot(slope_y, slope_y));
     if (!(steep > 0.0)) return out;
     const vec3 slope_w = sign * (rotation_wy * slope_y);
     out.point_w = T_wx * point_x;
     out.plane.body = leaf.body;
+    const field_body& of_x = leaf.of_probe ? *bodies_->probe : *bodies_->fixed[leaf.body];
+    const auto index = static_cast<std::uint32_t>(found - of_x.samples.samples().data());
+    out.plane.sample = 2 * index + (leaf.of_probe ? 1 : 2);
     out.plane.r_w = out.point_w - c_a_w;
     out.plane.gradient = {slope_w, glm::cross(out.plane.r_w, slope_w)};
     out.plane.n_ab_w = slope_w / steep;

@@ -95,7 +95,8 @@ tick_flag flags_of(urchin body, std::size_t dropped, tick_flag told = tick_flag:
   found.dropped_contacts = dropped;
   found.flags = told;
   linear_contact contact;
-  linearise(found, status::ok, {}, {}, contact);
+  rest_prediction rest;
+  linearise(found, status::ok, {}, {}, rest, contact);
   return contact.flags;
 }
 
