@@ -27,9 +27,18 @@ hand_config hand_of(std::size_t grip) {
 struct listen {
   std::int64_t from_ns;
   vibration_monitor monitor;
-  double largest_n = 0.0;
+  double largest_n = 0.0, deepest_m = 0.0, step_n_per_ms = 0.0;
   bool shut = false;
+  vec3 before_n{0.0};
+  std::int64_t before_ns = 0;
   void operator()(const session_record& r) noexcept {
+    deepest_m = std::max(deepest_m, r.max_depth_m);
+    const double way_ms = 1e-6 * static_cast<double>(r.time_ns - before_ns);
+    if (before_ns >= from_ns && way_ms > 0.0) {
+      step_n_per_ms = std::max(step_n_per_ms, glm::length(r.on_hand_d.force - before_n) / way_ms);
+    }
+    before_n = r.on_hand_d.force;
+    before_ns = r.time_ns;
     shut = shut || r.fault != gate_fault::none;
     largest_n = std::max(largest_n, glm::length(r.on_hand_d.force));
     if (r.time_ns >= from_ns) monitor.observe(r.time_ns, r.T_dh, r.on_hand_d);
@@ -50,6 +59,7 @@ rest_result rest_session(render_function render, const press_touch& touch, const
   made.capabilities.workspace_high_d = vec3(1.0);
   control_config control;
   control.map.T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a};
+  control.guard.enabled = rules.guard;
   control.contact.stiffness_n_per_m = rules.plane_stiffness_n_per_m;
   motion_config& m = made.motion;
   m.kind = motion_kind::press;
@@ -76,10 +86,18 @@ rest_result rest_session(render_function render, const press_touch& touch, const
                                                               when,
                                                               {from_ns, vibration_monitor(rules.device_period_ns)});
   const auto until_ns = from_ns + static_cast<std::int64_t>(1e9 * rules.rest_s);
+  constexpr double least_credit_j = 0.1;
+  double surplus_j = 0.0, before_j = 0.0;
   const listen& heard = session.device().observer();
   while (session.now_ns() < until_ns && !out.ended_early) {
     out.ended_early = session.step() == status::backend_failed || heard.shut;
+    const double delivered_j = dev.delivered_j();
+    surplus_j = std::max(-least_credit_j, surplus_j + delivered_j - before_j);
+    before_j = delivered_j;
+    out.surplus_j = std::max(out.surplus_j, surplus_j);
   }
+  out.deepest_m = heard.deepest_m;
+  out.step_n_per_ms = heard.step_n_per_ms;
   out.heard = heard.monitor.report();
   out.largest_n = heard.largest_n;
   return out;

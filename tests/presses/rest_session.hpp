@@ -26,15 +26,19 @@ struct rest_rules {
   std::int64_t device_period_ns = 1'000'000;
   bool one_period_late = true;  ///< contacts take their whole period
   double plane_stiffness_n_per_m = contact_law{}.stiffness_n_per_m;
+  bool guard = true;  ///< the passivity guard, which must not be needed
   double ramp_s = 0.5, settle_s = 0.3, rest_s = 1.0;
 };
 
 struct rest_result {
   rest_rules rules;
   std::uint64_t touch = 0;
-  vibration_report heard;    ///< by a monitor that listens from the end of settle_s on
-  double largest_n = 0.0;    ///< on the hand
-  bool ended_early = false;  ///< the gate shut
+  vibration_report heard;      ///< by a monitor that listens from the end of settle_s on
+  double largest_n = 0.0;      ///< on the hand
+  double deepest_m = 0.0;      ///< overlap of the whole session, at the poses of its contacts
+  double step_n_per_ms = 0.0;  ///< fastest change of the force on the hand, from the end of settle_s on
+  double surplus_j = 0.0;      ///< most energy that the hand received beyond what it had lent
+  bool ended_early = false;    ///< the gate shut
   /// Nothing was measured: the hand never came to rest, for instance where the probe slides off.
   [[nodiscard]] bool restless() const noexcept { return heard.measurements == 0; }
   /// More vibration than a hand should be given: above 60 Hz, more than a hundredth of the mean and than 5 mN or

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "asperity/control/virtual_coupling.hpp"
+#include "asperity/hal/simulated/simulated_config.hpp"
 #include "presses/press_law.hpp"
 #include "presses/rest_session.hpp"
 #include "support/extent.hpp"
@@ -72,6 +74,51 @@ TEST(rests, hardly_tremble) {
   EXPECT_GE(rests, 4);
   EXPECT_LE(trembling, 2 + rests / 3);
   EXPECT_LE(far_over, 1 + rests / 30);
+}
+
+// A hand that presses a file on a block with 10 N, contacts one period late and without the guard.
+TEST(rests, a_file_is_held_on_a_block_with_10_n) {
+  const int touches = extent(1, 4);
+  const std::uint64_t seed = fresh_seed("rests, 10 N", std::to_string(touches) + " touches");
+  const auto without_planes = [](const render_function& whole) -> render_function {
+    return [whole](const scene_pose& at, tick& out) {
+      const status s = whole(at, out);
+      out.planes = {};
+      out.planes_near = {};
+      return s;
+    };
+  };
+  press_shelf shelf(press_bake::simplified);
+  const auto probe = shelf.get("file"), fixed = shelf.get("block");
+  ASSERT_TRUE(probe && fixed);
+  const auto render = field_renderer_law().render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+  ASSERT_TRUE(render);
+  touch_finder finder("file on block", (*probe)->full, (*fixed)->full, {});
+  for (int i = 0; i < touches; ++i) {
+    const auto touch = finder.next(seed);
+    ASSERT_TRUE(touch);
+    for (const double hz : {1000.0, 200.0}) {
+      rest_rules rules;
+      rules.grip = 2;
+      rules.way_m = 10.0 * (1.0 / firm_hand().stiffness_n_per_m + 1.0 / coupling_config{}.stiffness_n_per_m);
+      rules.contact_period_ns = static_cast<std::int64_t>(1e9 / hz);
+      rules.guard = false;
+      const vec3 c_a = (*probe)->model->mass.centre_of_mass;
+      const rest_result held = rest_session(*render, *touch, c_a, rules, seed);
+      const rest_result line = rest_session(without_planes(*render), *touch, c_a, rules, seed);
+      for (const auto& [name, r] : {std::pair{"planes", &held}, std::pair{"a line", &line}}) {
+        std::printf("  touch %llu, %.0f Hz, %s: %.2f N, deepest %.3f mm, %.2f N/ms at rest, %.4f mJ%s\n",
+                    static_cast<unsigned long long>(touch->index), hz, name, r->largest_n, 1e3 * r->deepest_m,
+                    r->step_n_per_ms, 1e3 * r->surplus_j, r->ended_early ? ", shut" : "");
+      }
+      const bool fast = hz > 500.0;
+      EXPECT_FALSE(held.ended_early);
+      EXPECT_LE(held.deepest_m, fast ? 2e-4 : 4e-4) << hz;
+      EXPECT_LE(held.step_n_per_ms, fast ? 0.3 : 1.0) << hz;
+      EXPECT_LE(held.surplus_j, 1e-5) << hz;
+      EXPECT_TRUE(line.deepest_m > 2.0 * held.deepest_m || line.step_n_per_ms > 1.0 || line.surplus_j > 1e-3) << hz;
+    }
+  }
 }
 
 // The control: two rests that buzz where planes are told of the present pose alone and are a quarter as stiff, so that

@@ -19,6 +19,9 @@ namespace detail {
 
 /// How far planes are followed from where they were told: planes further off are too wrong.
 inline constexpr double furthest_rest_m = 1e-4, furthest_rest_rad = 5e-3;
+/// How many such ways a pose of rest may be from the probe's: as far as one that slides off an edge comes in two
+/// periods of a slow contact loop.
+inline constexpr double most_ways = 5.0;
 
 /// The length of a motion, in those of furthest_rest_m and furthest_rest_rad.
 [[nodiscard]] inline double share_of_furthest(const vec6& way) noexcept {
@@ -26,8 +29,8 @@ inline constexpr double furthest_rest_m = 1e-4, furthest_rest_rad = 5e-3;
                   std::sqrt(glm::dot(way.angular, way.angular)) / furthest_rest_rad);
 }
 
-/// Where springs and planes balance, as a motion from the pose where both were told, of at most a tenth of a millimetre
-/// and 5 mrad.
+/// Where springs and planes balance, as a motion from the pose where both were told, of at most half a millimetre and
+/// 25 mrad.
 [[nodiscard]] inline vec6 rest_of(const coupling_pull& pull, const support_planes& planes) noexcept {
   mat6 springs;
   for (std::size_t i = 0; i < 6; ++i) springs(i, i) = i < 3 ? pull.stiffness_n_per_m : pull.stiffness_n_m_per_rad;
@@ -36,8 +39,8 @@ inline constexpr double furthest_rest_m = 1e-4, furthest_rest_rad = 5e-3;
   // A step of one second with the springs in the place of the mass: its velocity is the way.
   const contact_solution s = solve_contact(springs, to_vec6(pull.on_probe_w), {}, 1.0, planes, {}, still);
   if (!s.solved || !is_finite(s.velocity)) return {};
-  const double way = share_of_furthest(s.velocity);
-  return way > 1.0 ? (1.0 / way) * s.velocity : s.velocity;
+  const double ways = share_of_furthest(s.velocity);
+  return ways > most_ways ? (most_ways / ways) * s.velocity : s.velocity;
 }
 
 /// Whether two planes stand for one point of a surface.
@@ -66,7 +69,8 @@ inline constexpr double furthest_rest_m = 1e-4, furthest_rest_rad = 5e-3;
 /// went to another side of an edge from each, and the probe with it.
 ///
 /// Of each sample a contact then tells the plane of that pose, in the place of one of the probe's own pose that says
-/// the same there or more.
+/// the same there or more. Where the pose is further away than a tenth of a millimetre or 5 mrad, the planes of one so
+/// far on the way to it are told.
 /// @source cutting planes: J. E. Kelley, The cutting-plane method for solving convex programs, 1960; steps that have to
 /// lessen a merit: bundle methods, e.g. K. C. Kiwiel, Methods of descent for nondifferentiable optimization, 1985
 class rest_prediction {
@@ -77,7 +81,7 @@ class rest_prediction {
   /// @param pull of the coupling at T_wc; nothing is done where it is not known
   /// @param T_wc pose of c_A that pull and planes were told at
   /// @param planes completed in place
-  /// @rt safe: at most 8 questions to planes_near
+  /// @rt safe: at most 9 questions to planes_near
   void complete(const plane_source& planes_near, const coupling_pull& pull, const pose& T_wc,
                 support_planes& planes) noexcept {
     const bool known = known_;
@@ -90,7 +94,7 @@ class rest_prediction {
     rest_T_wc_ = {glm::normalize(exp_rotation(here_.moved.angular) * T_wc.rotation),
                   T_wc.position + here_.moved.linear};
     known_ = true;
-    tell(planes);
+    if (come_near(planes_near)) tell(planes);
   }
 
  private:
@@ -135,7 +139,7 @@ class rest_prediction {
     const double share = detail::share_of_furthest(rest);
     if (known && share < here_share) return look(planes_near, rest, here_);
     if (!look(planes_near, {}, here_)) return false;
-    if (!known || share > 1.0) return true;
+    if (!known || share > detail::most_ways) return true;
     if (!look(planes_near, rest, there_)) return false;
     if (there_.energy_j < here_.energy_j) std::swap(here_, there_);
     return true;
@@ -207,6 +211,15 @@ class rest_prediction {
   bool keep(const support_plane& p) noexcept {
     if (cuts_.size() == most_cuts) return false;
     return cuts_.push_back(p);
+  }
+
+  // Planes of a pose that is far away would push the probe through what lies between: those of a pose on the way are
+  // told.
+  [[nodiscard]] bool come_near(const plane_source& planes_near) noexcept {
+    const double ways = detail::share_of_furthest(here_.moved);
+    if (!(ways > 1.0)) return true;
+    cuts_.clear();
+    return look(planes_near, (1.0 / ways) * here_.moved, here_);
   }
 
   // Each point that presses is told once: by its planes at the pose of rest. Planes of the probe's own pose that say

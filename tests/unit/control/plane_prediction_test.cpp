@@ -85,8 +85,8 @@ drawn_rest draw(drawn& d) {
   return out;
 }
 
-/// How much deeper a point is than its planes say, at the pose where planes and springs balance. Nothing where the way
-/// there is at its bound: the next contact goes on from it.
+/// How much deeper a point is than its planes say, at the pose where planes and springs balance. Nothing where it is so
+/// far away that planes of a pose on the way are told.
 double untold_m(const drawn_rest& at) {
   const vec6 moved = detail::rest_of(at.pull, at.planes);
   if (detail::share_of_furthest(moved) > 0.999) return 0.0;
@@ -111,7 +111,7 @@ TEST(plane_prediction, planes_say_what_the_surface_is_where_the_probe_rests) {
     const double before = untold_m(at);
     const support_planes here = at.planes;
     rest_prediction rest;
-    for (int tick = 0; tick < 3; ++tick) {
+    for (int tick = 0; tick < 10; ++tick) {
       at.body.asked = 0;
       at.planes = here;
       rest.complete(plane_source(at.body), at.pull, {}, at.planes);
@@ -121,7 +121,7 @@ TEST(plane_prediction, planes_say_what_the_surface_is_where_the_probe_rests) {
     after_m = std::max(after_m, after);
     wrong_before += before > 0.5 * um ? 1 : 0;
     wrong_after += after > 0.5 * um ? 1 : 0;
-    EXPECT_LE(at.body.asked, 8);
+    EXPECT_LE(at.body.asked, 9);
   }
   std::printf("  a point was deeper than told by at most %.2f um (%d of 400 by more than 0.5); before, %.1f um (%d)\n",
               after_m / um, wrong_after, before_m / um, wrong_before);
@@ -240,15 +240,14 @@ TEST(plane_prediction, a_point_in_a_groove_is_told_both_walls) {
 TEST(plane_prediction, a_full_list_lets_go_of_the_last_choices) {
   points_on_waves wavy{{{1 * mm, 0, -20 * mm}}, {0, 0, 20 * mm - 5 * um}, {{{4000.0, 0, 20 * um}, {}, {}}}, 0};
   support_planes planes;
-  static_cast<void>(planes.push_back(wavy.plane(0, {})));
-  for (std::size_t i = 1; i < most_support_planes; ++i) {
+  for (std::size_t i = 1; i <= most_support_planes; ++i) {
     support_plane gap = wavy.plane(0, {});
     gap.depth_m = -1e-4 * static_cast<double>(i);
     gap.sample = static_cast<std::uint32_t>(i + 1);
     static_cast<void>(planes.push_back(gap));
   }
   const double last_m = planes[most_support_planes - 1].depth_m;
-  const coupling_pull pull{{{0.1, 0, -1.0}, {0, 0, 0}}, 500.0, 3.0};
+  const coupling_pull pull{{{0.02, 0, -1.0}, {0, 0, 0}}, 500.0, 3.0};
   predict_planes(plane_source(wavy), pull, planes);
   EXPECT_EQ(planes.size(), most_support_planes);
   const vec6 moved = detail::rest_of(pull, planes);
