@@ -46,11 +46,11 @@ rest_row rest_on(const std::string& name, const press_choice& which, Change&& ch
 
 render_function as_it_is(const render_function& whole) { return whole; }
 
-// A hundredth of the force is what is wanted, and three of four rests keep to it. A rest that trembles three times as much
-// is found about once in a hundred, where a vertex lies across a sharp edge: the planes of either side hold it in turns.
+// A hundredth of the force, or 5 mN and 0.5 mN m, is what is wanted, and nearly all rests keep to it: of 210 of two
+// days, three had up to twice as much. Each may have that, and one in twenty more than a hundredth.
 TEST(rests, hardly_tremble) {
-  const int touches = extent(2, 4);
-  const std::uint64_t seed = fresh_seed("rests", std::to_string(touches) + " hands a pair");
+  const int touches = 1;
+  const std::uint64_t seed = fresh_seed("rests", "a hand on each of 3 pairs, 30 at length");
   print_rest_heading(stdout);
   int rests = 0, trembling = 0, far_over = 0;
   for (const press_pair& pair : benchmark_pairs()) {
@@ -64,22 +64,19 @@ TEST(rests, hardly_tremble) {
       ++rests;
       trembling += r.trembles() ? 1 : 0;
       const vibration_level &force = r.heard.force, &torque = r.heard.torque;
-      far_over += force.worst_rms > std::max(0.03 * force.worst_mean, 0.03) ||
-                          torque.worst_rms > std::max(0.05 * torque.worst_mean, 2.5e-3)
-                      ? 1
-                      : 0;
+      EXPECT_LE(force.worst_rms, std::max(0.02 * force.worst_mean, 0.01)) << pair.name() << ", touch " << r.touch;
+      EXPECT_LE(torque.worst_rms, std::max(0.03 * torque.worst_mean, 1e-3)) << pair.name() << ", touch " << r.touch;
     }
   }
-  std::printf("  %d of %d rests tremble by more than a hundredth, %d by more than three\n", trembling, rests, far_over);
-  EXPECT_GE(rests, 4);
-  EXPECT_LE(trembling, 2 + rests / 3);
-  EXPECT_LE(far_over, 1 + rests / 30);
+  std::printf("  %d of %d rests tremble by more than a hundredth\n", trembling, rests);
+  EXPECT_LE(trembling, 1 + rests / 20);
+  EXPECT_GE(rests, 2);
 }
 
 // A hand that presses a file on a block with 10 N, contacts one period late and without the guard.
 TEST(rests, a_file_is_held_on_a_block_with_10_n) {
-  const int touches = extent(1, 4);
-  const std::uint64_t seed = fresh_seed("rests, 10 N", std::to_string(touches) + " touches");
+  const int touches = extent(1, 3);
+  const std::uint64_t seed = fresh_seed("rests, 10 N", std::to_string(touches) + " touch(es)");
   const auto without_planes = [](const render_function& whole) -> render_function {
     return [whole](const scene_pose& at, tick& out) {
       const status s = whole(at, out);
@@ -98,6 +95,7 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
     const auto touch = finder.next(seed);
     ASSERT_TRUE(touch);
     for (const double hz : {1000.0, 200.0}) {
+      if (hz < 500.0 && !test_support::at_length()) continue;
       rest_rules rules;
       rules.grip = 2;
       rules.way_m = 10.0 * (1.0 / firm_hand().stiffness_n_per_m + 1.0 / coupling_config{}.stiffness_n_per_m);
@@ -113,7 +111,7 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
       }
       const bool fast = hz > 500.0;
       EXPECT_FALSE(held.ended_early);
-      EXPECT_LE(held.deepest_m, fast ? 2e-4 : 4e-4) << hz;
+      EXPECT_LE(held.deepest_m, fast ? 1.5e-4 : 3e-4) << hz;
       EXPECT_LE(held.step_n_per_ms, fast ? 0.3 : 1.0) << hz;
       EXPECT_LE(held.surplus_j, 1e-5) << hz;
       EXPECT_TRUE(line.deepest_m > 2.0 * held.deepest_m || line.step_n_per_ms > 1.0 || line.surplus_j > 1e-3) << hz;
@@ -132,7 +130,8 @@ TEST(rests, buzz_on_soft_planes_of_the_present_pose) {
       return s;
     };
   };
-  for (const auto& [name, first] : {std::pair{"file on block", 0}, std::pair{"gear on torus", 1}}) {
+  for (const auto& [name, first] : {std::pair{"gear on torus", 1}, std::pair{"file on block", 0}}) {
+    if (first == 0 && !test_support::at_length()) continue;
     const press_choice which{20261123, 1, first, 1e-4};
     const rest_row buzzing = rest_on(name, which, of_the_present, soft_n_per_m), still = rest_on(name, which, as_it_is);
     ASSERT_EQ(buzzing.rests.size(), 1U);
