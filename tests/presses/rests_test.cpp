@@ -46,8 +46,8 @@ rest_row rest_on(const std::string& name, const press_choice& which, Change&& ch
 
 render_function as_it_is(const render_function& whole) { return whole; }
 
-// A hundredth of the force, or 5 mN and 0.5 mN m, is what is wanted, and nearly all rests keep to it: of 210 of two
-// days, three had up to twice as much. Each may have that, and one in twenty more than a hundredth.
+// A hundredth of the force, or 5 mN and 0.5 mN m, is what is wanted, and nearly all rests keep to it: of 60 of a day,
+// three had up to two and a half times as much. Each may have so much, and one in twenty more than a hundredth.
 TEST(rests, hardly_tremble) {
   const int touches = 1;
   const std::uint64_t seed = fresh_seed("rests", "a hand on each of 3 pairs, 30 at length");
