@@ -226,7 +226,7 @@ class posed_samples {
     const branch& b = m.of_x->marks.branches()[index];
     const field_bounds& bounds = m.in_y->bounds;
     const detail::coarse_grid& grid = m.in_y->body->field.smooth;
-    const double radius_m = static_cast<double>(b.radius_m), steepest = bounds.steepest();
+    const double radius_m = static_cast<double>(b.radius_m);
     kept_branch& k = branches_[m.first_branch + index];
     const bool known = k.turn == turn_;
     const vec3 axis_y = m.turn_yx * vec3(b.axis_b);
