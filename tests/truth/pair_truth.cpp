@@ -50,19 +50,22 @@ double half_thickness_m(const oracle::approach_sampler& sampler, const oracle::a
   return 0.5 * std::min(through(sampler.probe(), up), through(sampler.fixed(), -up));
 }
 
-plane_truth::plane_truth(const truth_body& probe, const truth_body& fixed)
-    : plane_truth(probe, fixed, pair_of(probe, fixed)) {}
-
-plane_truth::plane_truth(const truth_body& probe, const truth_body& fixed, const truth_pair& felt)
+pair_originals::pair_originals(const truth_body& probe, const truth_body& fixed)
     : name_(probe.name + " on " + fixed.name),
-      diagonal_m_(std::min(probe.diagonal_m(), fixed.diagonal_m())),
-      window_m_(std::max(probe.sample_pitch_m(), fixed.sample_pitch_m())),
-      bake_error_m_(probe.model->report.max_error_m + fixed.model->report.max_error_m),
       probe_pitch_m_(probe.field->field.smooth.pitch_m),
       fixed_pitch_m_(fixed.field->field.smooth.pitch_m),
       sampler_(name_, probe.full, fixed.full),
       probe_(near_triangles_of(probe)),
-      fixed_(near_triangles_of(fixed)),
+      fixed_(near_triangles_of(fixed)) {}
+
+plane_truth::plane_truth(const truth_body& probe, const truth_body& fixed)
+    : plane_truth(probe, fixed, pair_of(probe, fixed)) {}
+
+plane_truth::plane_truth(const truth_body& probe, const truth_body& fixed, const truth_pair& felt)
+    : pair_originals(probe, fixed),
+      diagonal_m_(std::min(probe.diagonal_m(), fixed.diagonal_m())),
+      window_m_(std::max(probe.sample_pitch_m(), fixed.sample_pitch_m())),
+      bake_error_m_(probe.model->report.max_error_m + fixed.model->report.max_error_m),
       law_(felt.bodies, felt.fields) {}
 
 plane_case plane_truth::judge(const pose& T_wa) {
@@ -120,13 +123,7 @@ force_truth::force_truth(const truth_body& probe, const truth_body& fixed)
     : force_truth(probe, fixed, pair_of(probe, fixed)) {}
 
 force_truth::force_truth(const truth_body& probe, const truth_body& fixed, const truth_pair& felt)
-    : name_(probe.name + " on " + fixed.name),
-      probe_pitch_m_(probe.field->field.smooth.pitch_m),
-      fixed_pitch_m_(fixed.field->field.smooth.pitch_m),
-      sampler_(name_, probe.full, fixed.full),
-      probe_(near_triangles_of(probe)),
-      fixed_(near_triangles_of(fixed)),
-      law_(felt.bodies, felt.fields) {}
+    : pair_originals(probe, fixed), law_(felt.bodies, felt.fields) {}
 
 std::optional<press_case> force_truth::press(std::uint64_t seed, std::uint64_t index, double depth_m, double alone) {
   constexpr double least_facing = 0.2, share_of_half_thickness = 0.9;

@@ -45,8 +45,22 @@ struct plane_case {
 /// Puts faults between the library and its judge.
 using plane_bend = std::function<void(told_plane&)>;
 
+/// The originals of a pair, as both judges ask them.
+class pair_originals {
+ public:
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+
+ protected:
+  pair_originals(const truth_body& probe, const truth_body& fixed);
+
+  std::string name_;
+  double probe_pitch_m_, fixed_pitch_m_;  // of the fields' smooth parts
+  oracle::approach_sampler sampler_;
+  std::shared_ptr<const near_triangles> probe_, fixed_;
+};
+
 /// A pair, its originals, and the support planes that are told of it.
-class plane_truth {
+class plane_truth : public pair_originals {
  public:
   plane_truth(const truth_body& probe, const truth_body& fixed);
   /// The originals of two bodies, and fields that are not theirs: for faults.
@@ -55,7 +69,6 @@ class plane_truth {
   /// Three poses of one approach, one of each band; none of a band where the bodies are too thin for it.
   [[nodiscard]] std::vector<plane_case> approach(std::uint64_t seed, std::uint64_t index);
 
-  [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] double diagonal_m() const noexcept { return diagonal_m_; }      ///< of the smaller body
   [[nodiscard]] double bake_error_m() const noexcept { return bake_error_m_; }  ///< the largest of both, together
 
@@ -64,10 +77,7 @@ class plane_truth {
  private:
   [[nodiscard]] plane_case judge(const pose& T_wa);
 
-  std::string name_;
-  double diagonal_m_, window_m_, bake_error_m_, probe_pitch_m_, fixed_pitch_m_;
-  oracle::approach_sampler sampler_;
-  std::shared_ptr<const near_triangles> probe_, fixed_;
+  double diagonal_m_, window_m_, bake_error_m_;
   plane_law law_;
 };
 
@@ -89,7 +99,7 @@ struct press_case {
 using force_bend = std::function<void(told_force&)>;
 
 /// A pair, its originals, and the wrench that is told of it.
-class force_truth {
+class force_truth : public pair_originals {
  public:
   force_truth(const truth_body& probe, const truth_body& fixed);
   force_truth(const truth_body& probe, const truth_body& fixed, const truth_pair& felt);
@@ -99,16 +109,11 @@ class force_truth {
   /// another place or another way out has a part in the force.
   [[nodiscard]] std::optional<press_case> press(std::uint64_t seed, std::uint64_t index, double depth_m, double alone);
 
-  [[nodiscard]] const std::string& name() const noexcept { return name_; }
   [[nodiscard]] pose_law& law() noexcept { return law_; }
 
   force_bend bend;  ///< empty: none
 
  private:
-  std::string name_;
-  double probe_pitch_m_, fixed_pitch_m_;
-  oracle::approach_sampler sampler_;
-  std::shared_ptr<const near_triangles> probe_, fixed_;
   pose_law law_;
 };
 

@@ -99,9 +99,8 @@ class rest_prediction {
 
  private:
   static constexpr double gap_m = 1e-5;     // planes that are further away than this change nothing at that pose
-  static constexpr double agrees_m = 1e-7;  // of a spring of 50 N/mm: 5 mN
-
-  static constexpr double kink_m = 1e-6;
+  static constexpr double agrees_m = 1e-7;  // of a spring of 200 N/mm: 20 mN
+  static constexpr double kink_m = 1e-6;    // by less than this two planes of a point say the same
 
   /// A pose, as a motion from the probe's, and what is there.
   struct place {
@@ -247,13 +246,5 @@ class rest_prediction {
   support_planes cuts_{};  // told where the probe is
   support_planes all_{};
 };
-
-/// The same without a memory.
-/// @rt safe
-inline void predict_planes(const plane_source& planes_near, const coupling_pull& pull,
-                           support_planes& planes) noexcept {
-  rest_prediction once;
-  once.complete(planes_near, pull, {}, planes);
-}
 
 }  // namespace asperity

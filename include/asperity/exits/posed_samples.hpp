@@ -203,9 +203,9 @@ class posed_samples {
     k.bend_per_m = bounds.bend_per_m(k.place_y, k.bend_within_m);
   }
 
-  // No relief is larger that points within radius_m of where a branch was read have at the pose. Their feet lie as near
-  // to each other as they do, but for what the slope turns; where it has less than the length from which relief is kept
-  // that is not known.
+  // Upper bound of the relief that points within radius_m of where a branch was read have at the pose. Their feet lie
+  // no further apart than they do, but for what the slope turns. Where the slope is too short to say so, the bound
+  // stays what it was.
   [[nodiscard]] static double most_relief_near(const meeting& m, kept_branch& k, double radius_m) noexcept {
     constexpr double kept_from = 0.75;  // |grad S|^2, as kept_relief has it
     const double square = glm::dot(k.at.slope, k.at.slope);
@@ -231,11 +231,11 @@ class posed_samples {
     const bool known = k.turn == turn_;
     const vec3 axis_y = m.turn_yx * vec3(b.axis_b);
     const auto bound = [&](const vec3& further_y) noexcept {
-      const vec3 &slope = k.at.slope, more = further_y;
+      const vec3& slope = k.at.slope;
       const double along = std::fabs(glm::dot(axis_y, slope));
       const double across = std::sqrt(std::max(0.0, glm::dot(slope, slope) - along * along));
-      return most_near(k, radius_m + std::sqrt(glm::dot(more, more)),
-                       glm::dot(slope, more) + along * static_cast<double>(b.half_m) + across * radius_m, bounds);
+      return most_near(k, radius_m + std::sqrt(glm::dot(further_y, further_y)),
+                       glm::dot(slope, further_y) + along * static_cast<double>(b.half_m) + across * radius_m, bounds);
     };
     double smooth_m = std::numeric_limits<double>::infinity();
     if (known) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "asperity/core/math.hpp"
@@ -33,7 +34,7 @@ class relief_bounds {
   /// Upper bound of the relief at feet within radius_m of a place, at least 0, m. @rt safe: at most 27 numbers
   [[nodiscard]] double most_m(const vec3& foot_b, double radius_m) const noexcept {
     if (levels_.empty()) return 0.0;
-    // A spline's nodes lie up to a node and a half from its place. The half is the grid's own.
+    // The spline reads three nodes along each axis, up to a node and a half from its place.
     const double reach = radius_m / pitch_m_ + 1.5;
     double size = detail::relief_bricks::side;  // of a block of the level, in nodes
     std::size_t l = 0;

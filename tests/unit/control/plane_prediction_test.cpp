@@ -16,6 +16,12 @@
 
 namespace {
 
+/// A search that knows no pose of rest yet.
+void predict_planes(const plane_source& planes_near, const coupling_pull& pull, support_planes& planes) {
+  rest_prediction anew;
+  anew.complete(planes_near, pull, {}, planes);
+}
+
 using namespace asperity;
 using namespace asperity::test_support;
 
