@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "asperity/core/memory.hpp"
 #include "asperity/core/reserve_resident.hpp"
+#include "asperity/core/spatial.hpp"
+#include "asperity/exits/motion.hpp"
 #include "asperity/exits/posed_samples.hpp"
 
 namespace asperity::exits {
@@ -36,13 +39,36 @@ struct bed_rule {
   }
 };
 
-/// The bed at one motion of the probe: energy, and its derivatives by the motion, world axes.
+/// The bed at one motion of the probe: energy, and its derivatives by the motion, world axes. The spring that resists
+/// the turn is in it.
 struct bed_sum {
   double energy_j = 0.0;
   double deepest_m = 0.0;  ///< 0 where no sample is inside
-  vec3 gradient_n{0.0};
-  mat3 hessian_n_per_m{0.0};
+  vec6 gradient;           ///< by shift and turn: N, N m
+  mat6 hessian;
 };
+
+/// Adds s A^T h A to one half of a matrix, A = (1, -[arm]): what a sample's second derivatives are by shift and turn.
+/// @rt safe
+inline void add_at_arm(mat6& to, double s, const mat3& h, const vec3& arm) noexcept {
+  vec3 by_turn[3];  // column j of h (-[arm]): h (e_j x arm)
+  for (int j = 0; j < 3; ++j) {
+    vec3 axis(0.0);
+    axis[j] = 1.0;
+    by_turn[j] = s * (h * glm::cross(axis, arm));
+  }
+  for (std::size_t j = 0; j < 3; ++j) {
+    const int c = static_cast<int>(j);
+    const vec3 down = glm::cross(arm, by_turn[c]);  // -[arm]^T v = arm x v
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int r = static_cast<int>(i);
+      to(i, j) += s * h[c][r];
+      to(i, j + 3) += by_turn[c][r];
+      to(j + 3, i) += by_turn[c][r];
+      to(i + 3, j + 3) += down[r];
+    }
+  }
+}
 
 /// The samples that can be inside at motions near one place: gathered once, summed often.
 class bed_patch {
@@ -57,24 +83,32 @@ class bed_patch {
     crowded = false;
   }
 
-  /// The bed at x; gathers anew where x is more than reach() from the last place. @rt safe
-  [[nodiscard]] bed_sum at(const vec3& x_w, const bed_rule& rule, posed_samples& samples) noexcept {
-    if (!covers(x_w)) gather(x_w, samples);
+  /// The bed at x; gathers anew where x is more than reach_m from the last place.
+  /// @param turn_n_m_per_rad the spring that resists the turn   @rt safe
+  [[nodiscard]] bed_sum at(const motion& x_w, double turn_n_m_per_rad, const bed_rule& rule,
+                           posed_samples& samples) noexcept {
+    if (!covers(x_w, samples)) gather(x_w, samples);
     bed_sum out;
-    for_each_inside(x_w, samples, [&](const mark&, const coarse_reading& d) noexcept {
+    for_each_inside(x_w, samples, [&](const mark& m, const coarse_reading& d) noexcept {
       const double push = rule.push_n(d.value_m), rise = rule.rise_n_per_m(d.value_m);
+      const vec3 arm = samples.arm_w(m);
+      const vec6 slope{d.slope, glm::cross(arm, d.slope)};
       out.deepest_m = std::max(out.deepest_m, d.value_m);
       out.energy_j += rule.energy_j(d.value_m);
-      out.gradient_n += push * d.slope;
-      out.hessian_n_per_m += rise * glm::outerProduct(d.slope, d.slope) + push * d.hessian_per_m;
+      out.gradient += push * slope;
+      add_outer(out.hessian, rise, slope);
+      add_at_arm(out.hessian, push, d.hessian_per_m, arm);
     });
+    out.energy_j += 0.5 * turn_n_m_per_rad * glm::dot(x_w.turn_w, x_w.turn_w);
+    out.gradient.angular += turn_n_m_per_rad * x_w.turn_w;
+    for (std::size_t i = 3; i < 6; ++i) out.hessian(i, i) += turn_n_m_per_rad;
     return out;
   }
 
   /// Calls take(mark, its reading at x) for every sample that is inside at x.   @pre covers(x_w)
   template <class Take>
-  void for_each_inside(const vec3& x_w, posed_samples& samples, Take&& take) const noexcept {
-    const double far_m = samples.steepest() * glm::length(x_w - place_w_);
+  void for_each_inside(const motion& x_w, posed_samples& samples, Take&& take) const noexcept {
+    const double far_m = samples.steepest() * distance_m(x_w, samples);
     for (const mark& m : marks_) {
       if (m.depth_m + far_m <= 0.0) continue;
       const coarse_reading d = samples.read(m, x_w);
@@ -82,32 +116,50 @@ class bed_patch {
     }
   }
 
-  [[nodiscard]] bool covers(const vec3& x_w) const noexcept {
-    return gathered_ && glm::length(x_w - place_w_) <= reach_m;
+  [[nodiscard]] bool covers(const motion& x_w, const posed_samples& samples) const noexcept {
+    return gathered_ && distance_m(x_w, samples) <= reach_m_;
   }
-  void gather(const vec3& x_w, posed_samples& samples) noexcept {
-    marks_.clear();
+  void gather(const motion& x_w, posed_samples& samples) noexcept {
+    // Who gathers again is under way to somewhere: the next time will be later.
+    reach_m_ = gathered_ ? std::min(2.0 * reach_m_, longest_reach_m) : reach_m;
     place_w_ = x_w;
     gathered_ = true;
-    double above_m = -samples.steepest() * reach_m;
-    samples.walk(x_w, above_m, [&](const mark& m) noexcept {
-      if (marks_.size() < marks_.capacity()) {
-        marks_.push_back(m);
-      } else {
-        crowded = true;
-      }
-    });
+    // Where more are near than fit, only those nearer by: what lacks samples gives way.
+    for (bool fits = false; !fits;) {
+      fits = true;
+      marks_.clear();
+      double above_m = -samples.steepest() * reach_m_;
+      samples.walk(x_w, above_m, [&](const mark& m) noexcept {
+        fits = marks_.size() < marks_.capacity();
+        if (fits) {
+          marks_.push_back(m);
+        } else {
+          above_m = std::numeric_limits<double>::infinity();  // ends the walk
+        }
+      });
+      if (fits) break;
+      reach_m_ *= 0.5;
+      crowded = reach_m_ < least_reach_m;
+      fits = crowded;
+    }
   }
   [[nodiscard]] std::size_t size() const noexcept { return marks_.size(); }
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(marks_); }
 
-  /// How far from where samples were gathered the sum is right: several steps of a Newton iteration.
-  static constexpr double reach_m = 40e-6;
-  bool crowded = false;  ///< samples were left out since clear()
+  /// How far from where samples were gathered the sum is right: several steps of a Newton iteration. Doubled each time.
+  static constexpr double reach_m = 40e-6, longest_reach_m = 0.32e-3, least_reach_m = 2e-6;
+  bool crowded = false;  ///< samples were left out where it was gathered last
 
  private:
+  // No sample moves further between x and where they were gathered.
+  [[nodiscard]] double distance_m(const motion& x, const posed_samples& samples) const noexcept {
+    return glm::length(x.shift_w - place_w_.shift_w) +
+           (samples.longest_lever_m() + glm::length(x.shift_w)) * glm::length(x.turn_w - place_w_.turn_w);
+  }
+
   std::vector<mark> marks_;
-  vec3 place_w_{0.0};
+  motion place_w_;
+  double reach_m_ = reach_m;
   bool gathered_ = false;
 };
 

@@ -149,9 +149,12 @@ class earlier_planes {
 
 /// From x to near a way out as seen from y. Adds the deepest samples that it meets to the witnesses.
 /// @param deepest_known the deepest sample at x is among them
+/// @param useful_m ends where what they make of a way out is longer
+/// @param known ends, after some steps, next to one of these
 /// @rt safe: at most 14 steps, each with a search for the deepest sample
 [[nodiscard]] inline vec3 descend(const vec3& y, vec3 x, const descent_rule& rule, witnesses& met, bool deepest_known,
-                                  posed_samples& samples) noexcept {
+                                  double useful_m, std::span<const vec3> known, posed_samples& samples) noexcept {
+  constexpr double next_to_m = 60e-6;
   constexpr double near_m = 1e-3;  // how far outside a sample may be and still tell its plane
   double longest_m = rule.longest_m;
   exit_planes planes;
@@ -176,7 +179,10 @@ class earlier_planes {
     const double length = glm::length(step), cap_m = std::max(longest_m, 0.7 * above_m);
     if (length > cap_m) step *= cap_m / length;
     x += step;
-    if (length < 3e-5) break;
+    if (length < 3e-5 || (length <= cap_m && glm::length(x - y) > useful_m)) break;
+    const bool is_known =
+        std::any_of(known.begin(), known.end(), [&](const vec3& k) { return glm::length(x - k) < next_to_m; });
+    if (i > 2 && is_known) break;
     if (i > 3) longest_m *= 0.7;
   }
   return x;

@@ -16,9 +16,10 @@
 namespace asperity::exits {
 
 /// The region to search: within most_m of y_w; a place counts as outside where no sample is deeper than deepest_m.
+/// A way out is of use within useful_m of y_w: a ray may come out beside one, further away.
 struct search_region {
   vec3 y_w{0.0};
-  double most_m = 0.0, deepest_m = 0.0;
+  double most_m = 0.0, deepest_m = 0.0, useful_m = 0.0;
 };
 
 /// Places near ways out that are not known yet.
@@ -40,7 +41,7 @@ class other_ways_out {
     met_.clear();
     leads_to_.clear();
     mark m;
-    if (!samples.deepest(in.y_w, in.deepest_m, m)) {
+    if (!samples.deep_one(in.y_w, in.deepest_m, m)) {
       static_cast<void>(out.push_back(in.y_w));
       return;
     }
@@ -62,8 +63,9 @@ class other_ways_out {
         double go = stride(x, in, samples);
         if (go <= 0.0) {
           const vec3 z = relax(in.y_w, x, seen(), rule_, {leads_to_.data(), leads_to_.size()}, same_m, samples);
-          if (leads_to_known(z)) break;
-          if (!samples.deepest(x, in.deepest_m, m)) {
+          // More samples make it longer, never shorter.
+          if (leads_to_known(z) || glm::length(z - in.y_w) > in.useful_m) break;
+          if (!samples.deep_one(x, in.deepest_m, m)) {
             follow(z, in, known, samples, out);
             break;
           }
@@ -115,8 +117,8 @@ class other_ways_out {
   void follow(const vec3& from, const search_region& in, std::span<const way_out> known, posed_samples& samples,
               found_places& out) noexcept {
     own_ = met_;
-    const vec3 z = descend(in.y_w, from, rule_, own_, false, samples);
-    add(z, known, out);
+    const vec3 z = descend(in.y_w, from, rule_, own_, false, in.useful_m, {out.data(), out.size()}, samples);
+    if (glm::length(z - in.y_w) <= in.useful_m) add(z, known, out);
     fixed_vector<mark, 4> decide;
     for (mark m : own_) {
       m.depth_m = samples.depth(m, z);
@@ -135,7 +137,7 @@ class other_ways_out {
   }
 
   static void add(const vec3& z, std::span<const way_out> known, found_places& out) noexcept {
-    constexpr double old_m = 2e-5;
+    constexpr double old_m = 6e-5;
     const auto near = [&](const vec3& p) { return glm::length(p - z) < old_m; };
     const bool old = std::any_of(known.begin(), known.end(), [&](const way_out& k) { return near(k.z_w); }) ||
                      std::any_of(out.begin(), out.end(), near);

@@ -14,6 +14,8 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/exits/exit_scene.hpp"
+#include "asperity/exits/motion.hpp"
+#include "asperity/exits/pivot.hpp"
 #include "asperity/model/scene.hpp"
 
 namespace asperity::exits {
@@ -34,6 +36,7 @@ struct meeting {
   mat3 turn_yx{1.0};  ///< with shift_y: from X's frame to Y's, at the pose as given
   vec3 shift_y{0.0};
   mat3 motion_y{1.0};            ///< what a motion of the probe, world axes, does to X's points in Y's frame
+  vec3 pivot_y{0.0};             ///< in Y's frame, at the pose as given
   std::uint32_t body = 0;        ///< index in scene::fixed of the body that is not the probe
   bool of_probe = true;          ///< X is the probe
   std::size_t first_sample = 0;  ///< in what posed_samples keeps per sample, and
@@ -56,8 +59,9 @@ struct reading_count {
 ///
 ///     D_i(q, x) = S(place of sample i at pose q, moved by x) + t(place of sample i at pose q)
 ///
-/// x is a translation of the probe, world axes. The smooth part S of the field moves with x; the relief t stays as it
-/// is at the pose, as far as it is a texture (kept_relief). All memory is taken when it is made.
+/// x is a motion of the probe, world axes: a translation and a turn about the pivot. The smooth part S of the field
+/// moves with x; the relief t stays as it is at the pose, as far as it is a texture (kept_relief). All memory is taken
+/// when it is made.
 /// @rt place() and all that follows: safe
 class posed_samples {
  public:
@@ -82,6 +86,19 @@ class posed_samples {
     steepest_ = std::max(steepest_, bodies_->probe->bounds.steepest());
     samples_.resize(samples);
     branches_.resize(branches);
+    const auto size_of = [](const exit_body& b) {
+      return b.marks.branches().empty() ? 0.0 : static_cast<double>(b.marks.branches()[0].radius_m);
+    };
+    probe_radius_m_ = size_of(*bodies_->probe);
+    if (!bodies_->probe->marks.branches().empty()) {
+      probe_radius_m_ += glm::length(vec3(bodies_->probe->marks.branches()[0].centre_b) - centre_of_mass_a_);
+    }
+    double smallest_m = size_of(*bodies_->probe);
+    for (const exit_body_ptr& b : bodies_->fixed) {
+      const double size_m = size_of(*b);
+      if (size_m > 0.0) smallest_m = smallest_m > 0.0 ? std::min(smallest_m, size_m) : size_m;
+    }
+    patch_m_ = smallest_m / patches_per_radius;
   }
 
   /// Takes a pose; motions start from here.   @pre one pose per fixed body
@@ -97,8 +114,30 @@ class posed_samples {
       m.shift_y = T_yx.position;
       const mat3 from_w = glm::mat3_cast(glm::conjugate(m.of_probe ? T_wb.rotation : T_wa.rotation));
       m.motion_y = m.of_probe ? from_w : -1.0 * from_w;
+      m.pivot_y = vec3(0.0);
+    }
+    pivot_ = {};
+  }
+
+  /// Finds the pivot of the pose that was taken. Before, a motion is a translation.
+  /// @param least_arm_m see exit_rule::turn_arm_m; 0: next to no turn
+  void find_pivot(double least_arm_m) noexcept {
+    constexpr double no_turn_m = 100.0;
+    pivot_ = {};
+    pivot_.arm_squared = no_turn_m * no_turn_m;
+    if (least_arm_m > 0.0) {
+      pivot_sum sum;
+      for (const meeting& m : meetings_) add_close(m, sum);
+      pivot_ = sum.make(least_arm_m, arm_per_spread);
+    }
+    for (meeting& m : meetings_) {
+      m.pivot_y =
+          m.turn_yx * (glm::conjugate(m.T_wx.rotation) * (centre_w_ + pivot_.centre - m.T_wx.position)) + m.shift_y;
     }
   }
+  [[nodiscard]] const pivot& about() const noexcept { return pivot_; }
+  /// No point of the probe is further from the pivot, m.
+  [[nodiscard]] double longest_lever_m() const noexcept { return probe_radius_m_ + glm::length(pivot_.centre); }
 
   [[nodiscard]] const meeting& meeting_of(const mark& m) const noexcept { return meetings_[m.meeting]; }
   /// No smooth field changes by more per metre of a motion.
@@ -106,17 +145,17 @@ class posed_samples {
   [[nodiscard]] const vec3& centre_w() const noexcept { return centre_w_; }
 
   /// D at a motion x of the probe, m.
-  [[nodiscard]] double depth(const mark& m, const vec3& x_w) noexcept {
+  [[nodiscard]] double depth(const mark& m, const motion& x_w) noexcept {
     const meeting& a = meetings_[m.meeting];
     ++count.spent;
-    return smooth_depth(a.in_y->body->field.smooth, m.place_y + a.motion_y * x_w) + m.relief_m;
+    return smooth_depth(a.in_y->body->field.smooth, moved(a, m.place_y, x_w)) + m.relief_m;
   }
 
-  /// D and its first two derivatives by x, world axes.
-  [[nodiscard]] coarse_reading read(const mark& m, const vec3& x_w) noexcept {
+  /// D and its first two derivatives by a translation of the sample, world axes.
+  [[nodiscard]] coarse_reading read(const mark& m, const motion& x_w) noexcept {
     const meeting& a = meetings_[m.meeting];
     ++count.spent;
-    coarse_reading out = a.in_y->body->field.coarse(m.place_y + a.motion_y * x_w);
+    coarse_reading out = a.in_y->body->field.coarse(moved(a, m.place_y, x_w));
     const mat3 back = glm::transpose(a.motion_y);
     out.value_m += m.relief_m;
     out.slope = back * out.slope;
@@ -137,25 +176,34 @@ class posed_samples {
     const meeting& a = meetings_[m.meeting];
     return a.T_wx * vec3(a.of_x->marks.samples()[m.sample].position_b) - centre_w_;
   }
-  /// The same at a motion x: where the sample meets the field, as seen from the probe as given. The probe's own samples
-  /// keep their lever; those of a fixed body come nearer by x.
-  [[nodiscard]] vec3 lever_w(const mark& m, const vec3& x_w) const noexcept {
-    return meetings_[m.meeting].of_probe ? lever_w(m) : lever_w(m) - x_w;
-  }
+  /// From the pivot to the sample, at the pose as given; world axes. A turn moves the sample by turn x arm.
+  [[nodiscard]] vec3 arm_w(const mark& m) const noexcept { return lever_w(m) - pivot_.centre; }
 
   /// Calls take(mark) for samples that are deeper than above_m at x; take may raise it. Visits the deeper branches
   /// first, so that raising it leaves the others out.
   template <class Take>
-  void walk(const vec3& x_w, double& above_m, Take&& take) noexcept {
+  void walk(const motion& x_w, double& above_m, Take&& take) noexcept {
     for (std::uint32_t i = 0; i < meetings_.size(); ++i) walk_meeting(i, x_w, above_m, take);
   }
 
   /// The deepest sample at x, where one is deeper than above_m.
-  [[nodiscard]] bool deepest(const vec3& x_w, double above_m, mark& out) noexcept {
+  [[nodiscard]] bool deepest(const motion& x_w, double above_m, mark& out) noexcept {
     bool any = false;
     walk(x_w, above_m, [&](const mark& m) noexcept {
       out = m;
       above_m = m.depth_m;
+      any = true;
+    });
+    return any;
+  }
+  /// A sample at x that is deeper than above_m and half as deep as any, where one is. Where whole faces lie in each
+  /// other, thousands are nearly as deep as the deepest; telling which one that is would take a reading of each.
+  [[nodiscard]] bool deep_one(const motion& x_w, double above_m, mark& out) noexcept {
+    constexpr double beyond = 2.0;
+    bool any = false;
+    walk(x_w, above_m, [&](const mark& m) noexcept {
+      out = m;
+      above_m = std::max(m.depth_m, beyond * m.depth_m);
       any = true;
     });
     return any;
@@ -168,6 +216,27 @@ class posed_samples {
   reading_count count;
 
  private:
+  // How the spring that resists a turn grows with the contact, and how finely the contact's middle is found.
+  static constexpr double arm_per_spread = 8.0, patches_per_radius = 12.0;
+
+  // A motion of the probe as Y's frame sees it.
+  struct moved_by {
+    vec3 shift_y, turn_y, pivot_y;
+    double longer;  // lengths grow by this at most
+
+    moved_by(const meeting& m, const motion& x) noexcept
+        : shift_y(m.motion_y * x.shift_w),
+          turn_y(m.motion_y * x.turn_w),
+          pivot_y(m.pivot_y),
+          longer(std::sqrt(1.0 + glm::dot(x.turn_w, x.turn_w))) {}
+    [[nodiscard]] vec3 operator()(const vec3& place_y) const noexcept {
+      return place_y + shift_y + glm::cross(turn_y, place_y - pivot_y);
+    }
+  };
+  [[nodiscard]] static vec3 moved(const meeting& m, const vec3& place_y, const motion& x) noexcept {
+    return moved_by(m, x)(place_y);
+  }
+
   // What was read of a branch at the pose, where a motion had taken its middle: S and its slope there bound S for other
   // motions near by, without another reading.
   struct kept_branch {
@@ -220,22 +289,24 @@ class posed_samples {
 
   // No sample of a branch, moved, is deeper. Bounds from the cheap to the sharp: what was read of it for another
   // motion, the table, and along the branch's planes the slope and the bend.
-  [[nodiscard]] double most_in(const meeting& m, std::uint32_t index, const vec3& moved_y, double most_relief_m,
+  [[nodiscard]] double most_in(const meeting& m, std::uint32_t index, const moved_by& by, double most_relief_m,
                                double above_m) noexcept {
     constexpr double table_beyond = 15.0;  // pitches: larger balls are bounded by the table alone
     const branch& b = m.of_x->marks.branches()[index];
     const field_bounds& bounds = m.in_y->bounds;
     const detail::coarse_grid& grid = m.in_y->body->field.smooth;
-    const double radius_m = static_cast<double>(b.radius_m);
+    const double radius_m = by.longer * static_cast<double>(b.radius_m);
     kept_branch& k = branches_[m.first_branch + index];
     const bool known = k.turn == turn_;
-    const vec3 axis_y = m.turn_yx * vec3(b.axis_b);
+    const vec3 axis_y = m.turn_yx * vec3(b.axis_b), rest_y = m.turn_yx * vec3(b.centre_b) + m.shift_y;
+    const vec3 c_y = by(rest_y), moved_y = c_y - rest_y;
     const auto bound = [&](const vec3& further_y) noexcept {
-      const vec3& slope = k.at.slope;
+      const vec3 slope = k.at.slope + glm::cross(k.at.slope, by.turn_y);  // by the place before the turn
       const double along = std::fabs(glm::dot(axis_y, slope));
       const double across = std::sqrt(std::max(0.0, glm::dot(slope, slope) - along * along));
       return most_near(k, radius_m + std::sqrt(glm::dot(further_y, further_y)),
-                       glm::dot(slope, further_y) + along * static_cast<double>(b.half_m) + across * radius_m, bounds);
+                       glm::dot(k.at.slope, further_y) + along * static_cast<double>(b.half_m) + across * radius_m,
+                       bounds);
     };
     double smooth_m = std::numeric_limits<double>::infinity();
     if (known) {
@@ -247,7 +318,6 @@ class posed_samples {
         return smooth_m + k.relief_m;
       }
     }
-    const vec3 c_y = m.turn_yx * vec3(b.centre_b) + m.shift_y + moved_y;
     const double relief_m = known ? k.relief_m : most_relief_m;
     ++count.spent;
     smooth_m = std::min(smooth_m, bounds.most_by_table(c_y, radius_m));
@@ -264,12 +334,44 @@ class posed_samples {
     return smooth_m + k.relief_m;
   }
 
+  // The branches of a fixed size, as points: close ones count, whatever the pose the same branches.
+  void add_close(const meeting& m, pivot_sum& sum) noexcept {
+    const std::span<const branch> branches = m.of_x->marks.branches();
+    if (branches.empty()) return;
+    const detail::coarse_grid& grid = m.in_y->body->field.smooth;
+    const double relief_m = most_relief(m), steepest = m.in_y->bounds.steepest();
+    const mat3 to_w = glm::transpose(m.motion_y), turn_wx = glm::mat3_cast(m.T_wx.rotation);
+    std::array<std::uint32_t, 64> waiting;
+    std::size_t n = 0;
+    waiting[n++] = 0;
+    while (n > 0) {
+      const std::uint32_t i = waiting[--n];
+      const branch& b = branches[i];
+      const double size_m = std::max(patch_m_, static_cast<double>(b.radius_m));
+      const double reach_m = 1.5 * steepest * size_m + relief_m;
+      const vec3 c_y = m.turn_yx * vec3(b.centre_b) + m.shift_y;
+      if (static_cast<double>(b.radius_m) > patch_m_ && b.right != 0) {
+        if (m.in_y->bounds.most_by_table(c_y, static_cast<double>(b.radius_m)) > -reach_m) {
+          waiting[n++] = i + 1;
+          waiting[n++] = b.right;
+        }
+        continue;
+      }
+      if (m.in_y->bounds.most_by_table(c_y, 0.0) <= -reach_m || smooth_depth(grid, c_y) <= -reach_m) continue;
+      ++count.spent;
+      const coarse_reading s = grid.read(c_y);
+      const double across_m = std::max(static_cast<double>(b.radius_m), 0.25 * patch_m_);
+      sum.add(across_m * across_m, reach_m, s.value_m, to_w * s.slope,
+              turn_wx * vec3(b.centre_b) + m.T_wx.position - centre_w_, m.of_probe);
+    }
+  }
+
   template <class Take>
-  void walk_meeting(std::uint32_t index, const vec3& x_w, double& above_m, Take& take) noexcept {
+  void walk_meeting(std::uint32_t index, const motion& x_w, double& above_m, Take& take) noexcept {
     const meeting& m = meetings_[index];
     const std::span<const branch> branches = m.of_x->marks.branches();
     if (branches.empty()) return;
-    const vec3 moved_y = m.motion_y * x_w;
+    const moved_by by(m, x_w);
     const double relief_m = most_relief(m);
     struct item {
       std::uint32_t branch;
@@ -279,7 +381,7 @@ class posed_samples {
     std::array<item, 96> waiting;
     constexpr double learns = std::numeric_limits<double>::infinity();
     std::size_t n = 0;
-    waiting[n++] = {0, most_in(m, 0, moved_y, relief_m, above_m)};
+    waiting[n++] = {0, most_in(m, 0, by, relief_m, above_m)};
     while (n > 0) {
       const item it = waiting[--n];
       if (!(it.most_m > above_m)) continue;
@@ -290,13 +392,13 @@ class posed_samples {
         continue;
       }
       if (b.right == 0) {
-        visit_leaf(index, it.branch, moved_y, relief_m, above_m, take);
+        visit_leaf(index, it.branch, by, relief_m, above_m, take);
         continue;
       }
       const kept_branch& parent = branches_[m.first_branch + it.branch];
       const double of_both_m = parent.turn == turn_ ? parent.relief_m : relief_m;
-      item near{it.branch + 1, most_in(m, it.branch + 1, moved_y, of_both_m, above_m)};
-      item far{b.right, most_in(m, b.right, moved_y, of_both_m, above_m)};
+      item near{it.branch + 1, most_in(m, it.branch + 1, by, of_both_m, above_m)};
+      item far{b.right, most_in(m, b.right, by, of_both_m, above_m)};
       waiting[n++] = {it.branch, learns};
       if (near.most_m < far.most_m) std::swap(near, far);
       if (far.most_m > above_m) waiting[n++] = far;
@@ -312,7 +414,7 @@ class posed_samples {
   }
 
   template <class Take>
-  void visit_leaf(std::uint32_t index, std::uint32_t leaf, const vec3& moved_y, double most_relief_m, double& above_m,
+  void visit_leaf(std::uint32_t index, std::uint32_t leaf, const moved_by& by, double most_relief_m, double& above_m,
                   Take& take) noexcept {
     const meeting& m = meetings_[index];
     const branch& b = m.of_x->marks.branches()[leaf];
@@ -327,6 +429,8 @@ class posed_samples {
       const bool known = s.turn == turn_;
       const double relief_m = known ? s.relief_m : most_relief_m;
       highest_relief_m = std::max(highest_relief_m, relief_m);
+      const vec3 place_y = m.turn_yx * vec3(m.of_x->marks.samples()[i].position_b) + m.shift_y;
+      const vec3 at_y = by(place_y), moved_y = at_y - place_y;
       if (known) {
         const vec3 further_y = moved_y - s.moved_y;
         const double far_m = std::sqrt(glm::dot(further_y, further_y));
@@ -339,8 +443,6 @@ class posed_samples {
         }
         if (!(most_m + relief_m > above_m)) continue;
       }
-      const vec3 place_y = m.turn_yx * vec3(m.of_x->marks.samples()[i].position_b) + m.shift_y;
-      const vec3 at_y = place_y + moved_y;
       if (bounded && !known) {
         const vec3 off_y = at_y - k.place_y;
         const double off_m = std::sqrt(glm::dot(off_y, off_y));
@@ -368,6 +470,8 @@ class posed_samples {
   std::vector<kept_branch> branches_;
   std::uint64_t turn_ = 0;
   double steepest_ = 1.0;
+  double patch_m_ = 0.0, probe_radius_m_ = 0.0;
+  pivot pivot_;
 };
 
 }  // namespace asperity::exits

@@ -29,11 +29,16 @@ struct least_motion_settings {
   /// Where ways out compete, as on a ridge, the force turns from one to the other by at most this many times k per
   /// metre. At least 2. 0: softness_for() the period.
   double sharpness = 0.0;
+  /// Ways out turn as well, on a spring of k times the square of this, m: what is wedged, or rocks on a face, is let
+  /// out by a turn about where the bodies are close. The shorter, the softer a contact beside that place. 0: four times
+  /// the way from the probe's centre of mass to its furthest point.
+  double turn_arm_m = 0.0;
   double period_s = 1e-3;  ///< of the loop that asks, for what is automatic
-  /// Readings of fields, or of their bounds, that a tick may spend; a reading takes some 50 ns. Where they do not do,
-  /// ways out may be missing: the tick answers capacity_reached.
-  std::size_t most_readings = 400'000;
-  std::size_t most_samples = 16'384;  ///< that may touch at one way out
+  /// Readings of fields, or of their bounds, that a tick may spend; a reading takes 50 to 100 ns. Where they do not do,
+  /// ways out may be missing: the tick answers capacity_reached. Nearly all contacts take less than 100,000;
+  /// interlocked relief of whole faces takes a million.
+  std::size_t most_readings = 2'000'000;
+  std::size_t most_samples = 32'768;  ///< that may touch at one way out
 };
 
 /// How soft contacts are: see least_motion_settings.
@@ -65,6 +70,9 @@ struct contact_softness {
   if (!(s.sharpness == 0.0 || (std::isfinite(s.sharpness) && s.sharpness >= 2.0))) {
     return bad("sharpness must be a finite number of at least 2, or 0 for automatic");
   }
+  if (!(std::isfinite(s.turn_arm_m) && s.turn_arm_m >= 0.0)) {
+    return bad("turn_arm_m must be a finite length, or 0 for automatic");
+  }
   if (!(std::isfinite(s.period_s) && s.period_s > 0.0)) return bad("period_s must be a finite time above 0");
   if (s.most_readings < 1000) return bad("most_readings must be 1000 or more");
   if (s.most_samples < 64) return bad("most_samples must be 64 or more");
@@ -84,11 +92,12 @@ class least_motion {
 
   /// @param bodies of the scene, in its order   @param centre_of_mass_a of the probe, its frame   @pre check(settings)
   least_motion(const field_scene& bodies, const vec3& centre_of_mass_a, const least_motion_settings& settings)
-      : settings_(filled_in(settings, bodies)),
+      : settings_(filled_in(settings, bodies, centre_of_mass_a)),
         solver_(std::make_shared<const exits::exit_scene>(bodies), centre_of_mass_a,
                 {.stiffness_n_per_m = settings_.stiffness_n_per_m,
                  .onset_m = settings_.softness_m,
                  .mixed = settings_.sharpness,
+                 .turn_arm_m = settings_.turn_arm_m,
                  .most_readings = settings_.most_readings,
                  .most_marks = settings_.most_samples}) {}
 
@@ -109,13 +118,13 @@ class least_motion {
   /// Readings that the last call spent.
   [[nodiscard]] std::size_t readings() const noexcept { return solver_.readings(); }
 
-  /// The ways out of the last call that have weight, as contacts: depth_m is the length of the motion, times the
-  /// weight; n_ab points against the push. A way out past several walls is one contact.
+  /// The ways out of the last call that have weight, as contacts: depth_m is how far the motion takes the
+  /// deepest sample, times the weight; n_ab points against the push. A way out past several walls is one contact.
   /// @rt safe
   void describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
     contacts.clear();
     for (const exits::way_out& w : solver_.ways()) {
-      const double pushed_n = glm::length(w.bed.gradient_n);
+      const double pushed_n = glm::length(w.bed.gradient.linear);
       if (!(w.weight > 0.0 && pushed_n > 0.0) || w.touching.empty()) continue;
       if (contacts.size() == depths.size()) return;
       const exits::mark* deepest = w.touching.begin();
@@ -123,10 +132,10 @@ class least_motion {
         if (m.depth_m > deepest->depth_m) deepest = &m;
       }
       const exits::posed_samples& samples = solver_.samples();
-      const vec3 n_ab_w = w.bed.gradient_n / pushed_n, point_w = samples.centre_w() + samples.lever_w(*deepest);
+      const vec3 n_ab_w = w.bed.gradient.linear / pushed_n, point_w = samples.centre_w() + samples.lever_w(*deepest);
       penetration& d = depths[contacts.size()];
       d = {};
-      d.depth_m = d.soft_depth_m = w.weight * glm::length(w.z_w);
+      d.depth_m = d.soft_depth_m = w.weight * glm::length(w.z_w + glm::cross(w.turn_w, samples.arm_w(*deepest)));
       d.gradient = {n_ab_w, glm::cross(samples.lever_w(*deepest), n_ab_w)};
       d.samples = static_cast<std::uint32_t>(w.touching.size());
       d.witness_w = point_w;
@@ -148,12 +157,23 @@ class least_motion {
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(solver_); }
 
  private:
-  [[nodiscard]] static least_motion_settings filled_in(least_motion_settings s, const field_scene& bodies) noexcept {
+  // How far the body's furthest sample is from a point of it, m.
+  [[nodiscard]] static double reach_from(const vec3& point_b, const field_body& body) noexcept {
+    double square = 0.0;
+    for (const field_sample& s : body.samples.samples()) {
+      const vec3 off = vec3(s.position_b) - point_b;
+      square = std::max(square, glm::dot(off, off));
+    }
+    return std::sqrt(square);
+  }
+  [[nodiscard]] static least_motion_settings filled_in(least_motion_settings s, const field_scene& bodies,
+                                                       const vec3& centre_of_mass_a) noexcept {
     double texel_m = bodies.probe->field.fine.pitch_m;
     for (const field_body_ptr& b : bodies.fixed) texel_m = std::min(texel_m, b->field.fine.pitch_m);
     const contact_softness usual = softness_for(s.period_s, texel_m);
     if (!(s.softness_m > 0.0)) s.softness_m = usual.softness_m;
     if (!(s.sharpness > 0.0)) s.sharpness = usual.sharpness;
+    if (!(s.turn_arm_m > 0.0)) s.turn_arm_m = 4.0 * reach_from(centre_of_mass_a, *bodies.probe);
     return s;
   }
 

@@ -139,7 +139,7 @@ TEST(Descend, ComesToRestInARoundNotch) {
     ASSERT_TRUE(samples.deepest(vec3(0.0), 0.0, m));
     witnesses met;
     static_cast<void>(met.push_back(m));
-    const vec3 z = descend(vec3(0.0), vec3(0.0), descent_rule{}, met, true, samples);
+    const vec3 z = descend(vec3(0.0), vec3(0.0), descent_rule{}, met, true, 1.0, {}, samples);
     most_readings = std::max(most_readings, samples.count.spent);
     // The nearest place of the edge on the groove's surface, by trying them all.
     double nearest_m = 1.0;
@@ -160,6 +160,33 @@ TEST(Descend, ComesToRestInARoundNotch) {
   EXPECT_LE(inside, 2);
 }
 
+// A descent that can only lead further than is of use ends; one that may go on finds the way out.
+TEST(Descend, EndsWhereTheWayOutIsTooLong) {
+  drawing draw{std::mt19937_64(fresh_seed("Descend.EndsWhereTheWayOutIsTooLong", "20 depths"))};
+  const field_body_ptr ground =
+      make_formula_body({}, vec3(-20.0 * mm), vec3(20.0 * mm), 0.3 * mm, [](const vec3& p) { return -p.z; });
+  const field_body_ptr probe = make_points_body(sphere_points(10.0 * mm, 4000));
+  posed_samples samples(std::make_shared<const exit_scene>(field_scene{probe, {ground}}), vec3(0.0));
+  const pose T_wb;
+  std::size_t saved = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double depth = draw.between(2.0, 5.0) * mm;
+    const quat rotation = draw.rotation();
+    const auto spent = [&](double useful_m, vec3& z) {
+      samples.place({{rotation, vec3(0.0, 0.0, 10.0 * mm - depth)}, {&T_wb, 1}}, 10'000'000);
+      witnesses met;
+      z = descend(vec3(0.0), vec3(0.0), {}, met, false, useful_m, {}, samples);
+      return samples.count.spent;
+    };
+    vec3 whole, cut;
+    const std::size_t all = spent(1.0, whole), some = spent(0.3 * depth, cut);
+    EXPECT_NEAR(whole.z, depth, 0.05 * depth);
+    saved += all > some ? all - some : 0;
+    EXPECT_GT(glm::length(cut), 0.3 * depth);
+  }
+  EXPECT_GT(saved, 100U);
+}
+
 // The minimum of spring and bed on a half space: their forces are equal, and it is settled from any side.
 TEST(Settle, BalancesSpringAndBed) {
   drawing draw{std::mt19937_64(fresh_seed("Settle.BalancesSpringAndBed", "50 starts"))};
@@ -176,9 +203,9 @@ TEST(Settle, BalancesSpringAndBed) {
     samples.place({T_wa, {&T_wb, 1}}, 10'000'000);
     patch.clear();
     const vec3 start = vec3(0.0, 0.0, depth) + 0.1 * mm * draw.vector();
-    const way_out w = settle(2000.0, vec3(0.0), start, rule.bed_of_samples(), patch, samples);
+    const way_out w = settle({2000.0, vec3(0.0), 0.2}, start, rule.bed_of_samples(), patch, samples);
     EXPECT_TRUE(w.settled);
-    EXPECT_LT(glm::length(2000.0 * w.z_w + w.bed.gradient_n), 1e-6 * 2000.0 * depth);
+    EXPECT_LT(glm::length(2000.0 * w.z_w + w.bed.gradient.linear), 1e-6 * 2000.0 * depth);
     EXPECT_NEAR(w.z_w.z, depth, 0.04 * depth + 10e-6);
     EXPECT_FALSE(w.touching.empty());
   }

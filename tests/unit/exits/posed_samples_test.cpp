@@ -93,6 +93,39 @@ TEST(PosedSamples, FindsTheDeepestOfAllAtMotionAfterMotion) {
   EXPECT_LT(later, 7 * first) << "what was read before saves nothing";
 }
 
+// A motion with a turn takes each sample another way, and branches by as much as their size.
+TEST(PosedSamples, FindsTheDeepestOfAllAtTurns) {
+  drawing draw{std::mt19937_64(fresh_seed("PosedSamples.FindsTheDeepestOfAllAtTurns", "8 poses, 6 motions each"))};
+  posed_samples samples(boxes().scene, vec3(0.0));
+  for (int i = 0; i < 8; ++i) {
+    const pose T_wa = drawn_pose(draw), T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
+    samples.place({T_wa, {&T_wb, 1}}, 100'000'000);
+    samples.find_pivot(10.0 * mm);
+    const vec3 pivot_w = samples.centre_w() + samples.about().centre;
+    for (int n = 0; n < 6; ++n) {
+      const motion x(draw.between(0.0, 1.0) * mm * draw.vector(), draw.between(0.0, 0.1) * draw.vector());
+      double most = -1.0;
+      const auto look = [&](const field_body& of, const exit_body& in, const pose& T_wx, const pose& T_wy,
+                            double sign) {
+        for (const field_sample& s : of.samples.samples()) {
+          const vec3 p_w = T_wx * vec3(s.position_b), moved = x.shift_w + glm::cross(x.turn_w, p_w - pivot_w);
+          const double depth = in.body->field.coarse(inverse(T_wy) * (p_w + sign * moved)).value_m +
+                               in.relief.read(in.body->field, inverse(T_wy) * p_w).value_m;
+          most = std::max(most, depth);
+        }
+      };
+      look(*boxes().probe, *boxes().scene->fixed[0], T_wa, T_wb, 1.0);
+      look(*boxes().fixed, *boxes().scene->probe, T_wb, T_wa, -1.0);
+      mark m;
+      ASSERT_FALSE(samples.deepest(x, most + 1e-12, m)) << i << ", " << n;
+      ASSERT_TRUE(samples.deepest(x, most - draw.between(0.0, 0.3) * mm - 1e-9, m)) << i << ", " << n;
+      ASSERT_NEAR(m.depth_m, most, 1e-12) << i << ", " << n;
+      ASSERT_TRUE(samples.deep_one(x, most - 0.3 * mm, m));
+      ASSERT_GE(m.depth_m, std::min(most, 0.5 * most) - 1e-12);
+    }
+  }
+}
+
 TEST(ReliefBounds, HoldForEveryFootInABall) {
   drawing draw{std::mt19937_64(fresh_seed("ReliefBounds.HoldForEveryFootInABall", "20000 balls"))};
   const exit_body& body = *boxes().scene->fixed[0];
@@ -180,7 +213,8 @@ TEST(PosedSamples, SlopesAreThoseOfTheDepth) {
     const double shifted = (depth_at(h * axis, {}) - depth_at(-h * axis, {})) / (2.0 * h);
     EXPECT_NEAR(shifted, glm::dot(d.slope + relief, axis), 2e-5);
     const double r = h / 0.01, turned = (depth_at({}, r * axis) - depth_at({}, -r * axis)) / (2.0 * r);
-    const vec3 by_rotation = glm::cross(here.lever_w(m, x_w), d.slope) + glm::cross(here.lever_w(m), relief);
+    const vec3 by_rotation = glm::cross(here.lever_w(m) - (here.meeting_of(m).of_probe ? vec3(0.0) : x_w), d.slope) +
+                             glm::cross(here.lever_w(m), relief);
     EXPECT_NEAR(turned, glm::dot(by_rotation, axis), 2e-7);
   }
   EXPECT_GT(seen, 16);

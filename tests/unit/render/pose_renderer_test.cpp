@@ -63,7 +63,8 @@ TEST(PoseRenderer, PushesByItsStiffnessAtAnyDepth) {
   for (int n = 0; n < 100; ++n) {
     const double depth = 3e-3 * (1.0 + draw.unit());
     ASSERT_EQ(feel.step({lowered_box(draw, depth), T_wb}, t), status::ok);
-    EXPECT_NEAR(t.force.on_probe_w.force.z, k * depth, k * (0.015 * depth + soft + 4e-6)) << "pose " << n;
+    // A corner beside the middle of where the bodies are close is let out by a turn as well: 2 % softer here.
+    EXPECT_NEAR(t.force.on_probe_w.force.z, k * depth, k * (0.03 * depth + soft + 4e-6)) << "pose " << n;
     ASSERT_FALSE(t.contacts.empty());
     EXPECT_GT(glm::dot(t.contacts[0].window.n_ab_w, vec3(0.0, 0.0, -1.0)), 0.99);
     EXPECT_NEAR(t.depths[0].depth_m, depth, 0.03 * depth + 2.0 * soft + 4e-6);
