@@ -170,9 +170,9 @@ TEST(force_truth, half_the_distance_of_samples_changes_little) {
   EXPECT_FALSE(more_than(0.5, beyond(changed, 0.02), changed.size()));
   EXPECT_FALSE(more_than(0.1, beyond(changed, 0.1), changed.size()));
   EXPECT_FALSE(more_than(0.01, beyond(changed, 0.4), changed.size()));
-  // Where seven of eight samples are left out it does change.
+  // The control: with one sample in sixty-four it does change, whichever pairs the day draws.
   const std::vector<double> poor =
-      changes(seed, 2, 18, [](const truth_body& b) { return with_fewer_samples(*b.field, 8); });
+      changes(seed, 2, 18, [](const truth_body& b) { return with_fewer_samples(*b.field, 64); });
   print(poor);
   EXPECT_TRUE(more_than(0.5, beyond(poor, 0.02), poor.size()) || more_than(0.1, beyond(poor, 0.1), poor.size()));
 }
