@@ -231,10 +231,10 @@ class watched_iterator {
   using reference = const char&;
 
   watched_iterator() = default;
-  watched_iterator(const char* at, const reading_watch& watch) noexcept : at_(at), watch_(&watch) {}
+  watched_iterator(const char* at, const reading_watch& watch) noexcept : first_(at), at_(at), watch_(&watch) {}
   reference operator*() const noexcept { return *at_; }
   watched_iterator& operator++() {
-    if (reinterpret_cast<std::uintptr_t>(++at_) % watch_every == 0) watch_->ask();
+    if (static_cast<std::size_t>(++at_ - first_) % watch_every == 0) watch_->ask();
     return *this;
   }
   watched_iterator operator++(int) {
@@ -245,6 +245,7 @@ class watched_iterator {
   bool operator==(const watched_iterator& other) const noexcept { return at_ == other.at_; }
 
  private:
+  const char* first_ = nullptr;  // counts from here, so that as many questions are asked wherever the text lies
   const char* at_ = nullptr;
   const reading_watch* watch_ = nullptr;
 };
