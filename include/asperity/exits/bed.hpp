@@ -105,24 +105,29 @@ class bed_patch {
     return out;
   }
 
-  /// Calls take(mark, its reading at x) for every sample that is inside at x.   @pre covers(x_w)
+  /// Calls take(mark, its reading at x) for every sample that is inside at x. What it learns of the others bounds their
+  /// depths at the next place: the steps of an iteration become short, and few are read again.   @pre covers(x_w)
   template <class Take>
-  void for_each_inside(const motion& x_w, posed_samples& samples, Take&& take) const noexcept {
-    const double far_m = samples.steepest() * distance_m(x_w, samples);
-    for (const mark& m : marks_) {
-      if (m.depth_m + far_m <= 0.0) continue;
+  void for_each_inside(const motion& x_w, posed_samples& samples, Take&& take) noexcept {
+    const double far_m = samples.steepest() * distance_m(x_w, bounded_at_w_, samples);
+    bounded_at_w_ = x_w;
+    for (mark& m : marks_) {
+      m.depth_m += far_m;
+      if (m.depth_m <= 0.0) continue;
+      m.depth_m = samples.depth(m, x_w);
+      if (m.depth_m <= 0.0) continue;
       const coarse_reading d = samples.read(m, x_w);
       if (d.value_m > 0.0) take(m, d);
     }
   }
 
   [[nodiscard]] bool covers(const motion& x_w, const posed_samples& samples) const noexcept {
-    return gathered_ && distance_m(x_w, samples) <= reach_m_;
+    return gathered_ && distance_m(x_w, place_w_, samples) <= reach_m_;
   }
   void gather(const motion& x_w, posed_samples& samples) noexcept {
     // Who gathers again is under way to somewhere: the next time will be later.
     reach_m_ = gathered_ ? std::min(2.0 * reach_m_, longest_reach_m) : reach_m;
-    place_w_ = x_w;
+    place_w_ = bounded_at_w_ = x_w;
     gathered_ = true;
     // Where more are near than fit, only those nearer by: what lacks samples gives way.
     for (bool fits = false; !fits;) {
@@ -151,14 +156,14 @@ class bed_patch {
   bool crowded = false;  ///< samples were left out where it was gathered last
 
  private:
-  // No sample moves further between x and where they were gathered.
-  [[nodiscard]] double distance_m(const motion& x, const posed_samples& samples) const noexcept {
-    return glm::length(x.shift_w - place_w_.shift_w) +
-           (samples.longest_lever_m() + glm::length(x.shift_w)) * glm::length(x.turn_w - place_w_.turn_w);
+  // No sample moves further from y to x.
+  [[nodiscard]] static double distance_m(const motion& x, const motion& y, const posed_samples& samples) noexcept {
+    return glm::length(x.shift_w - y.shift_w) +
+           (samples.longest_lever_m() + glm::length(x.shift_w)) * glm::length(x.turn_w - y.turn_w);
   }
 
-  std::vector<mark> marks_;
-  motion place_w_;
+  std::vector<mark> marks_;  // none is deeper than its depth_m at bounded_at_w_
+  motion place_w_, bounded_at_w_;
   double reach_m_ = reach_m;
   bool gathered_ = false;
 };

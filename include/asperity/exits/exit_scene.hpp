@@ -10,7 +10,9 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/exits/field_bounds.hpp"
 #include "asperity/exits/kept_relief.hpp"
+#include "asperity/exits/make_moving_shape.hpp"
 #include "asperity/exits/mark_tree.hpp"
+#include "asperity/exits/moving_shape.hpp"
 #include "asperity/exits/relief_bounds.hpp"
 #include "asperity/field/field_scene.hpp"
 
@@ -19,19 +21,23 @@ namespace asperity::exits {
 /// One body. Immutable once made.
 struct exit_body {
   field_body_ptr body;
-  field_bounds bounds;
   kept_relief relief;
+  moving_shape shape;
+  field_bounds bounds;
   relief_bounds most_relief;
   mark_tree marks;
 
   /// @pre made
   explicit exit_body(field_body_ptr made)
       : body(std::move(made)),
-        bounds(body->field.smooth),
         relief(usual_relief(body->field, body->samples.samples())),
+        shape(make_moving_shape(body->field, relief)),
+        bounds(shape),
         most_relief(body->field.fine),
         marks(body->samples.samples()) {}
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(bounds, most_relief, marks); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(shape, bounds, most_relief, marks);
+  }
 };
 
 using exit_body_ptr = std::shared_ptr<const exit_body>;
@@ -41,7 +47,8 @@ struct exit_scene {
   exit_body_ptr probe;
   std::vector<exit_body_ptr> fixed;
 
-  /// Allocates; for hundredths of a second, not for a tick.   @pre all bodies of made are there
+  /// Allocates; for a tenth of a second a body and more for long notches, not for a tick.   @pre all bodies of made are
+  /// there
   explicit exit_scene(const field_scene& made) : probe(std::make_shared<const exit_body>(made.probe)) {
     for (const field_body_ptr& b : made.fixed) {
       const auto same = std::find_if(fixed.begin(), fixed.end(), [&](const exit_body_ptr& f) { return f->body == b; });

@@ -1,4 +1,4 @@
-// What bounds the smooth part of a depth field in a ball.
+// What bounds the moving shape of a body in a ball.
 #pragma once
 
 #include <algorithm>
@@ -11,57 +11,34 @@
 
 #include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
-#include "asperity/field/body_field.hpp"
-#include "asperity/field/bspline.hpp"
+#include "asperity/exits/moving_shape.hpp"
 #include "asperity/field/coarse_grid.hpp"
 
 namespace asperity::exits {
 
-/// S at a point, metres: coarse_grid::read() without derivatives, at a third of its cost.
-/// @rt safe
-[[nodiscard]] inline double smooth_depth(const detail::coarse_grid& grid, const vec3& p_b) noexcept {
-  const vec3 c_b = grid.clamped(p_b);
-  std::size_t first[3];
-  double f[3];
-  const double per_pitch = 1.0 / grid.pitch_m;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const int axis = static_cast<int>(k);
-    const double g = (c_b[axis] - grid.low[axis]) * per_pitch;
-    first[k] = static_cast<std::size_t>(std::min(std::max(1.0, g), static_cast<double>(grid.nodes[k]) - 3.0));
-    f[k] = g - static_cast<double>(first[k]);
-    --first[k];
-  }
-  const detail::cubic_weights wx(f[0]), wy(f[1]), wz(f[2]);
-  double v = 0.0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    double s = 0.0;
-    for (std::size_t j = 0; j < 4; ++j) {
-      const float* const row = grid.value.data() + grid.at(first[0], first[1] + j, first[2] + k);
-      s += wy.value[j] * (wx.value[0] * static_cast<double>(row[0]) + wx.value[1] * static_cast<double>(row[1]) +
-                          wx.value[2] * static_cast<double>(row[2]) + wx.value[3] * static_cast<double>(row[3]));
-    }
-    v += wz.value[k] * s;
-  }
-  if (c_b != p_b) v -= glm::length(p_b - c_b);
-  return v;
-}
-
-/// Bounds of S for one body. Made once, beside the field; never changed.
+/// Bounds of the moving shape S' of one body. Made once, beside the shape; never changed.
 class field_bounds {
  public:
-  field_bounds() = default;
-
   /// Allocates two numbers per node of the grid.
-  explicit field_bounds(const detail::coarse_grid& grid) : grid_(&grid) {
+  /// @param shape  whose grid must outlive the bounds
+  explicit field_bounds(const moving_shape& shape) : grid_(&shape.grid()) {
     find_highest();
-    find_bend();
     find_steepest();
+    bend_level level = least_bend();
+    for_each_finer_cell(shape, [&](std::size_t corner, const finer_cell& cell) {
+      for (const std::size_t at : corners(corner)) {
+        highest_[at] = std::max(highest_[at], cell.highest_m);
+        level.most[at] = std::max(level.most[at], cell.bend_per_m);
+      }
+      steepest_ = std::max(steepest_, cell.steepest);
+    });
+    spread_bend(std::move(level));
   }
 
-  /// No slope of S within the grid is larger. Measured at and between the nodes, with a margin of 5 %.
+  /// No slope of S' within the grid is larger. Measured at and between the nodes, with a margin of 5 %.
   [[nodiscard]] double steepest() const noexcept { return steepest_; }
 
-  /// Upper bound of S at the points within radius_m of p_b, from a table: no reading. @rt safe
+  /// Upper bound of S' at the points within radius_m of p_b, from a table: no reading. @rt safe
   [[nodiscard]] double most_by_table(const vec3& p_b, double radius_m) const noexcept {
     const vec3 c_b = grid_->clamped(p_b), beyond = p_b - c_b;
     const double squared = glm::dot(beyond, beyond);
@@ -72,7 +49,7 @@ class field_bounds {
     return std::max(rim_m_, static_cast<double>(highest_[nearest(c_b)]) + steepest_ * inside_m);
   }
 
-  /// No second derivative of S within radius_m of a point is larger (Frobenius norm), 1/m. Infinity beyond 15 pitches
+  /// No second derivative of S' within radius_m of a point is larger (Frobenius norm), 1/m. Infinity beyond 15 pitches
   /// and for points outside the grid. @rt safe
   [[nodiscard]] double bend_per_m(const vec3& p_b, double radius_m) const noexcept {
     if (grid_->clamped(p_b) != p_b) return std::numeric_limits<double>::infinity();
@@ -100,10 +77,6 @@ class field_bounds {
       n[k] = static_cast<std::size_t>(std::min(std::max(1.0, g), static_cast<double>(grid_->nodes[k]) - 2.0));
     }
     return grid_->at(n[0], n[1], n[2]);
-  }
-
-  [[nodiscard]] std::size_t stride(std::size_t axis) const noexcept {
-    return axis == 0 ? 1 : (axis == 1 ? grid_->nodes[0] : grid_->nodes[0] * grid_->nodes[1]);
   }
 
   /// The largest second derivative about cells of 2^shift nodes.
@@ -147,21 +120,28 @@ class field_bounds {
   }
 
   // Second differences of the coefficients bound the spline's second derivatives, which are averages of those at up to
-  // two nodes away. A ball about a point of a cell reaches no further than the cells next to it, less half a node.
-  void find_bend() {
+  // two nodes away. For points that are next to a node.
+  [[nodiscard]] bend_level least_bend() const {
     const auto& n = grid_->nodes;
     const double per_square = 1.0 / (grid_->pitch_m * grid_->pitch_m);
+    const float* const value = grid_->value.data();
+    const std::size_t stride[3] = {1, n[0], n[0] * n[1]};
     bend_level level{0, 0.5 * grid_->pitch_m, n, std::vector<float>(grid_->value.size(), 0.0F)};
     for (std::size_t z = 1; z + 1 < n[2]; ++z) {
       for (std::size_t y = 1; y + 1 < n[1]; ++y) {
         for (std::size_t x = 1; x + 1 < n[0]; ++x) {
           const std::size_t i = grid_->at(x, y, z);
-          level.most[i] = static_cast<float>(1.0001 * per_square * second_difference(i));
+          level.most[i] = static_cast<float>(1.0001 * per_square * second_difference(value + i, stride));
         }
       }
     }
     spread(level.most, n);
     spread(level.most, n);
+    return level;
+  }
+
+  // A ball about a point of a cell reaches no further than the cells next to it, less half a node.
+  void spread_bend(bend_level level) {
     for (;;) {
       bend_level next = halved(level);
       spread(level.most, level.cells);
@@ -169,6 +149,69 @@ class field_bounds {
       if (next.shift > 4) return;
       level = std::move(next);
     }
+  }
+
+  // What a cell of S with finer nodes has at most.
+  struct finer_cell {
+    float highest_m = 0.0F, bend_per_m = 0.0F;
+    double steepest = 0.0;
+  };
+
+  // Calls visit(first node of the cell, finer_cell). The spline in a cell reads `finer` + 3 nodes along each axis.
+  template <class Visit>
+  void for_each_finer_cell(const moving_shape& shape, Visit&& visit) const {
+    constexpr std::size_t cells = moving_shape::cells;
+    const auto& bricks = shape.bricks_along();
+    for (std::size_t z = 0; z < bricks[2]; ++z) {
+      for (std::size_t y = 0; y < bricks[1]; ++y) {
+        for (std::size_t x = 0; x < bricks[0]; ++x) {
+          const moving_shape::brick* const over = shape.brick_over(x, y, z);
+          if (over == nullptr) continue;
+          for (std::size_t c = 0; c < cells * cells * cells; ++c) {
+            const std::size_t in[3] = {c % cells, c / cells % cells, c / (cells * cells)};
+            const std::size_t node[3] = {x * cells + in[0], y * cells + in[1], z * cells + in[2]};
+            const auto& n = grid_->nodes;
+            if (node[0] + 1 >= n[0] || node[1] + 1 >= n[1] || node[2] + 1 >= n[2]) continue;
+            visit(grid_->at(node[0], node[1], node[2]), in_cell(*over, in));
+          }
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] finer_cell in_cell(const moving_shape::brick& nodes, const std::size_t (&in)[3]) const noexcept {
+    constexpr std::size_t finer = moving_shape::finer, reads = finer + 3, along = moving_shape::along;
+    constexpr std::size_t stride[3] = {1, along, along * along};
+    const double per_pitch = static_cast<double>(finer) / grid_->pitch_m;
+    const float* const first = nodes.data() + moving_shape::node(in[0] * finer, in[1] * finer, in[2] * finer);
+    finer_cell out;
+    out.highest_m = *first;
+    double bend = 0.0, square = 0.0;
+    for (std::size_t k = 0; k < reads; ++k) {
+      for (std::size_t j = 0; j < reads; ++j) {
+        for (std::size_t i = 0; i < reads; ++i) {
+          const float* const at = first + k * stride[2] + j * stride[1] + i;
+          out.highest_m = std::max(out.highest_m, *at);
+          const auto inner = [](std::size_t n) { return n >= 1 && n + 1 < reads; };
+          if (inner(i) && inner(j) && inner(k)) bend = std::max(bend, second_difference(at, stride));
+          if (i + 1 < reads && j + 1 < reads && k + 1 < reads) {
+            const vec3 slope = middle_slope(at, stride);
+            square = std::max(square, glm::dot(slope, slope));
+          }
+        }
+      }
+    }
+    out.bend_per_m = static_cast<float>(1.0001 * per_pitch * per_pitch * bend);
+    out.steepest = margin * per_pitch * std::sqrt(square);
+    return out;
+  }
+
+  [[nodiscard]] std::array<std::size_t, 8> corners(std::size_t first) const noexcept {
+    std::array<std::size_t, 8> out{};
+    for (std::size_t c = 0; c < 8; ++c) {
+      out[c] = first + (c & 1U) + (c >> 1 & 1U) * grid_->nodes[0] + (c >> 2) * grid_->nodes[0] * grid_->nodes[1];
+    }
+    return out;
   }
 
   [[nodiscard]] bend_level halved(const bend_level& of) const {
@@ -189,18 +232,18 @@ class field_bounds {
     return to;
   }
 
-  [[nodiscard]] double second_difference(std::size_t i) const noexcept {
-    const auto value = [&](std::size_t k) { return static_cast<double>(grid_->value[k]); };
+  [[nodiscard]] static double second_difference(const float* at, const std::size_t (&stride)[3]) noexcept {
+    const auto value = [at](std::ptrdiff_t n) { return static_cast<double>(at[n]); };
     double squares = 0.0;
     for (std::size_t a = 0; a < 3; ++a) {
-      const std::size_t d = stride(a);
-      const double bend = value(i + d) - 2.0 * value(i) + value(i - d);
+      const auto d = static_cast<std::ptrdiff_t>(stride[a]);
+      const double bend = value(d) - 2.0 * value(0) + value(-d);
       squares += bend * bend;
       for (std::size_t b = a + 1; b < 3; ++b) {
-        const std::size_t e = stride(b);
+        const auto e = static_cast<std::ptrdiff_t>(stride[b]);
         double most = 0.0;
-        for (const std::size_t at : {i, i - d, i - e, i - d - e}) {
-          most = std::max(most, std::fabs(value(at + d + e) - value(at + d) - value(at + e) + value(at)));
+        for (const std::ptrdiff_t n : {std::ptrdiff_t{0}, -d, -e, -d - e}) {
+          most = std::max(most, std::fabs(value(n + d + e) - value(n + d) - value(n + e) + value(n)));
         }
         squares += 2.0 * most * most;
       }
@@ -210,35 +253,43 @@ class field_bounds {
 
   void find_steepest() {
     const auto& n = grid_->nodes;
-    double most = 0.0;
+    const std::size_t stride[3] = {1, n[0], n[0] * n[1]};
+    double most = 1.0 / (margin * margin);
     for (std::size_t z = 1; z + 2 < n[2]; ++z) {
       for (std::size_t y = 1; y + 2 < n[1]; ++y) {
         for (std::size_t x = 1; x + 2 < n[0]; ++x) {
-          const vec3 slope = node_slope(grid_->at(x, y, z));
-          most = std::max(most, glm::dot(slope, slope));
+          // Cheap, and sharper than most slopes of the spline, which averages: only where it is larger they are read.
+          const vec3 middle = middle_slope(grid_->value.data() + grid_->at(x, y, z), stride) / grid_->pitch_m;
+          if (glm::dot(middle, middle) <= most) continue;
+          for (std::size_t c = 0; c < 8; ++c) {
+            const vec3 in(0.5 * static_cast<double>(c & 1U), 0.5 * static_cast<double>(c >> 1 & 1U),
+                          0.5 * static_cast<double>(c >> 2));
+            const vec3 slope = grid_->read(grid_->low + grid_->pitch_m * (vec3(x, y, z) + in)).slope;
+            most = std::max(most, glm::dot(slope, slope));
+          }
         }
       }
     }
-    steepest_ = std::max(1.0, 1.05 * std::sqrt(most));
+    steepest_ = margin * std::sqrt(most);
   }
 
-  // In the middle of a cell, from its eight corners: sharper than the spline, which averages such slopes.
-  [[nodiscard]] vec3 node_slope(std::size_t i) const noexcept {
+  // In the middle of a cell, from its eight corners, per pitch: sharper than the spline, which averages such slopes.
+  [[nodiscard]] static vec3 middle_slope(const float* at, const std::size_t (&stride)[3]) noexcept {
     vec3 out(0.0);
-    for (int axis = 0; axis < 3; ++axis) {
-      const std::size_t d = stride(static_cast<std::size_t>(axis));
-      const std::size_t e = stride(static_cast<std::size_t>((axis + 1) % 3));
-      const std::size_t f = stride(static_cast<std::size_t>((axis + 2) % 3));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t d = stride[axis], e = stride[(axis + 1) % 3], f = stride[(axis + 2) % 3];
       double rise = 0.0;
-      for (const std::size_t at : {i, i + e, i + f, i + e + f}) {
-        rise += static_cast<double>(grid_->value[at + d]) - static_cast<double>(grid_->value[at]);
+      for (const std::size_t n : {std::size_t{0}, e, f, e + f}) {
+        rise += static_cast<double>(at[n + d]) - static_cast<double>(at[n]);
       }
-      out[axis] = rise / (4.0 * grid_->pitch_m);
+      out[static_cast<int>(axis)] = 0.25 * rise;
     }
     return out;
   }
 
-  const detail::coarse_grid* grid_ = nullptr;
+  static constexpr double margin = 1.05;  // of the steepest slope, which is measured at points
+
+  const detail::coarse_grid* grid_;
   std::vector<float> highest_;
   std::vector<bend_level> bend_;
   double steepest_ = 1.0;

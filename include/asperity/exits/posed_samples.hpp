@@ -13,53 +13,20 @@
 
 #include "asperity/core/memory.hpp"
 #include "asperity/core/pose.hpp"
+#include "asperity/exits/close_branches.hpp"
 #include "asperity/exits/exit_scene.hpp"
+#include "asperity/exits/meeting.hpp"
 #include "asperity/exits/motion.hpp"
 #include "asperity/exits/pivot.hpp"
 #include "asperity/model/scene.hpp"
 
 namespace asperity::exits {
 
-/// One sample in the field of the body across, and how deep it was where it was found.
-struct mark {
-  vec3 place_y{0.0};         ///< in the frame of the field's body, at the pose as given
-  double relief_m = 0.0;     ///< read at the pose as given
-  double depth_m = 0.0;      ///< S + relief at the motion of the probe where the mark was found
-  std::uint32_t sample = 0;  ///< of its body
-  std::uint32_t meeting = 0;
-};
-
-/// Samples of body X in the field of body Y; one of the two is the probe.
-struct meeting {
-  const exit_body *of_x = nullptr, *in_y = nullptr;
-  pose T_wx;
-  mat3 turn_yx{1.0};  ///< with shift_y: from X's frame to Y's, at the pose as given
-  vec3 shift_y{0.0};
-  mat3 motion_y{1.0};            ///< what a motion of the probe, world axes, does to X's points in Y's frame
-  vec3 pivot_y{0.0};             ///< in Y's frame, at the pose as given
-  std::uint32_t body = 0;        ///< index in scene::fixed of the body that is not the probe
-  bool of_probe = true;          ///< X is the probe
-  std::size_t first_sample = 0;  ///< in what posed_samples keeps per sample, and
-  std::size_t first_branch = 0;  ///< per branch
-};
-
-/// What a solve may spend, and what it has spent: readings of a field or of a table of its bounds.
-struct reading_count {
-  std::size_t spent = 0, most = 0;
-  bool cut = false;  ///< something was left out because nothing was left
-
-  [[nodiscard]] bool left() noexcept {
-    if (spent < most) return true;
-    cut = true;
-    return false;
-  }
-};
-
 /// The depth that the law of least motion sees,
 ///
-///     D_i(q, x) = S(place of sample i at pose q, moved by x) + t(place of sample i at pose q)
+///     D_i(q, x) = S'(place of sample i at pose q, moved by x) + t(place of sample i at pose q)
 ///
-/// x is a motion of the probe, world axes: a translation and a turn about the pivot. The smooth part S of the field
+/// x is a motion of the probe, world axes: a translation and a turn about the pivot. The moving shape S' of the field
 /// moves with x; the relief t stays as it is at the pose, as far as it is a texture (kept_relief). All memory is taken
 /// when it is made.
 /// @rt place() and all that follows: safe
@@ -127,7 +94,7 @@ class posed_samples {
     pivot_.arm_squared = no_turn_m * no_turn_m;
     if (least_arm_m > 0.0) {
       pivot_sum sum;
-      for (const meeting& m : meetings_) add_close(m, sum);
+      for (const meeting& m : meetings_) add_close(m, centre_w_, most_relief(m), patch_m_, count, sum);
       pivot_ = sum.make(least_arm_m, arm_per_spread);
     }
     for (meeting& m : meetings_) {
@@ -140,7 +107,7 @@ class posed_samples {
   [[nodiscard]] double longest_lever_m() const noexcept { return probe_radius_m_ + glm::length(pivot_.centre); }
 
   [[nodiscard]] const meeting& meeting_of(const mark& m) const noexcept { return meetings_[m.meeting]; }
-  /// No smooth field changes by more per metre of a motion.
+  /// No shape changes by more per metre of a motion.
   [[nodiscard]] double steepest() const noexcept { return steepest_; }
   [[nodiscard]] const vec3& centre_w() const noexcept { return centre_w_; }
 
@@ -148,14 +115,14 @@ class posed_samples {
   [[nodiscard]] double depth(const mark& m, const motion& x_w) noexcept {
     const meeting& a = meetings_[m.meeting];
     ++count.spent;
-    return smooth_depth(a.in_y->body->field.smooth, moved(a, m.place_y, x_w)) + m.relief_m;
+    return a.in_y->shape.value_m(moved(a, m.place_y, x_w)) + m.relief_m;
   }
 
   /// D and its first two derivatives by a translation of the sample, world axes.
   [[nodiscard]] coarse_reading read(const mark& m, const motion& x_w) noexcept {
     const meeting& a = meetings_[m.meeting];
     ++count.spent;
-    coarse_reading out = a.in_y->body->field.coarse(moved(a, m.place_y, x_w));
+    coarse_reading out = a.in_y->shape.read(moved(a, m.place_y, x_w));
     const mat3 back = glm::transpose(a.motion_y);
     out.value_m += m.relief_m;
     out.slope = back * out.slope;
@@ -219,26 +186,8 @@ class posed_samples {
   // How the spring that resists a turn grows with the contact, and how finely the contact's middle is found.
   static constexpr double arm_per_spread = 8.0, patches_per_radius = 12.0;
 
-  // A motion of the probe as Y's frame sees it.
-  struct moved_by {
-    vec3 shift_y, turn_y, pivot_y;
-    double longer;  // lengths grow by this at most
-
-    moved_by(const meeting& m, const motion& x) noexcept
-        : shift_y(m.motion_y * x.shift_w),
-          turn_y(m.motion_y * x.turn_w),
-          pivot_y(m.pivot_y),
-          longer(std::sqrt(1.0 + glm::dot(x.turn_w, x.turn_w))) {}
-    [[nodiscard]] vec3 operator()(const vec3& place_y) const noexcept {
-      return place_y + shift_y + glm::cross(turn_y, place_y - pivot_y);
-    }
-  };
-  [[nodiscard]] static vec3 moved(const meeting& m, const vec3& place_y, const motion& x) noexcept {
-    return moved_by(m, x)(place_y);
-  }
-
-  // What was read of a branch at the pose, where a motion had taken its middle: S and its slope there bound S for other
-  // motions near by, without another reading.
+  // What was read of a branch at the pose, where a motion had taken its middle: S' and its slope there bound S' for
+  // other motions near by, without another reading.
   struct kept_branch {
     vec3 moved_y{0.0}, place_y{0.0};
     coarse_reading at;
@@ -259,7 +208,7 @@ class posed_samples {
     return m.in_y->relief.limited(m.in_y->body->field.highest_relief_m);
   }
 
-  // S at `off_m` or less from where a kept branch was read, where its slope alone would add `along_m`.
+  // S' at `off_m` or less from where a kept branch was read, where its slope alone would add `along_m`.
   [[nodiscard]] static double most_near(kept_branch& k, double off_m, double along_m,
                                         const field_bounds& bounds) noexcept {
     const double by_steepest = k.at.value_m + bounds.steepest() * off_m;
@@ -279,7 +228,9 @@ class posed_samples {
     constexpr double kept_from = 0.75;  // |grad S|^2, as kept_relief has it
     const double square = glm::dot(k.at.slope, k.at.slope);
     learn_bend(k, radius_m, m.in_y->bounds);
-    if (!(square > kept_from) || !(k.bend_per_m * radius_m < 0.3)) return k.relief_m;
+    if (!(square > kept_from) || !(k.bend_per_m * radius_m < 0.3) || m.in_y->shape.is_finer(k.place_y)) {
+      return k.relief_m;
+    }
     const vec3 foot_y = k.place_y - (k.at.value_m / (square + 1e-3)) * k.at.slope;
     const double turned = k.bend_per_m * radius_m;
     const double deep_m = std::fabs(k.at.value_m) + 1.2 * radius_m;
@@ -294,7 +245,8 @@ class posed_samples {
     constexpr double table_beyond = 15.0;  // pitches: larger balls are bounded by the table alone
     const branch& b = m.of_x->marks.branches()[index];
     const field_bounds& bounds = m.in_y->bounds;
-    const detail::coarse_grid& grid = m.in_y->body->field.smooth;
+    const moving_shape& shape = m.in_y->shape;
+    const double pitch_m = shape.grid().pitch_m;
     const double radius_m = by.longer * static_cast<double>(b.radius_m);
     kept_branch& k = branches_[m.first_branch + index];
     const bool known = k.turn == turn_;
@@ -313,7 +265,7 @@ class posed_samples {
       const vec3 further_y = moved_y - k.moved_y;
       smooth_m = bound(further_y);
       // A reading for every motion would cost more than the halves' own bounds, as long as it is near by.
-      const double near_m = std::max(radius_m, grid.pitch_m);
+      const double near_m = std::max(radius_m, pitch_m);
       if (smooth_m + k.relief_m <= above_m || glm::dot(further_y, further_y) < near_m * near_m) {
         return smooth_m + k.relief_m;
       }
@@ -321,49 +273,17 @@ class posed_samples {
     const double relief_m = known ? k.relief_m : most_relief_m;
     ++count.spent;
     smooth_m = std::min(smooth_m, bounds.most_by_table(c_y, radius_m));
-    if (smooth_m + relief_m <= above_m || radius_m > table_beyond * grid.pitch_m) return smooth_m + relief_m;
+    if (smooth_m + relief_m <= above_m || radius_m > table_beyond * pitch_m) return smooth_m + relief_m;
     count.spent += 2;
     k.turn = turn_;
     k.relief_m = relief_m;
     k.moved_y = moved_y;
-    k.at = grid.read(c_y);
+    k.at = shape.read(c_y);
     k.place_y = c_y;
     k.bend_within_m = -1.0;
     smooth_m = std::min(smooth_m, bound(vec3(0.0)));
     if (!known && moved_y == vec3(0.0)) k.relief_m = std::min(k.relief_m, most_relief_near(m, k, radius_m));
     return smooth_m + k.relief_m;
-  }
-
-  // The branches of a fixed size, as points: close ones count, whatever the pose the same branches.
-  void add_close(const meeting& m, pivot_sum& sum) noexcept {
-    const std::span<const branch> branches = m.of_x->marks.branches();
-    if (branches.empty()) return;
-    const detail::coarse_grid& grid = m.in_y->body->field.smooth;
-    const double relief_m = most_relief(m), steepest = m.in_y->bounds.steepest();
-    const mat3 to_w = glm::transpose(m.motion_y), turn_wx = glm::mat3_cast(m.T_wx.rotation);
-    std::array<std::uint32_t, 64> waiting;
-    std::size_t n = 0;
-    waiting[n++] = 0;
-    while (n > 0) {
-      const std::uint32_t i = waiting[--n];
-      const branch& b = branches[i];
-      const double size_m = std::max(patch_m_, static_cast<double>(b.radius_m));
-      const double reach_m = 1.5 * steepest * size_m + relief_m;
-      const vec3 c_y = m.turn_yx * vec3(b.centre_b) + m.shift_y;
-      if (static_cast<double>(b.radius_m) > patch_m_ && b.right != 0) {
-        if (m.in_y->bounds.most_by_table(c_y, static_cast<double>(b.radius_m)) > -reach_m) {
-          waiting[n++] = i + 1;
-          waiting[n++] = b.right;
-        }
-        continue;
-      }
-      if (m.in_y->bounds.most_by_table(c_y, 0.0) <= -reach_m || smooth_depth(grid, c_y) <= -reach_m) continue;
-      ++count.spent;
-      const coarse_reading s = grid.read(c_y);
-      const double across_m = std::max(static_cast<double>(b.radius_m), 0.25 * patch_m_);
-      sum.add(across_m * across_m, reach_m, s.value_m, to_w * s.slope,
-              turn_wx * vec3(b.centre_b) + m.T_wx.position - centre_w_, m.of_probe);
-    }
   }
 
   template <class Take>
@@ -418,7 +338,6 @@ class posed_samples {
                   Take& take) noexcept {
     const meeting& m = meetings_[index];
     const branch& b = m.of_x->marks.branches()[leaf];
-    const body_field& field = m.in_y->body->field;
     const double steepest = m.in_y->bounds.steepest();
     kept_branch& k = branches_[m.first_branch + leaf];
     const bool bounded = k.turn == turn_;
@@ -449,7 +368,7 @@ class posed_samples {
         if (!(most_near(k, off_m, glm::dot(k.at.slope, off_y), m.in_y->bounds) + relief_m > above_m)) continue;
       }
       ++count.spent;
-      s.smooth_m = smooth_depth(field.smooth, at_y);
+      s.smooth_m = m.in_y->shape.value_m(at_y);
       s.moved_y = moved_y;
       if (!known) {
         if (!(s.smooth_m + most_relief_m > above_m)) continue;

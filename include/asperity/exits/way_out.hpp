@@ -36,6 +36,7 @@ struct way_out {
   bed_sum bed;
   double weight = 0.0;
   bool settled = true;             ///< false: the iteration ended before it came to rest
+  bool looked_beside = false;      ///< descents from beside it were made
   fixed_vector<mark, 8> touching;  ///< the deepest samples there
 
   [[nodiscard]] motion moved() const noexcept { return {z_w, turn_w}; }

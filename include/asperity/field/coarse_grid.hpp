@@ -9,16 +9,9 @@
 
 #include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
-#include "asperity/field/bspline.hpp"
+#include "asperity/field/cubic_nodes.hpp"
 
 namespace asperity {
-
-/// Smooth signed distance at a point, with its first and second derivatives. Body frame, positive inside.
-struct coarse_reading {
-  double value_m = 0.0;
-  vec3 slope{0.0};          ///< by the point's position
-  mat3 hessian_per_m{0.0};  ///< symmetric
-};
 
 namespace detail {
 
@@ -58,61 +51,51 @@ struct coarse_grid {
     return static_cast<double>(value[at(n[0], n[1], n[2])]) + pitch_m * std::sqrt(glm::dot(off, off));
   }
 
+  /// The cell of a point within the grid: its first node, and the place in it, 0 to 1 along each axis. @rt safe
+  struct cell_place {
+    std::array<std::size_t, 3> cell;
+    double f[3];
+  };
+  [[nodiscard]] cell_place cell_of(const vec3& clamped_b) const noexcept {
+    cell_place out;
+    const double per_pitch = 1.0 / pitch_m;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const double g = (clamped_b[axis] - low[axis]) * per_pitch;
+      out.cell[k] = static_cast<std::size_t>(std::min(std::max(1.0, g), static_cast<double>(nodes[k]) - 3.0));
+      out.f[k] = g - static_cast<double>(out.cell[k]);
+    }
+    return out;
+  }
+  /// The nodes about a place.
+  [[nodiscard]] cubic_nodes nodes_of(const cell_place& at_place) const noexcept {
+    const auto& [cell, f] = at_place;
+    return {value.data() + at(cell[0] - 1, cell[1] - 1, cell[2] - 1),
+            nodes[0],
+            nodes[0] * nodes[1],
+            {f[0], f[1], f[2]},
+            1.0 / pitch_m};
+  }
+
   /// The spline. Beyond the grid: its value at the border less the distance from there, continuous and falling.
   /// @rt safe: 64 nodes
   [[nodiscard]] coarse_reading read(const vec3& p_b) const noexcept {
     const vec3 c_b = clamped(p_b);
-    std::array<std::size_t, 3> first{};
-    double f[3];
-    const double per_pitch = 1.0 / pitch_m;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      const double g = (c_b[axis] - low[axis]) * per_pitch;
-      first[k] = static_cast<std::size_t>(std::min(std::max(1.0, g), static_cast<double>(nodes[k]) - 3.0));
-      f[k] = g - static_cast<double>(first[k]);
-      --first[k];
-    }
-    const cubic_weights wx(f[0]), wy(f[1]), wz(f[2]);
-    double v = 0.0, vx = 0.0, vy = 0.0, vz = 0.0, vxx = 0.0, vxy = 0.0, vyy = 0.0, vxz = 0.0, vyz = 0.0, vzz = 0.0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      double s = 0.0, sx = 0.0, sy = 0.0, sxx = 0.0, sxy = 0.0, syy = 0.0;
-      for (std::size_t j = 0; j < 4; ++j) {
-        const float* const row = value.data() + at(first[0], first[1] + j, first[2] + k);
-        const double a = static_cast<double>(row[0]), b = static_cast<double>(row[1]);
-        const double c = static_cast<double>(row[2]), d = static_cast<double>(row[3]);
-        const double r = wx.value[0] * a + wx.value[1] * b + wx.value[2] * c + wx.value[3] * d;
-        const double rx = wx.slope[0] * a + wx.slope[1] * b + wx.slope[2] * c + wx.slope[3] * d;
-        const double rxx = wx.bend[0] * a + wx.bend[1] * b + wx.bend[2] * c + wx.bend[3] * d;
-        s += wy.value[j] * r;
-        sx += wy.value[j] * rx;
-        sxx += wy.value[j] * rxx;
-        sy += wy.slope[j] * r;
-        sxy += wy.slope[j] * rx;
-        syy += wy.bend[j] * r;
-      }
-      v += wz.value[k] * s;
-      vx += wz.value[k] * sx;
-      vy += wz.value[k] * sy;
-      vxx += wz.value[k] * sxx;
-      vxy += wz.value[k] * sxy;
-      vyy += wz.value[k] * syy;
-      vz += wz.slope[k] * s;
-      vxz += wz.slope[k] * sx;
-      vyz += wz.slope[k] * sy;
-      vzz += wz.bend[k] * s;
-    }
-    const double h1 = per_pitch, h2 = per_pitch * per_pitch;
-    coarse_reading out;
-    out.value_m = v;
-    out.slope = {h1 * vx, h1 * vy, h1 * vz};
-    out.hessian_per_m = {h2 * vxx, h2 * vxy, h2 * vxz, h2 * vxy, h2 * vyy, h2 * vyz, h2 * vxz, h2 * vyz, h2 * vzz};
+    coarse_reading out = nodes_of(cell_of(c_b)).read();
     if (c_b != p_b) go_on_beyond(p_b - c_b, out);
     return out;
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(value); }
 
- private:
+  /// Its value alone, m, at a third of the cost. @rt safe
+  [[nodiscard]] double value_m(const vec3& p_b) const noexcept {
+    const vec3 c_b = clamped(p_b);
+    const double at_c = nodes_of(cell_of(c_b)).value_m();
+    return c_b == p_b ? at_c : at_c - glm::length(p_b - c_b);
+  }
+
+  /// Makes a reading at the border one beyond it.
   static void go_on_beyond(const vec3& beyond, coarse_reading& out) noexcept {
     const double away = std::sqrt(glm::dot(beyond, beyond));
     const vec3 n = beyond / away;

@@ -1,6 +1,7 @@
 // The law of least motion where the right answer is known by formula.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <gtest/gtest.h>
 
 #include "exit_lab.hpp"
@@ -152,6 +153,66 @@ TEST(ExitClosedForms, TwoWaysOutMixAcrossTheMiddle) {
   EXPECT_LT(steepest, 1.05 * bound);
   EXPECT_GT(steepest, 0.5 * bound);
   EXPECT_GT(mixed, 50);
+}
+
+// Under the crest of a shallow wave the way out over the crest is still at rest where two beside it are cheaper
+// together. They lie 4 degrees from each other, closer than the rays of the search.
+TEST(ExitClosedForms, AWayOverACrestPartsWithoutAJump) {
+  constexpr double wave_m = 0.4 * mm, high_m = 0.01 * mm;
+  const field_body_ptr waved = make_formula_body(
+      {}, vec3(-1.2, -1.2, -4) * mm, vec3(1.2, 1.2, 1.2) * mm, 0.04 * mm,
+      [](const vec3& p) { return -p.z - 0.5 * high_m * (1.0 - std::cos(6.283185307179586 * p.x / wave_m)); });
+  exit_lab lab(make_points_body({vec3(0.0)}), {waved});
+  drawing draw{std::mt19937_64(fresh_seed("ExitClosedForms.AWayOverACrest", "3 paths"))};
+  const double c = lab.rule().mixed * lab.rule().stiffness_n_per_m;
+  for (const double under_m : {0.5 * mm, 0.76 * mm, 0.78 * mm, 0.8 * mm, draw.between(0.8, 1.6) * mm}) {
+    const vec3 from(-0.06 * mm, draw.between(-0.2, 0.2) * mm, -under_m), way(0.12 * mm, 0.01 * mm, 0.0);
+    constexpr int ticks = 240;
+    vec3 before = lab.at(from).on_probe_w.force;
+    double steepest = 0.0;
+    std::size_t ways = 1;
+    for (int i = 1; i <= ticks; ++i) {
+      const exit_answer a = lab.at(from + (static_cast<double>(i) / ticks) * way);
+      steepest = std::max(steepest, glm::length(a.on_probe_w.force - before) * ticks / glm::length(way));
+      ways = std::max(ways, a.ways.size());
+      before = a.on_probe_w.force;
+    }
+    std::printf("  %.2f mm under the crest: at most %.2f C per metre, %zu ways out\n", under_m / mm, steepest / c,
+                ways);
+    EXPECT_LT(steepest, 1.05 * c);
+    if (under_m > 0.79 * mm) {
+      EXPECT_GT(ways, 1U);
+    }
+  }
+}
+
+// In a cylinder a point's ways out lie on a circle. From a fifth of the radius on there is one, and the force is k
+// times it; nearer to the axis a single way out would still be at rest, but two beside it are cheaper together, and the
+// force turns about the axis by C per metre: C r.
+TEST(ExitClosedForms, WaysOutBesideEachOtherMixOverACrest) {
+  constexpr double radius_m = 2.0 * mm;
+  const field_body_ptr cylinder = make_formula_body({}, vec3(-3, -15, -3) * mm, vec3(3, 15, 3) * mm, 0.06 * mm,
+                                                    [](const vec3& p) { return radius_m - std::hypot(p.x, p.z); });
+  exit_lab lab(make_points_body({vec3(0.0)}), {cylinder});
+  drawing draw{std::mt19937_64(fresh_seed("ExitClosedForms.WaysOutBesideEachOther", "4 directions"))};
+  const double k = lab.rule().stiffness_n_per_m, c = lab.rule().mixed * k, step = 1e-6;
+  for (int i = 0; i < 4; ++i) {
+    const double angle = draw.between(-3.0, 3.0);
+    const vec3 out(std::cos(angle), 0.0, std::sin(angle));
+    const auto force = [&](double r) { return glm::dot(out, lab.at(r * out).on_probe_w.force); };
+    double before = force(0.1 * radius_m);
+    double steepest = 0.0, off = 0.0;
+    for (double r = 0.1 * radius_m + step; r < 0.3 * radius_m; r += step) {
+      const double now = force(r);
+      steepest = std::max(steepest, std::fabs(now - before) / step);
+      off = std::max(off, std::fabs(now - std::min(c * r, k * (radius_m - r))));
+      before = now;
+    }
+    std::printf("  towards %+.2f rad: at most %.2f C per metre, %.3f of k R off\n", angle, steepest / c,
+                off / (k * radius_m));
+    EXPECT_LT(steepest, 1.2 * c);
+    EXPECT_LT(off, 0.05 * k * radius_m);
+  }
 }
 
 TEST(ExitClosedForms, TheProbeHasToClearAllBodies) {

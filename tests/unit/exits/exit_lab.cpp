@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "contacts/polyhedra.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity::test_support {
@@ -75,6 +76,13 @@ field_body_ptr waved_box(const vec3& half, double height_m, double wave_m) {
     return height_m * std::sin(p.x / wave_m) * std::cos(p.y / wave_m + 0.3) * std::sin(p.z / wave_m + 0.5);
   });
   return std::make_shared<const field_body>(make_field_body(model).value());
+}
+
+field_body_ptr grooved_block() {
+  std::vector<vec2> outline{{-12, -6}, {12, -6}, {12, 6}, {4, 6}, {0, 3}, {-4, 6}, {-12, 6}};
+  for (vec2& p : outline) p *= mm;
+  const contacts_test::polyhedron block = contacts_test::prism(outline, -8.0 * mm, 8.0 * mm);
+  return std::make_shared<const field_body>(make_field_body(*contacts_test::make_model(block, {})).value());
 }
 
 exit_lab::exit_lab(field_body_ptr probe, std::vector<field_body_ptr> fixed, const exits::exit_rule& rule,

@@ -31,6 +31,9 @@ using depth_function = std::function<double(const vec3& p_b)>;
 /// A box about the origin whose faces have waves of this height, its field made as for any model.
 [[nodiscard]] field_body_ptr waved_box(const vec3& half, double height_m, double wave_m);
 
+/// A block about the origin, 24 x 16 x 12 mm, with a groove along y: 8 mm wide, 3 mm deep, its bottom at z = 3 mm.
+[[nodiscard]] field_body_ptr grooved_block();
+
 /// What a solve told.
 struct exit_answer {
   wrench on_probe_w{};
