@@ -178,8 +178,8 @@ class way_finder {
       if (!(ways_[i].weight > 0.0) || ways_[i].looked_beside) continue;
       ways_[i].looked_beside = true;
       const way_out w = ways_[i];
-      if (!has_walls(w) && !is_on_a_crest(w)) continue;
       const double length = glm::length(w.z_w - y), beside_m = std::max(60e-6, 0.15 * length);
+      if (!(length > 0.0) || (!has_walls(w) && !is_on_a_crest(w))) continue;
       const vec3 along = (w.z_w - y) / length, u = any_orthogonal(along), v = glm::cross(along, u);
       const std::span<const mark> own(w.touching.data(), w.touching.size());
       const vec3 home = relax(y, w.z_w, own, descent_, {}, 0.0, samples_);
