@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
@@ -172,19 +173,23 @@ class way_finder {
   // A way out past several walls, or over a crest, can have another one beside it, closer than the search tells them
   // apart. It is found by descents from beside the first. True where there is a new one.
   [[nodiscard]] bool look_beside(const vec3& y, double least_j, double useful_m) noexcept {
+    constexpr int starts = 12;                      // around it, near and far in turn
+    constexpr double near_by = 0.1, far_by = 0.22;  // of the way; with one of them, or four sides, some are missed
     bool any = false;
     const std::size_t known = ways_.size();
     for (std::size_t i = 0; i < known && !samples_.count.cut; ++i) {
       if (!(ways_[i].weight > 0.0) || ways_[i].looked_beside) continue;
       ways_[i].looked_beside = true;
       const way_out w = ways_[i];
-      const double length = glm::length(w.z_w - y), beside_m = std::max(60e-6, 0.15 * length);
+      const double length = glm::length(w.z_w - y);
       if (!(length > 0.0) || (!has_walls(w) && !is_on_a_crest(w))) continue;
       const vec3 along = (w.z_w - y) / length, u = any_orthogonal(along), v = glm::cross(along, u);
       const std::span<const mark> own(w.touching.data(), w.touching.size());
       const vec3 home = relax(y, w.z_w, own, descent_, {}, 0.0, samples_);
-      for (const vec3& t : {u, v, -u, -v}) {
-        const vec3 start = w.z_w + 0.1 * length * along + beside_m * t;
+      for (int n = 0; n < starts; ++n) {
+        const double turned = 2.0 * std::numbers::pi * n / starts;
+        const double beside_m = std::max(60e-6, (n % 2 == 0 ? near_by : far_by) * length);
+        const vec3 start = w.z_w + 0.1 * length * along + beside_m * (std::cos(turned) * u + std::sin(turned) * v);
         // Where its own samples lead back to it, others could only make another way longer.
         if (glm::length(relax(y, start, own, descent_, {&home, 1}, 10e-6, samples_) - home) < 10e-6) continue;
         met_.clear();
