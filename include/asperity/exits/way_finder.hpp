@@ -175,6 +175,8 @@ class way_finder {
   [[nodiscard]] bool look_beside(const vec3& y, double least_j, double useful_m) noexcept {
     constexpr int starts = 12;                      // around it, near and far in turn
     constexpr double near_by = 0.1, far_by = 0.22;  // of the way; with one of them, or four sides, some are missed
+    // Descents are dear where whole faces lie in each other: they may take as much as the search did so far.
+    const std::size_t most = samples_.count.spent + std::max<std::size_t>(samples_.count.spent, 60'000);
     bool any = false;
     const std::size_t known = ways_.size();
     for (std::size_t i = 0; i < known && !samples_.count.cut; ++i) {
@@ -186,7 +188,7 @@ class way_finder {
       const vec3 along = (w.z_w - y) / length, u = any_orthogonal(along), v = glm::cross(along, u);
       const std::span<const mark> own(w.touching.data(), w.touching.size());
       const vec3 home = relax(y, w.z_w, own, descent_, {}, 0.0, samples_);
-      for (int n = 0; n < starts; ++n) {
+      for (int n = 0; n < starts && samples_.count.spent < most; ++n) {
         const double turned = 2.0 * std::numbers::pi * n / starts;
         const double beside_m = std::max(60e-6, (n % 2 == 0 ? near_by : far_by) * length);
         const vec3 start = w.z_w + 0.1 * length * along + beside_m * (std::cos(turned) * u + std::sin(turned) * v);
