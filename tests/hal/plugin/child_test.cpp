@@ -196,7 +196,14 @@ TEST(child, a_driver_that_is_slow_is_not_one_that_is_silent) {
   }
   EXPECT_TRUE(may_put_out(b.device->state())) << b.device->fault_text();
   EXPECT_GT(in.sequence, first + 10);
-  EXPECT_EQ(b.driver->what_happened(), "");
+  // On a busy machine the last three reads may have come before its answer, which is told until the next one is there.
+  EXPECT_TRUE(wait_until(5s, [&] {
+    const std::int64_t now_ns = clock_ns();
+    static_cast<void>(b.device->read(now_ns, in));
+    static_cast<void>(b.device->write(now_ns, push(now_ns, {0.5, 0.0, 0.0})));
+    return b.driver->what_happened().empty();
+  })) << b.driver->what_happened();
+  EXPECT_TRUE(may_put_out(b.device->state())) << b.device->fault_text();
 }
 
 TEST(child, a_program_that_takes_its_time_before_the_first_command_is_not_silent) {
