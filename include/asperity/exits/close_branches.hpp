@@ -22,7 +22,8 @@ inline void add_close(const meeting& m, const vec3& centre_w, double most_relief
   const std::span<const branch> branches = m.of_x->marks.branches();
   if (branches.empty()) return;
   const detail::coarse_grid& grid = m.in_y->body->field.smooth;
-  const double steepest = m.in_y->bounds.steepest();
+  // By S: what notches add to its slope says nothing of how close the bodies are.
+  const double steepest = m.in_y->bounds.steepest_of_smooth();
   const mat3 to_w = glm::transpose(m.motion_y), turn_wx = glm::mat3_cast(m.T_wx.rotation);
   std::array<std::uint32_t, 64> waiting;
   std::size_t n = 0;

@@ -24,6 +24,7 @@ class field_bounds {
   explicit field_bounds(const moving_shape& shape) : grid_(&shape.grid()) {
     find_highest();
     find_steepest();
+    steepest_of_smooth_ = steepest_;
     bend_level level = least_bend();
     for_each_finer_cell(shape, [&](std::size_t corner, const finer_cell& cell) {
       for (const std::size_t at : corners(corner)) {
@@ -37,8 +38,10 @@ class field_bounds {
 
   /// No slope of S' within the grid is larger. Measured at and between the nodes, with a margin of 5 %.
   [[nodiscard]] double steepest() const noexcept { return steepest_; }
+  /// No slope of S itself is larger.
+  [[nodiscard]] double steepest_of_smooth() const noexcept { return steepest_of_smooth_; }
 
-  /// Upper bound of S' at the points within radius_m of p_b, from a table: no reading. @rt safe
+  /// Upper bound of S' and of S at the points within radius_m of p_b, from a table: no reading. @rt safe
   [[nodiscard]] double most_by_table(const vec3& p_b, double radius_m) const noexcept {
     const vec3 c_b = grid_->clamped(p_b), beyond = p_b - c_b;
     const double squared = glm::dot(beyond, beyond);
@@ -292,7 +295,7 @@ class field_bounds {
   const detail::coarse_grid* grid_;
   std::vector<float> highest_;
   std::vector<bend_level> bend_;
-  double steepest_ = 1.0;
+  double steepest_ = 1.0, steepest_of_smooth_ = 1.0;
   double rim_m_ = -std::numeric_limits<double>::infinity();
 };
 

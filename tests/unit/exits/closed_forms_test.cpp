@@ -156,7 +156,7 @@ TEST(ExitClosedForms, TwoWaysOutMixAcrossTheMiddle) {
 }
 
 // Under the crest of a shallow wave the way out over the crest is still at rest where two beside it are cheaper
-// together. They lie 4 degrees from each other, closer than the rays of the search.
+// together. They lie a few degrees from each other, closer than the rays of the search.
 TEST(ExitClosedForms, AWayOverACrestPartsWithoutAJump) {
   constexpr double wave_m = 0.4 * mm, high_m = 0.01 * mm;
   const field_body_ptr waved = make_formula_body(
