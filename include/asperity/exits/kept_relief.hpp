@@ -48,8 +48,9 @@ class kept_relief {
     const kept_share share(s);
     const double off = std::fabs(s.value_m) / field.smooth.pitch_m;
     if (!(share.value < 1.0) || !(off < layer_none)) return 0.0;
-    const double all_m = field.relief(p_b, s).value_m, more_m = all_m - share.value * limited(all_m);
     const double in_notch = smoothstep((bend_of(s, field.smooth.pitch_m) - notch_none) / (notch_full - notch_none));
+    if (!(in_notch > 0.0)) return 0.0;
+    const double all_m = field.relief(p_b, s).value_m, more_m = all_m - share.value * limited(all_m);
     // All of it wherever little of the relief is kept, none where all is.
     const double squared = share.value * share.value, moves = 1.0 - squared * squared;
     return in_notch * moves * smoothstep((layer_none - off) / (layer_none - layer_full)) * std::min(0.0, more_m);

@@ -44,7 +44,7 @@ class way_finder {
   /// False where nothing overlaps.   @pre one pose per fixed body
   [[nodiscard]] bool find(const scene_pose& at) noexcept {
     samples_.place(at, rule_.most_readings);
-    for (bed_patch& p : patches_) p.clear();
+    forget_patches();
     next_patch_ = 0;
     ways_.clear();
     deepest_m_ = 0.0;
@@ -53,9 +53,7 @@ class way_finder {
     if (any) {
       find_others();
       for (const way_out& w : ways_) hit_.unsettled |= w.weight > 0.0 && !w.settled;
-      if (samples_.count.cut) {  // what was being gathered then lacks samples
-        for (bed_patch& p : patches_) p.clear();
-      }
+      if (samples_.count.cut) forget_patches();  // what was being gathered then lacks samples
     }
     hit_.readings = samples_.count.cut;
     return any;
@@ -110,10 +108,10 @@ class way_finder {
       }
     }
     if (samples_.count.cut) {
-      // Too little to settle: what the descent has come to, or what a settled way was known.
+      // Too little to settle. What a cut descent has come to may lie anywhere: out of the deepest sample is near by.
       if (!(first.settled && is_out(first))) {
         first = {};
-        first.z_w = z;
+        first.z_w = out_of(m);
       }
       first.settled = false;
     } else if (!(first.bed.deepest_m > 0.0)) {
@@ -125,9 +123,19 @@ class way_finder {
     return true;
   }
 
-  // The bed gives way by a fiftieth of the motion. Deeper than a tenth is a place where it pushes from both sides.
+  // The motion that takes one sample out of the body, by its plane at the pose.
+  [[nodiscard]] vec3 out_of(const mark& m) noexcept {
+    const vec3 slope = samples_.read(m, vec3(0.0)).slope;
+    const double length = glm::length(slope);
+    return length > 0.0 ? (-m.depth_m / length) * slope : vec3(0.0);
+  }
+
+  // The bed gives way by a fiftieth of the motion, and costs as much of what the motion costs. Where it gives way by
+  // more than a tenth, or costs as much as the motion, it pushes from both sides: that is inside.
   [[nodiscard]] bool is_out(const way_out& w) const noexcept {
-    return w.bed.deepest_m <= 0.1 * length_m(w.z_w, w.turn_w) + 4.0 * bed_.onset_m;
+    const double length = length_m(w.z_w, w.turn_w), light = 4.0 * bed_.onset_m;
+    return w.bed.deepest_m <= 0.1 * length + light &&
+           w.bed.energy_j <= 0.5 * springs_.one * length * length + bed_.energy_j(light);
   }
 
   // A turn counts as the way that it moves a point an arm away.
@@ -175,8 +183,10 @@ class way_finder {
   [[nodiscard]] bool look_beside(const vec3& y, double least_j, double useful_m) noexcept {
     constexpr int starts = 12;                      // around it, near and far in turn
     constexpr double near_by = 0.1, far_by = 0.22;  // of the way; with one of them, or four sides, some are missed
-    // Descents are dear where whole faces lie in each other: they may take as much as the search did so far.
-    const std::size_t most = samples_.count.spent + std::max<std::size_t>(samples_.count.spent, 60'000);
+    // Descents are dear where whole faces lie in each other: they may take as much as the search did so far, and leave
+    // an eighth of all for what they find.
+    const std::size_t hard = samples_.count.most, spent = samples_.count.spent;
+    samples_.count.most = std::min(hard - hard / 8, spent + std::max<std::size_t>(spent, 60'000));
     bool any = false;
     const std::size_t known = ways_.size();
     for (std::size_t i = 0; i < known && !samples_.count.cut; ++i) {
@@ -188,7 +198,7 @@ class way_finder {
       const vec3 along = (w.z_w - y) / length, u = any_orthogonal(along), v = glm::cross(along, u);
       const std::span<const mark> own(w.touching.data(), w.touching.size());
       const vec3 home = relax(y, w.z_w, own, descent_, {}, 0.0, samples_);
-      for (int n = 0; n < starts && samples_.count.spent < most; ++n) {
+      for (int n = 0; n < starts && samples_.count.left(); ++n) {
         const double turned = 2.0 * std::numbers::pi * n / starts;
         const double beside_m = std::max(60e-6, (n % 2 == 0 ? near_by : far_by) * length);
         const vec3 start = w.z_w + 0.1 * length * along + beside_m * (std::cos(turned) * u + std::sin(turned) * v);
@@ -199,6 +209,11 @@ class way_finder {
         const vec3 z = descend(y, start, descent_, met_, false, useful_m, {}, samples_);
         if (glm::length(z - w.z_w) > 10e-6 && add(settle_from(springs_.each, y, {z, w.turn_w}), y, least_j)) any = true;
       }
+    }
+    samples_.count.most = hard;
+    if (samples_.count.cut) {
+      samples_.count.cut = false;
+      forget_patches();  // what was being gathered lacks samples
     }
     return any;
   }
@@ -272,6 +287,10 @@ class way_finder {
     const way_out out = settle({k_n_per_m, y, turn_stiffness()}, x, bed_, patch, samples_);
     hit_.marks |= patch.crowded;
     return out;
+  }
+
+  void forget_patches() noexcept {
+    for (bed_patch& p : patches_) p.clear();
   }
 
   // One that covers x, or the one that was filled first: a few ways out are settled again and again.

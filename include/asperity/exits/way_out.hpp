@@ -69,6 +69,7 @@ struct settling {
                                     posed_samples& samples) noexcept {
   constexpr int most_steps = 60, most_dampings = 40;
   constexpr double longest_step_m = 2e-4;
+  constexpr double rounded_m = 1e-16;  // places in a body of a decimetre are no finer
   // Turns count as the way that they move a point an arm away.
   const double k = by.k_n_per_m, arm_m = std::sqrt(std::max(1e-12, by.turn_n_m_per_rad / k));
   way_out out;
@@ -110,10 +111,10 @@ struct settling {
       const motion next(x.shift_w + dx.linear, x.turn_w + dx.angular / arm_m);
       const bed_sum bed = patch.at(next, by.turn_n_m_per_rad, rule, samples);
       const double now_j = cost(next, bed);
-      // Near rest the cost no longer tells two places apart; the residual does.
+      // Near rest the cost no longer tells two places apart; the residual does. Under a light touch that is soon.
       const vec6 now_r = residual(next, bed);
       const double now_left = std::sqrt(dot(now_r, now_r));
-      if (now_j < cost_j * (1.0 - 1e-14) || (now_j <= cost_j * (1.0 + 1e-13) && now_left < left)) {
+      if (now_j < cost_j * (1.0 - 1e-14) || (now_j <= cost_j * (1.0 + 1e-13) + rounded_m * scale && now_left < left)) {
         moved = true;
         x = next;
         out.bed = bed;
