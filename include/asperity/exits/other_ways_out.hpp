@@ -118,7 +118,6 @@ class other_ways_out {
               found_places& out) noexcept {
     own_ = met_;
     const vec3 z = descend(in.y_w, from, rule_, own_, false, in.useful_m, {out.data(), out.size()}, samples);
-    if (glm::length(z - in.y_w) <= in.useful_m) add(z, known, out);
     fixed_vector<mark, 4> decide;
     for (mark m : own_) {
       m.depth_m = samples.depth(m, z);
@@ -129,7 +128,12 @@ class other_ways_out {
                                         [&](const mark& o) { return o.sample == m.sample && o.meeting == m.meeting; });
       if (!is_known) remember(m, in, samples);
     }
-    static_cast<void>(leads_to_.push_back(relax(in.y_w, z, seen(), rule_, {}, 0.0, samples)));
+    const vec3 led = relax(in.y_w, z, seen(), rule_, {}, 0.0, samples);
+    static_cast<void>(leads_to_.push_back(led));
+    // A descent ends where its last planes make the way too long; from there the witnesses may lead to a shorter one,
+    // and no other ray would follow them to it again.
+    const bool is_short = glm::length(z - in.y_w) <= in.useful_m;
+    if (is_short || glm::length(led - in.y_w) <= in.useful_m) add(is_short ? z : led, known, out);
   }
 
   [[nodiscard]] bool leads_to_known(const vec3& z) const noexcept {
