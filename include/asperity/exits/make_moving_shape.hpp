@@ -46,6 +46,7 @@ class shape_bricks {
   static constexpr std::size_t own = cells * finer;  // nodes along a brick that no other brick has
   static constexpr std::size_t with_rim = along + 2;
   using own_nodes = std::array<float, own * own * own>;
+  using rim_nodes = std::array<float, with_rim * with_rim * with_rim>;
 
   template <class Visit>
   void for_each_place(Visit&& visit) const {
@@ -121,36 +122,54 @@ class shape_bricks {
     return false;
   }
 
-  // What moves at a node that lies `n` from the first of a brick, -2 to along - 1.
-  [[nodiscard]] float moves_at(const std::array<std::size_t, 3>& brick,
-                               const std::array<std::ptrdiff_t, 3>& n) const noexcept {
-    std::array<std::size_t, 3> at{}, in{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::ptrdiff_t node = static_cast<std::ptrdiff_t>(brick[k] * own) + n[k];
-      if (node < 0) return 0.0F;
-      at[k] = static_cast<std::size_t>(node) / own;
-      in[k] = static_cast<std::size_t>(node) % own;
-      if (at[k] >= bricks_along_[k]) return 0.0F;
+  // Where a node along one axis was measured: in which brick, and which of its own nodes it is.
+  struct measured_node {
+    std::size_t brick = 0, in = 0;
+    bool any = false;  // false: beyond the grid, where nothing moves
+  };
+  using measured_row = std::array<measured_node, with_rim>;
+
+  // The nodes along an axis of a brick, from two before its first on.
+  [[nodiscard]] measured_row row_of(std::size_t axis, std::size_t brick) const noexcept {
+    measured_row out;
+    for (std::size_t n = 0; n < with_rim; ++n) {
+      if (brick * own + n < 2) continue;
+      const std::size_t node = brick * own + n - 2;
+      out[n] = {node / own, node % own, node / own < bricks_along_[axis]};
     }
-    const std::uint32_t i = measured_[place(at[0], at[1], at[2])];
-    return i == 0 ? 0.0F : moves_[i - 1][(in[2] * own + in[1]) * own + in[0]];
+    return out;
+  }
+
+  // What moves at the nodes of a brick and its rim. False where nothing does.
+  [[nodiscard]] bool moves_about(std::size_t x, std::size_t y, std::size_t z, rim_nodes& v) const noexcept {
+    const measured_row along_x = row_of(0, x), along_y = row_of(1, y), along_z = row_of(2, z);
+    bool any = false;
+    std::size_t n = 0;
+    for (const measured_node& k : along_z) {
+      for (const measured_node& j : along_y) {
+        for (const measured_node& i : along_x) {
+          float& to = v[n++];
+          to = 0.0F;
+          if (!(k.any && j.any && i.any)) continue;
+          const std::uint32_t at = measured_[place(i.brick, j.brick, k.brick)];
+          if (at == 0) continue;
+          to = moves_[at - 1][(k.in * own + j.in) * own + i.in];
+          any = any || to != 0.0F;
+        }
+      }
+    }
+    return any;
   }
 
   // Coefficients for which the spline follows the values up to fourth differences: less a sixth of the second ones
   // along each axis. False where all are zero.
   [[nodiscard]] bool add_moving(std::size_t x, std::size_t y, std::size_t z, moving_shape::brick& out) const {
-    std::vector<float> v(with_rim * with_rim * with_rim), before;
-    std::size_t n = 0;
-    for (std::ptrdiff_t k = -2; k < static_cast<std::ptrdiff_t>(along); ++k) {
-      for (std::ptrdiff_t j = -2; j < static_cast<std::ptrdiff_t>(along); ++j) {
-        for (std::ptrdiff_t i = -2; i < static_cast<std::ptrdiff_t>(along); ++i)
-          v[n++] = moves_at({x, y, z}, {i, j, k});
-      }
-    }
+    rim_nodes v{}, before{};
+    if (!moves_about(x, y, z, v)) return false;
     std::size_t stride = 1;
     for (int axis = 0; axis < 3; ++axis, stride *= with_rim) {
       before = v;
-      for (n = 0; n < v.size(); ++n) {
+      for (std::size_t n = 0; n < v.size(); ++n) {
         const std::size_t i = n / stride % with_rim;
         if (i == 0 || i + 1 == with_rim) continue;
         v[n] -= (before[n - stride] - 2.0F * before[n] + before[n + stride]) / 6.0F;
