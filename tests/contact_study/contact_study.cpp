@@ -166,7 +166,7 @@ int main(int argc, char** argv) {
   if (results.empty()) return 0;
 
   const std::string broken = broken_limits(results);
-  std::printf("\n%s", broken.empty() ? "The shared formulation keeps its limits everywhere.\n"
-                                     : ("over the limits of the shared formulation:\n" + broken).c_str());
+  std::printf("\n%s", broken.empty() ? "The default keeps its limits everywhere.\n"
+                                     : ("over the limits of the default:\n" + broken).c_str());
   return broken.empty() ? 0 : 1;
 }

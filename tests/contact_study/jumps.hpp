@@ -10,9 +10,9 @@
 
 namespace asperity::contact_study {
 
-/// What the shared formulation keeps to, and the paper's does not.
+/// What the default keeps to, and the paper's does not.
 inline constexpr double ratio_limit = 2.0;
-inline constexpr double loop_limit = 1e-4;
+inline constexpr double loop_limit = 3e-5;
 
 /// What a probe feels somewhere.
 struct felt {
@@ -87,19 +87,21 @@ struct jumps {
   /// Measured where the two above differ by more than ratio_limit: was it a jump, or a change too quick for 1 kHz?
   std::optional<jump> at_100khz;
 
-  [[nodiscard]] double force_ratio() const noexcept { return ratio(at_10khz.force, at_1khz.force); }
-  [[nodiscard]] double torque_ratio() const noexcept { return ratio(at_10khz.torque, at_1khz.torque); }
+  [[nodiscard]] double force_ratio() const noexcept { return ratio(at_10khz.force, at_1khz.force, 1e4); }
+  [[nodiscard]] double torque_ratio() const noexcept { return ratio(at_10khz.torque, at_1khz.torque, 1e4); }
   [[nodiscard]] bool over_limit() const noexcept { return std::max(force_ratio(), torque_ratio()) > ratio_limit; }
   /// Over the limit, and ten times shorter ticks still do not resolve the change. A true jump grows tenfold again.
   [[nodiscard]] bool discontinuous() const noexcept {
-    return over_limit() && (!at_100khz || ratio(at_100khz->force, at_10khz.force) > ratio_limit ||
-                            ratio(at_100khz->torque, at_10khz.torque) > ratio_limit);
+    return over_limit() && (!at_100khz || ratio(at_100khz->force, at_10khz.force, 1e5) > ratio_limit ||
+                            ratio(at_100khz->torque, at_10khz.torque, 1e5) > ratio_limit);
   }
 
  private:
-  // A thousandth of what one spring explains is where a step's difference is the rounding of two forces.
-  [[nodiscard]] static double ratio(double quicker, double slower) noexcept {
-    return std::max(quicker, 1e-3) / std::max(slower, 1e-3);
+  // A step of 0.1 mN, a thousandth of what a spring of 2 N/mm explains at 1 kHz, counts as none at every rate: no hand
+  // feels it, and a search that ends within its tolerance makes steps of that size.
+  [[nodiscard]] static double ratio(double quicker, double slower, double quicker_hz) noexcept {
+    const double none = 1e-3 * quicker_hz / 1e3;
+    return std::max(quicker, none) / std::max(slower, none);
   }
 };
 

@@ -68,8 +68,7 @@ result<void> draw_traces(const std::vector<trace>& traces, const std::filesystem
   page.x_label = "way, mm";
   page.x = traces.front().way_mm;
   for (const trace& t : traces) {
-    page.panels.push_back(
-        {"|F|, N", {{t.pair + ": shared potential", t.shared_n}, {"the paper's clusters", t.paper_n}}});
+    page.panels.push_back({"|F|, N", {{t.pair + ": the default", t.shared_n}, {"the paper's clusters", t.paper_n}}});
   }
   return save(page, file);
 }
@@ -93,7 +92,7 @@ result<void> draw_spectra(const std::filesystem::path& file) {
   page.panels.resize(2);
   page.panels[0].y_label = page.panels[1].y_label = "log10(amplitude / N)";
   const std::vector<double> exact = decades(exact_on_slide(k));
-  page.panels[0].lines = {{"shared potential", decades(felt_on_slide(feel_with(renderers->shared())))},
+  page.panels[0].lines = {{"the default", decades(felt_on_slide(feel_with(renderers->shared())))},
                           {"spring on the exact depth", exact}};
   page.panels[1].lines = {{"the paper's clusters", decades(felt_on_slide(feel_with(renderers->paper())))},
                           {"spring on the exact depth", exact}};

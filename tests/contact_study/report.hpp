@@ -14,7 +14,7 @@ namespace asperity::contact_study {
 /// The same as a Markdown table.
 [[nodiscard]] std::string markdown_table(const std::vector<pair_result>& pairs);
 
-/// One line per motion of the shared formulation that is over a limit: pair, pose, motion, figures.
+/// One line per motion of the default that is over a limit: pair, pose, motion, figures.
 [[nodiscard]] std::string broken_limits(const std::vector<pair_result>& pairs);
 
 }  // namespace asperity::contact_study

@@ -1,4 +1,4 @@
-// The study of one pair of bodies: the same motions felt by the shared formulation and by the paper's.
+// The study of one pair of bodies: the same motions felt by the default and by the paper's.
 #pragma once
 
 #include <algorithm>

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "contact_study/jumps.hpp"
@@ -22,7 +23,7 @@ struct uniform_slide {
   static constexpr double speed_m_per_s = 0.05, rate_hz = 8192.0;
   static constexpr std::size_t ticks = 2048;
   static constexpr double box_half_m = 0.006, plate_half_m = 0.025, thickness_m = 0.005;
-  static constexpr double yaw_rad = 0.3, pressed_m = 4e-4;
+  static constexpr double yaw_rad = 0.3, pressed_m = 4e-4, crown_m = 1.2e-3;
 
   /// Heights over the two faces that meet, each in its own body's frame. The crown bends more than both textures
   /// together: there is one deepest place at a time, and it moves smoothly. Nothing else would show a lattice: a true
@@ -31,9 +32,10 @@ struct uniform_slide {
     return 3e-5 * std::sin(2.0 * std::numbers::pi * x / 6e-3) * std::cos(2.0 * std::numbers::pi * y / 13e-3);
   }
   [[nodiscard]] static double box_height_m(double x, double y) noexcept {
-    const double crown = (x * x + y * y) / (box_half_m * box_half_m);
-    return 1e-5 * std::sin(2.0 * std::numbers::pi * x / 5e-3 + 0.4) * std::sin(2.0 * std::numbers::pi * y / 7e-3) -
-           1.2e-3 * crown;
+    // Nothing at the rim: the crown meets the box's sides, and the surface is closed.
+    const double across = 1.0 - x * x / (box_half_m * box_half_m), along = 1.0 - y * y / (box_half_m * box_half_m);
+    return 1e-5 * std::sin(2.0 * std::numbers::pi * x / 5e-3 + 0.4) * std::sin(2.0 * std::numbers::pi * y / 7e-3) +
+           crown_m * across * along;
   }
 
   /// @param box_texture, plate_texture texels per side: they set the lattices that samples lie on
@@ -42,15 +44,16 @@ struct uniform_slide {
     // Each body is rough on the face that meets the other one only.
     const auto box = [](const vec3& p, const vec3& n) { return n.z < -0.5 ? box_height_m(p.x, p.y) : 0.0; };
     const auto plate = [](const vec3& p, const vec3& n) { return n.z > 0.5 ? plate_height_m(p.x, p.y) : 0.0; };
-    return {std::make_shared<const textured_model>(
-                make_textured_box({box_half_m, box_half_m, thickness_m}, box_texture, box)),
+    textured_model crowned = make_textured_box({box_half_m, box_half_m, thickness_m}, box_texture, box);
+    crowned.report.max_displacement_m = crown_m + 1e-5;  // how far the paper's finder looks
+    return {std::make_shared<const textured_model>(std::move(crowned)),
             {std::make_shared<const textured_model>(
                 make_textured_box({plate_half_m, plate_half_m, thickness_m}, plate_texture, plate))}};
   }
 
   [[nodiscard]] static pose at(std::size_t i) noexcept {
     const double way_m = speed_m_per_s / rate_hz * static_cast<double>(i);
-    return {exp_rotation({0.0, 0.0, yaw_rad}), {way_m - 0.0125, 1.3e-3, 2.0 * thickness_m - pressed_m}};
+    return {exp_rotation({0.0, 0.0, yaw_rad}), {way_m - 0.0125, 1.3e-3, 2.0 * thickness_m + crown_m - pressed_m}};
   }
 
   /// Where the surfaces are deepest in each other, by brute force: a dense grid, then ever smaller steps about its best

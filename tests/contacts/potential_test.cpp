@@ -48,11 +48,12 @@ TEST(Potential, WrenchIsMinusTheGradientOfTheEnergy) {
     }
     std::printf("%-14s gradient against differences of the energy: %.1e (%zu poses)\n", s.name.c_str(), worst, loaded);
     EXPECT_GE(loaded, 3U);
-    EXPECT_LE(worst, 1e-4);
+    EXPECT_LE(worst, 1e-6);
   }
 }
 
-// A hand that trembles by 0.1 um and 10 urad on a face feels that much through the spring and no more.
+// A hand that trembles by 0.1 um and 10 urad on a face feels that much through the spring and no more. A hard face that
+// lies flat stands up to a turn: by 10 N m per rad here.
 TEST(Potential, NoiseOfThePoseIsNotAmplified) {
   const contact_scene s = slide();
   built_renderer r = make_scene_renderer(s, scene_settings());
@@ -77,7 +78,7 @@ TEST(Potential, NoiseOfThePoseIsNotAmplified) {
   std::printf("rest: F_z varies by %.2e N (k x noise %.1e N), T_y by %.2e N m\n", force_deviation,
               stiffness_n_per_m * shift_m, torque_deviation);
   EXPECT_LE(force_deviation, 1.5 * stiffness_n_per_m * shift_m);
-  EXPECT_LE(torque_deviation, 0.05 * mm);
+  EXPECT_LE(torque_deviation, 15.0 * turn);
   EXPECT_GT(force_deviation, 0.5 * stiffness_n_per_m * shift_m);
 }
 

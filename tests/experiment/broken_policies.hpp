@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -163,44 +162,7 @@ class paper_depth {
 
 static_assert(depth_backend<paper_depth>);
 
-/// The depth of the shared formulation, broken.
-class shared_depth {
- public:
-  using policy_tag = depth_tag;
-  using found_type = near_cells;
-  using reading_type = cell_reading;
-
-  shared_depth(cell_depth whole, const asperity::scene& s, mutation how)
-      : whole_(std::move(whole)), scene_(s), how_(how) {}
-
-  [[nodiscard]] status measure(const scene_pose& at, const near_cells& near,
-                               std::span<cell_reading> out) const noexcept {
-    const status s = whole_.measure(at, near, out);
-    const vec3 centre_w = centre_of_mass_w(scene_, at.T_wa);
-    for (std::size_t i = 0; i < near.size(); ++i) {
-      cell_reading& r = out[i];
-      if (r.samples == 0) continue;
-      for (vec6* slope : {&r.mass_slope, &r.moment_slope, &r.overlap_slope}) {
-        *slope = spoilt(how_, *slope, r.centre_w - centre_w, r.n_ab_w);
-      }
-      if (how_ == mutation::no_curvature) {
-        r.slope_sum = {};
-        r.slope_product = {};
-      }
-    }
-    return s;
-  }
-
- private:
-  cell_depth whole_;
-  asperity::scene scene_;
-  mutation how_;
-};
-
-static_assert(depth_backend<shared_depth>);
-
 using broken_paper_renderer = basic_renderer<convex_piece_finder, paper_depth, gradient_penalty>;
-using broken_shared_renderer = basic_renderer<cell_finder, shared_depth, shared_potential>;
 
 [[nodiscard]] inline result<broken_paper_renderer> make_paper(scene bodies, const depth_settings& settings,
                                                               mutation how) {
@@ -211,18 +173,6 @@ using broken_shared_renderer = basic_renderer<cell_finder, shared_depth, shared_
   paper_depth depth(bodies, settings, how);
   return broken_paper_renderer(std::move(bodies), std::move(finder), std::move(depth), gradient_penalty(s.force),
                                s.limits);
-}
-
-[[nodiscard]] inline result<broken_shared_renderer> make_shared(scene bodies, mutation how) {
-  const renderer_settings s;
-  result<cell_scene> cut = make_cell_scene(bodies, s.cells);
-  if (!cut) return cut.error();
-  const auto cells = std::make_shared<const cell_scene>(std::move(cut).value());
-  shared_settings shared = s.shared;
-  shared.tau_m = detail::shared_tau_m(shared, bodies, *cells);
-  shared_depth depth(cell_depth(cells, bodies, shared), bodies, how);
-  return broken_shared_renderer(bodies, cell_finder(cells, cell_depth::reach_m(shared), shared.facing_none),
-                                std::move(depth), shared_potential(shared, s.limits.readings()), s.limits);
 }
 
 }  // namespace broken

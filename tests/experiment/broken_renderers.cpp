@@ -1,4 +1,4 @@
-// The two kinds of renderers with broken policies, compiled as far optimised as those of the command.
+// The renderer with broken policies, compiled as far optimised as those of the command.
 #include "broken_renderers.hpp"
 
 #include <utility>
@@ -9,11 +9,6 @@ namespace broken {
 
 result<command::chosen_renderer> make_renderer(scene bodies, const experiment::variant& kind, mutation how) {
   if (const result<void> ok = command::check(kind.options); !ok) return ok.error();
-  if (command::formulation_name(kind.options) == "shared") {
-    result<broken_shared_renderer> made = make_shared(std::move(bodies), how);
-    if (!made) return made.error();
-    return command::chosen_renderer(std::move(made).value());
-  }
   result<broken_paper_renderer> made = make_paper(std::move(bodies), command::grid_settings(kind.options), how);
   if (!made) return made.error();
   return command::chosen_renderer(std::move(made).value());

@@ -6,7 +6,7 @@
 
 namespace broken {
 
-/// What a variant asks for, on the CPU, with the mutation; none is whole.
+/// What a variant of the paper's asks for, on the CPU, with the mutation; none is whole.
 [[nodiscard]] asperity::result<asperity::command::chosen_renderer> make_renderer(
     asperity::scene bodies, const asperity::experiment::variant& kind, mutation how);
 

@@ -79,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(obvious, mutations_are_noticed, testing::ValuesIn(watch
 
 // Otherwise what a statement notices might be how the broken policies are put together.
 TEST(mutation_none, gives_the_bits_of_the_library) {
-  workbench bench = bench_with(mutation::none, {});
+  workbench bench =
+      bench_with(mutation::none, {asperity::experiment::paper_soft(), asperity::experiment::paper_central()});
   const auto block = bench.models().benchmark(asperity::models::benchmark::block);
   const auto gear = bench.models().benchmark(asperity::models::benchmark::gear);
   ASSERT_TRUE(block && gear);

@@ -197,13 +197,14 @@ TEST_P(query_document, is_the_contract) {
     expect_numbers(c["gradient"], 6);
     EXPECT_TRUE(c["flags"].is_array());
     EXPECT_TRUE(c["samples"].is_number_unsigned());
-    // The gradient's component along n is 1 exactly where nothing fades. With one potential, samples near the edge do,
-    // and of few samples they are more: 0.972 with this small texture, 0.997 with one of 256 texels a side.
+    // The gradient's component along n is 1 exactly.
     double along = 0.0;
     for (std::size_t i = 0; i < 3; ++i) along += c["gradient"][i].get<double>() * c["n_ab"][i].get<double>();
-    EXPECT_NEAR(along, 1.0, std::string(GetParam()) == "shared" ? 0.03 : 1e-9);
+    EXPECT_NEAR(along, 1.0, 1e-9);
   }
-  EXPECT_NEAR(d["contacts"][0]["n_ab"][2], -1.0, 1e-6);  // from the probe above to the body below
+  // From the probe above to the body below. The least motion leans towards a flank of the ridges, by 0.17 rad with this
+  // small texture.
+  EXPECT_NEAR(d["contacts"][0]["n_ab"][2], -1.0, std::string(GetParam()) == "shared" ? 0.03 : 1e-6);
   EXPECT_GT(d["contacts"][0]["depth"], 2e-4 - 1e-6);
   EXPECT_LT(d["contacts"][0]["depth"], 1e-3);  // the small texture is coarse beside the ridges
   EXPECT_GT(d["force"][2], 0.0);               // and the probe is pushed up

@@ -135,7 +135,7 @@ TEST_F(replay, ends_where_the_device_was_disarmed) {
 }
 
 TEST_F(replay, ends_as_an_interrupted_session_did) {
-  const arguments away{"--probe-pose", "0 0 0.5 0 0 0 1", "--contacts", "shared"};
+  const arguments away{"--probe-pose", "0 0 0.5 0 0 0 1", "--contacts", "paper"};
   process_options options;
   options.interrupt_after_s = 0.4;
   arguments first =

@@ -84,8 +84,7 @@ TEST_F(session, recording_is_a_table_that_ends_with_no_wrench) {
 TEST_F(session, interrupted_on_the_real_clock) {
   process_options options;
   options.interrupt_after_s = 1.0;
-  const outcome stopped = run(
-      session_to("session.csv", {"--seconds", "600", "--clock", "real", "--json", "--contacts", "shared"}), options);
+  const outcome stopped = run(session_to("session.csv", {"--seconds", "600", "--clock", "real", "--json"}), options);
   EXPECT_EQ(stopped.exit_status, 130);
   EXPECT_NE(stopped.err.find("\nasperity: interrupted by SIGINT after "), std::string::npos) << stopped.err;
   const json document = json::parse(stopped.out, nullptr, false);
@@ -101,7 +100,7 @@ TEST_F(session, interrupted_on_the_real_clock) {
 TEST_F(session, interrupted_on_the_virtual_clock) {
   process_options options;
   options.interrupt_after_s = 0.5;
-  const outcome stopped = run(session_to("session.csv", {"--seconds", "80000", "--contacts", "shared"}), options);
+  const outcome stopped = run(session_to("session.csv", {"--seconds", "80000", "--contacts", "paper"}), options);
   EXPECT_EQ(stopped.exit_status, 130);
   EXPECT_EQ(files(), std::set<std::string>{"session.csv"});
   EXPECT_GT(table("session.csv").size(), 1U);

@@ -86,13 +86,22 @@ std::optional<std::string> complaint(const result<textured_model>& loaded) {
   const auto model = std::make_shared<const textured_model>(*loaded);
   if (auto bad = complaint_of_tick(test_support::build_paper_renderer({model, {model}}, small_settings()), *model))
     return bad;
-  // Cutting in cells takes longer than all the rest; one model in 64, the first among them, is enough of it.
+  // Making fields takes longer than all the rest; one model in 64, the first among them, is enough of it.
   static std::uint64_t models = 0;
   if (models++ % 64 != 0) return std::nullopt;
-  const near_limits few{.cells = 64, .tiles = 4096, .edges = 64};
-  auto shared = test_support::build_renderer({model, {model}}, {.limits = few});
-  // A relief map that would be too large is refused, with its reason.
-  if (!shared && shared.error().code == error_code::invalid_argument) return complaint(shared.error());
+  renderer_settings few;
+  few.bodies.field.pitch_m = model->box.diagonal() / 40.0;
+  few.bodies.field.relief_bytes = 4'000'000;
+  few.limits.leaves = 256;
+  few.force.most_readings = 4096;
+  few.force.most_samples = 256;
+  auto shared = test_support::build_renderer({model, {model}}, few);
+  // A body without an inside, and a field that would be too large, are refused with their reason.
+  if (!shared) {
+    for (const error_code reason : {error_code::invalid_argument, error_code::bad_mesh, error_code::limit_exceeded}) {
+      if (shared.error().code == reason) return complaint(shared.error());
+    }
+  }
   return complaint_of_tick(std::move(shared), *model);
 }
 

@@ -124,56 +124,54 @@ std::size_t counts_of_a_shared() {
   return bytes_on_loan() - before - sizeof(T);
 }
 
-class SharedRendererMemory : public ::testing::Test {
+class DefaultRendererMemory : public ::testing::Test {
  protected:
-  SharedRendererMemory() {
-    settings_.cells.pitch_m = 5e-4;
+  DefaultRendererMemory() {
     const std::size_t before = bytes_on_loan();
-    auto made = make_renderer({model_, {model_, other_, model_, other_}}, settings_);
+    auto made = make_renderer({model_, {model_, other_, model_, other_}});
     EXPECT_TRUE(made);
     if (made) feel_.emplace(std::move(made).value());
     asked_ = bytes_on_loan() - before;
   }
 
-  [[nodiscard]] const cell_scene& cells() { return feel_->depth().bodies(); }
+  /// Of what the policies share: two scenes, and of either two bodies.
+  [[nodiscard]] static std::size_t counts() { return 6 * counts_of_a_shared<field_scene>(); }
+  [[nodiscard]] const field_scene& fields() { return feel_->depth().bodies(); }
 
-  renderer_settings settings_;
   model_ptr model_ = std::make_shared<const textured_model>(make_model());
   model_ptr other_ = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
   std::optional<renderer> feel_;
   std::size_t asked_ = 0;
 };
 
-TEST_F(SharedRendererMemory, IsWhatItHasAskedFor) {
-  const std::size_t counts = counts_of_a_shared<cell_scene>() + 2 * counts_of_a_shared<surface_cells>();
-  EXPECT_EQ(feel_->memory_bytes() + counts, sizeof(renderer) + asked_);
+TEST_F(DefaultRendererMemory, IsWhatItHasAskedFor) {
+  EXPECT_EQ(feel_->memory_bytes() + counts(), sizeof(renderer) + asked_);
   EXPECT_GT(asked_, std::size_t{1} << 20);
 }
 
-TEST_F(SharedRendererMemory, CountsSharedCellsOnce) {
+TEST_F(DefaultRendererMemory, CountsSharedBodiesOnce) {
   // Five bodies, two models: the probe's is also a fixed body, and either appears twice.
-  EXPECT_EQ(cells().fixed[0], cells().probe);
-  EXPECT_EQ(cells().fixed[2], cells().probe);
-  EXPECT_EQ(cells().fixed[1], cells().fixed[3]);
-  EXPECT_EQ(cells().heap_bytes(), heap_bytes(cells().fixed) + 2 * sizeof(surface_cells) + cells().probe->heap_bytes() +
-                                      cells().fixed[1]->heap_bytes());
+  EXPECT_EQ(fields().fixed[0], fields().probe);
+  EXPECT_EQ(fields().fixed[2], fields().probe);
+  EXPECT_EQ(fields().fixed[1], fields().fixed[3]);
+  EXPECT_EQ(fields().heap_bytes(), heap_bytes(fields().fixed) + 2 * sizeof(field_body) + fields().probe->heap_bytes() +
+                                       fields().fixed[1]->heap_bytes());
   // Finder and depth backend share them: a finder alone reports none.
-  auto one = make_renderer({model_, {other_}}, settings_);
-  ASSERT_TRUE(one);
-  const std::size_t more_bodies = heap_bytes(feel_->scene().fixed) - heap_bytes(one.value().scene().fixed) +
-                                  heap_bytes(cells().fixed) - heap_bytes(one.value().depth().bodies().fixed);
-  EXPECT_EQ(feel_->memory_bytes() - one.value().memory_bytes(), more_bodies);
+  const std::size_t of_depth = feel_->depth().heap_bytes();
+  EXPECT_GT(of_depth, fields().heap_bytes());
+  EXPECT_LT(of_depth, 2 * fields().heap_bytes());
 }
 
-TEST_F(SharedRendererMemory, RenderersOfTheSameBodiesCanShareTheirCells) {
+TEST_F(DefaultRendererMemory, RenderersOfTheSameBodiesCanShareThem) {
   const scene bodies{model_, {other_}};
-  auto cut = make_cell_scene(bodies, settings_.cells);
-  ASSERT_TRUE(cut);
-  const auto shared = std::make_shared<const cell_scene>(std::move(cut).value());
-  renderer_settings stiffer = settings_;
-  stiffer.shared.stiffness_n_per_m *= 2.0;
-  auto one = make_renderer(bodies, shared, settings_), two = make_renderer(bodies, shared, stiffer);
-  auto own = make_renderer(bodies, settings_);
+  auto made = make_field_scene(bodies);
+  ASSERT_TRUE(made);
+  const auto shared = std::make_shared<const field_scene>(std::move(made).value());
+  const auto ways_of = std::make_shared<const exits::exit_scene>(*shared);
+  renderer_settings stiffer;
+  stiffer.force.stiffness_n_per_m *= 2.0;
+  auto one = make_renderer(bodies, shared, ways_of), two = make_renderer(bodies, shared, ways_of, stiffer);
+  auto own = make_renderer(bodies);
   ASSERT_TRUE(one && two && own);
   EXPECT_EQ(&one.value().depth().bodies(), shared.get());
   EXPECT_EQ(&two.value().depth().bodies(), shared.get());
@@ -187,12 +185,15 @@ TEST_F(SharedRendererMemory, RenderersOfTheSameBodiesCanShareTheirCells) {
   EXPECT_EQ(by_one.force.on_probe_w.force, by_own.force.on_probe_w.force);
   EXPECT_GT(by_two.force.on_probe_w.force.z, by_one.force.on_probe_w.force.z);
 
-  EXPECT_FALSE(make_renderer({model_, {other_, other_}}, shared, settings_));
-  EXPECT_FALSE(make_renderer(bodies, std::make_shared<const cell_scene>(), settings_));
-  EXPECT_FALSE(make_renderer(bodies, nullptr, settings_));
+  EXPECT_FALSE(make_renderer({model_, {other_, other_}}, shared, ways_of));
+  EXPECT_FALSE(make_renderer(bodies, std::make_shared<const field_scene>()));
+  EXPECT_FALSE(make_renderer(bodies, nullptr));
+  EXPECT_FALSE(make_renderer(bodies, shared, nullptr));
+  // What was made for the search of other bodies.
+  EXPECT_FALSE(make_renderer(bodies, shared, std::make_shared<const exits::exit_scene>(fields())));
 }
 
-TEST_F(SharedRendererMemory, StaysTheSameInTicks) {
+TEST_F(DefaultRendererMemory, StaysTheSameInTicks) {
   const std::size_t before = feel_->memory_bytes();
   const std::vector<pose> T_wb{
       {}, {}, {{1.0, 0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}}, {{1.0, 0.0, 0.0, 0.0}, {2.0, 0.0, 0.0}}};
@@ -205,12 +206,11 @@ TEST_F(SharedRendererMemory, StaysTheSameInTicks) {
 }
 
 // A report that forgets the smallest of the parts is found out: the comparison is to the byte.
-TEST_F(SharedRendererMemory, AForgottenPartWouldShow) {
-  const surface_cells& c = *cells().probe;
-  for (const std::size_t part :
-       {heap_bytes(c.cells), heap_bytes(c.origins), heap_bytes(c.outgoing), heap_bytes(c.edges), heap_bytes(c.tiles),
-        c.edge_tree.heap_bytes(), feel_->force().heap_bytes(), feel_->contacts().heap_bytes()}) {
-    EXPECT_GT(part, counts_of_a_shared<cell_scene>() + 2 * counts_of_a_shared<surface_cells>());
+TEST_F(DefaultRendererMemory, AForgottenPartWouldShow) {
+  const field_body& body = *fields().probe;
+  for (const std::size_t part : {body.field.heap_bytes(), body.samples.heap_bytes(), heap_bytes(fields().fixed),
+                                 feel_->force().heap_bytes(), feel_->contacts().heap_bytes()}) {
+    EXPECT_GT(part, 0U);
   }
 }
 

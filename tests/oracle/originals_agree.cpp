@@ -128,7 +128,7 @@ judged judged_pair::judge(formulation f, const approach& on, press by, double wa
 }
 
 double judged_pair::missing_m(formulation f) const noexcept {
-  return f == formulation::shared ? 2.0 * made_->shared.settings().tau_m : 0.01 * smaller_m_ / grid;
+  return f == formulation::shared ? 2.0 * made_->shared.settings().softness_m : 0.01 * smaller_m_ / grid;
 }
 
 double judged_pair::overlap_m(double way_m) {

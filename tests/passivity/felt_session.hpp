@@ -150,7 +150,7 @@ template <contact_renderer Renderer>
     return run(c, analytic_wall{.stiffness_n_per_m = c.stiffness_n_per_m, .arm_m = 0.006}, {{pose{}}, vec3(0.0)});
   }
   renderer_settings settings;
-  settings.shared.stiffness_n_per_m = c.stiffness_n_per_m;
+  settings.force.stiffness_n_per_m = c.stiffness_n_per_m;
   result<built_renderer> made = build_renderer({boxes.cube, {boxes.plate}}, settings);
   if (!made) return {};
   felt_case raised = c;  // so that the cube's lower face begins where the wall's points do

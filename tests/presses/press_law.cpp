@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "asperity/render/field_renderer.hpp"
-#include "asperity/render/pose_renderer.hpp"
 #include "support/built_renderers.hpp"
 #include "support/fresh_seed.hpp"
 
@@ -32,7 +31,7 @@ result<render_function> render_of(result<Renderer> made) {
 
 result<render_function> render_by_default(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
   renderer_settings settings;
-  settings.shared.stiffness_n_per_m = stiffness_n_per_m;
+  settings.force.stiffness_n_per_m = stiffness_n_per_m;
   return render_of(test_support::build_renderer({probe.model, {fixed.model}}, settings));
 }
 
@@ -48,12 +47,6 @@ result<render_function> render_by_field(const press_body& probe, const press_bod
   field_renderer_settings settings;
   settings.springs.stiffness_n_per_m = stiffness_n_per_m;
   return render_of(make_field_renderer({probe.model, {fixed.model}}, settings));
-}
-
-result<render_function> render_by_pose(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
-  pose_renderer_settings settings;
-  settings.force.stiffness_n_per_m = stiffness_n_per_m;
-  return render_of(make_pose_renderer({probe.model, {fixed.model}}, settings));
 }
 
 press_law law_of(std::string name, decltype(press_law::render) render) {
@@ -79,8 +72,6 @@ press_law paper_renderer_law() { return law_of("paper", render_as_the_paper); }
 
 press_law field_renderer_law() { return {"field", {}, render_by_field}; }
 
-press_law pose_renderer_law() { return law_of("pose", render_by_pose); }
-
 press_law true_exit_law() {
   return {"exit",
           [](const press_body& probe, const press_body& fixed, double k) -> result<step_function> {
@@ -94,7 +85,7 @@ press_law true_exit_law() {
 }
 
 std::vector<press_law> known_laws() {
-  return {default_renderer_law(), paper_renderer_law(), field_renderer_law(), pose_renderer_law(), true_exit_law()};
+  return {default_renderer_law(), paper_renderer_law(), field_renderer_law(), true_exit_law()};
 }
 
 press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,

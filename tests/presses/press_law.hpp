@@ -31,8 +31,6 @@ struct press_law {
 /// "field": the renderer for control loops. In sessions only: it holds the probe by its support planes, and its force
 /// is meant for a probe at the surface.
 [[nodiscard]] press_law field_renderer_law();
-/// "pose": the renderer for poses alone.
-[[nodiscard]] press_law pose_renderer_law();
 /// "exit": the force that the true depth of the originals has, k times the shortest way out that a search finds, along
 /// it. It is right for every pair, and far too slow for a tick.
 [[nodiscard]] press_law true_exit_law();

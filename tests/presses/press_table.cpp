@@ -20,7 +20,7 @@ using namespace asperity::presses;
 constexpr char usage[] =
     "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
     "[--sessions | --rests] [--dump]\n"
-    "  --law NAME    default, paper or pose (renderers), field (the renderer for control loops, with --sessions or\n"
+    "  --law NAME    default or paper (renderers), field (the renderer for control loops, with --sessions or\n"
     "                --rests) or exit (the originals' own true depth, slow, with neither)\n"
     "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
     "  --touches N   presses on each pair (24)\n"

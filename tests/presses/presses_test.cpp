@@ -71,7 +71,7 @@ std::vector<press_pair> balls_on_boxes() {
   return out;
 }
 
-/// Pairs that the renderer for poses alone is held to: round bodies, and walls. Of rods, cones and bodies with sharp
+/// Pairs that the default renderer is held to: round bodies, and walls. Of rods, cones and bodies with sharp
 /// edges some presses give way yet, see docs/explanation/wall-that-holds.md.
 std::vector<press_pair> round_pairs() {
   std::vector<press_pair> out = balls_on_boxes();
@@ -95,7 +95,7 @@ struct held_law {
 std::vector<held_law> held_laws() {
   return {{formula_law(), balls_on_boxes(), std::nullopt, 20, 60, 0.1 * mm},
           {true_exit_law(), press_pairs(), std::nullopt, 2, 60, 1.0 * mm},
-          {pose_renderer_law(), round_pairs(), press_bake::simplified, 1, 6, 0.3 * mm}};
+          {default_renderer_law(), round_pairs(), press_bake::simplified, 1, 6, 0.3 * mm}};
 }
 
 TEST(presses, no_law_is_weak_gives_way_or_pulls) {

@@ -64,7 +64,8 @@ double touch_height_m(std::size_t i) { return all_bodies()[i].touch_height_m; }
 std::unique_ptr<touched_scene> make_textured_scene(std::size_t i, double stiffness_n_per_m) {
   const textured_bodies& bodies = all_bodies()[i];
   renderer_settings settings;
-  settings.shared.stiffness_n_per_m = stiffness_n_per_m;
+  settings.force.stiffness_n_per_m = stiffness_n_per_m;
+  settings.force.most_readings = 20'000;  // thousands of sessions: a tick that takes more says so, and is felt as it is
   result<built_renderer> made = build_renderer({bodies.probe, {bodies.fixed}}, settings);
   if (!made) {
     std::fprintf(stderr, "simulation: %s\n", made.error().message.c_str());

@@ -1,7 +1,7 @@
 // Each policy concept accepts the least that keeps its contract, and rejects what only looks like it.
 
-#include <asperity/collision/near_cells.hpp>
-#include <asperity/depth/cell_reading.hpp>
+#include <asperity/collision/near_samples.hpp>
+#include <asperity/depth/near_plane.hpp>
 #include <asperity/render/renderer.hpp>
 
 namespace {
@@ -136,55 +136,56 @@ static_assert(!makes_a_renderer<finder, depth, force_may_throw>);
 static_assert(noexcept(std::declval<basic_renderer<finder, depth, force>&>().step(std::declval<const scene_pose&>(),
                                                                                   std::declval<tick&>())));
 
-// Policies of the other kind hand on near cells and their readings; the three must agree.
-struct cell_finder_like {
+// Policies of the other kind hand on near samples and their planes; the three must agree.
+struct sample_finder_like {
   using policy_tag = collision_tag;
-  using found_type = near_cells;
-  status find(const scene_pose&, near_cells&) noexcept { return status::ok; }
+  using found_type = near_samples;
+  status find(const scene_pose&, near_samples&) noexcept { return status::ok; }
 };
-struct cell_depth_like {
+struct sample_depth_like {
   using policy_tag = depth_tag;
-  using found_type = near_cells;
-  using reading_type = cell_reading;
-  status measure(const scene_pose&, const near_cells&, std::span<cell_reading>) noexcept { return status::ok; }
+  using found_type = near_samples;
+  using reading_type = near_plane;
+  status measure(const scene_pose&, const near_samples&, std::span<near_plane>) noexcept { return status::ok; }
 };
-struct cell_force_like {
+struct sample_force_like {
   using policy_tag = force_tag;
-  using found_type = near_cells;
-  using reading_type = cell_reading;
-  status accumulate(const near_cells&, std::span<const cell_reading>, contact_force&) const noexcept {
+  using found_type = near_samples;
+  using reading_type = near_plane;
+  status accumulate(const near_samples&, std::span<const near_plane>, contact_force&) const noexcept {
     return status::ok;
   }
   void describe(contact_set&, std::span<penetration>) const noexcept {}
 };
-static_assert(collision_finder<cell_finder_like> && depth_backend<cell_depth_like> && force_model<cell_force_like>);
-static_assert(makes_a_renderer<cell_finder_like, cell_depth_like, cell_force_like>);
-static_assert(!makes_a_renderer<finder, cell_depth_like, cell_force_like>);
-static_assert(!makes_a_renderer<cell_finder_like, depth, cell_force_like>);
-static_assert(!makes_a_renderer<cell_finder_like, cell_depth_like, force>);
-static_assert(!makes_a_renderer<finder, depth, cell_force_like>);
-static_assert(!makes_a_renderer<cell_finder_like, depth, force>);
+static_assert(collision_finder<sample_finder_like> && depth_backend<sample_depth_like> &&
+              force_model<sample_force_like>);
+static_assert(makes_a_renderer<sample_finder_like, sample_depth_like, sample_force_like>);
+static_assert(!makes_a_renderer<finder, sample_depth_like, sample_force_like>);
+static_assert(!makes_a_renderer<sample_finder_like, depth, sample_force_like>);
+static_assert(!makes_a_renderer<sample_finder_like, sample_depth_like, force>);
+static_assert(!makes_a_renderer<finder, depth, sample_force_like>);
+static_assert(!makes_a_renderer<sample_finder_like, depth, force>);
 
 // They agree on what was found, and not on what is read of it.
 struct depth_of_penetrations {
   using policy_tag = depth_tag;
-  using found_type = near_cells;
-  status measure(const scene_pose&, const near_cells&, std::span<penetration>) noexcept { return status::ok; }
+  using found_type = near_samples;
+  status measure(const scene_pose&, const near_samples&, std::span<penetration>) noexcept { return status::ok; }
 };
 static_assert(depth_backend<depth_of_penetrations>);
-static_assert(!makes_a_renderer<cell_finder_like, depth_of_penetrations, cell_force_like>);
+static_assert(!makes_a_renderer<sample_finder_like, depth_of_penetrations, sample_force_like>);
 
 // Saying one thing and taking another is no policy.
 struct finder_of_two_minds {
   using policy_tag = collision_tag;
-  using found_type = near_cells;
+  using found_type = near_samples;
   status find(const scene_pose&, contact_set&) noexcept { return status::ok; }
 };
 struct force_of_two_minds {
   using policy_tag = force_tag;
-  using found_type = near_cells;
-  using reading_type = cell_reading;
-  status accumulate(const near_cells&, std::span<const penetration>, contact_force&) const noexcept {
+  using found_type = near_samples;
+  using reading_type = near_plane;
+  status accumulate(const near_samples&, std::span<const penetration>, contact_force&) const noexcept {
     return status::ok;
   }
 };
@@ -194,16 +195,16 @@ static_assert(!force_model<force_of_two_minds>);
 // Contacts that no finder knows are told by the force model, in a tick.
 struct silent_force {
   using policy_tag = force_tag;
-  using found_type = near_cells;
-  using reading_type = cell_reading;
-  status accumulate(const near_cells&, std::span<const cell_reading>, contact_force&) const noexcept {
+  using found_type = near_samples;
+  using reading_type = near_plane;
+  status accumulate(const near_samples&, std::span<const near_plane>, contact_force&) const noexcept {
     return status::ok;
   }
 };
 struct force_tells_and_may_throw : silent_force {
   void describe(contact_set&, std::span<penetration>) const {}
 };
-static_assert(describes_contacts<cell_force_like>);
+static_assert(describes_contacts<sample_force_like>);
 static_assert(!describes_contacts<silent_force>);
 static_assert(!describes_contacts<force_tells_and_may_throw>);
 

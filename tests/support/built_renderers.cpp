@@ -43,43 +43,43 @@ const contact_set& built<Formulation>::contacts() const noexcept {
 template class built<default_formulation>;
 template class built<papers_formulation>;
 
-const shared_settings& built_renderer::settings() const noexcept { return made_->feel.force().settings(); }
+const least_motion_settings& built_renderer::settings() const noexcept { return made_->feel.force().settings(); }
 double built_renderer::energy_j() const noexcept { return made_->feel.force().energy_j(); }
 
 namespace {
 
-// The cells of the last few scenes: tests feel the same bodies again and again, with one setting changed.
-struct kept_cells {
+// What was made of the last few scenes: tests feel the same bodies again and again, with one setting changed.
+struct kept_bodies {
   asperity::scene bodies;
-  cell_settings settings;
-  std::shared_ptr<const cell_scene> cells;
+  field_body_settings settings;
+  std::shared_ptr<const field_scene> fields;
+  std::shared_ptr<const exits::exit_scene> ways_of;
 };
 constexpr std::size_t scenes_kept = 4;
 
-bool same_bodies(const asperity::scene& a, const asperity::scene& b) {
-  return a.probe == b.probe && a.fixed == b.fixed;
-}
-
-result<std::shared_ptr<const cell_scene>> cells_of(const asperity::scene& bodies, const cell_settings& settings) {
+result<kept_bodies> bodies_of(const asperity::scene& bodies, const field_body_settings& settings) {
   static std::mutex guard;
-  static std::vector<kept_cells> kept;
+  static std::vector<kept_bodies> kept;
   const std::lock_guard lock(guard);
-  for (const kept_cells& k : kept) {
-    if (same_bodies(k.bodies, bodies) && k.settings == settings) return k.cells;
+  for (const kept_bodies& k : kept) {
+    if (k.bodies.probe == bodies.probe && k.bodies.fixed == bodies.fixed && k.settings == settings) return k;
   }
-  result<cell_scene> cut = make_cell_scene(bodies, settings);
-  if (!cut) return cut.error();
+  result<field_scene> made = make_field_scene(bodies, settings);
+  if (!made) return made.error();
+  auto fields = std::make_shared<const field_scene>(std::move(made).value());
+  auto ways_of = std::make_shared<const exits::exit_scene>(*fields);
   if (kept.size() == scenes_kept) kept.erase(kept.begin());
-  kept.push_back({bodies, settings, std::make_shared<const cell_scene>(std::move(cut).value())});
-  return kept.back().cells;
+  kept.push_back({bodies, settings, std::move(fields), std::move(ways_of)});
+  return kept.back();
 }
 
 }  // namespace
 
 result<built_renderer> build_renderer(scene bodies, const renderer_settings& settings) {
-  const auto cells = cells_of(bodies, settings.cells);
-  if (!cells) return cells.error();
-  result<renderer> made = make_renderer(std::move(bodies), *cells, settings);
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
+  const result<kept_bodies> kept = bodies_of(bodies, settings.bodies);
+  if (!kept) return kept.error();
+  result<renderer> made = make_renderer(std::move(bodies), kept->fields, kept->ways_of, settings);
   if (!made) return made.error();
   return built_renderer(std::unique_ptr<default_formulation>(new default_formulation{std::move(made).value()}));
 }

@@ -1,5 +1,5 @@
-// The two renderers of default_renderer.hpp, compiled once for all tests. Their ticks take the compiler longer than any
-// test that feels with them. A test of the templates themselves includes those instead.
+// The two renderers of default_renderer.hpp, compiled once for all tests. Their ticks take the
+// compiler longer than any test that feels with them. A test of the templates themselves includes those instead.
 #pragma once
 
 #include <memory>
@@ -33,15 +33,16 @@ class built_renderer : public built<default_formulation> {
  public:
   using built::built;
 
-  /// With the automatic softness filled in.
-  [[nodiscard]] const shared_settings& settings() const noexcept;
+  /// With what was automatic filled in.
+  [[nodiscard]] const least_motion_settings& settings() const noexcept;
   /// Of the springs in the last tick.
   [[nodiscard]] double energy_j() const noexcept;
 };
 
 using built_paper_renderer = built<papers_formulation>;
 
-/// make_renderer() and make_paper_renderer(). The cells of the last few scenes are kept for those who feel them again.
+/// make_renderer() and make_paper_renderer(). What was made of the last few scenes is kept for those who feel them
+/// again.
 [[nodiscard]] result<built_renderer> build_renderer(scene bodies, const renderer_settings& settings = {});
 [[nodiscard]] result<built_paper_renderer> build_paper_renderer(scene bodies, const paper_settings& settings = {});
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "asperity/render/default_renderer.hpp"
 #include "asperity/render/field_renderer.hpp"
-#include "asperity/render/pose_renderer.hpp"
 #include "truth/made_or_thrown.hpp"
 
 namespace asperity::truth {
@@ -18,11 +18,11 @@ field_renderer planes_of(const scene& bodies, std::shared_ptr<const field_scene>
   settings.reach_m = reach_m;
   return made_or_thrown(make_field_renderer(bodies, std::move(fields), settings));
 }
-pose_renderer force_of(const scene& bodies, std::shared_ptr<const field_scene> fields, const pose_law_settings& with) {
-  pose_renderer_settings settings;
+renderer force_of(const scene& bodies, std::shared_ptr<const field_scene> fields, const pose_law_settings& with) {
+  renderer_settings settings;
   settings.force.softness_m = with.softness_m;
   settings.force.period_s = with.period_s;
-  return made_or_thrown(make_pose_renderer(bodies, std::move(fields), settings));
+  return made_or_thrown(make_renderer(bodies, std::move(fields), settings));
 }
 
 template <class Renderer>
@@ -59,7 +59,7 @@ std::optional<told_plane> plane_law::deepest(const pose& T_wa, const pose& T_wb)
 }
 
 struct pose_law::made {
-  pose_renderer feel;
+  renderer feel;
 };
 
 pose_law::pose_law(const scene& bodies, std::shared_ptr<const field_scene> fields, const pose_law_settings& settings)

@@ -58,12 +58,14 @@ json contact_json(const contact& c, const penetration& p) {
 
 std::string contact_text(std::size_t i, const contact& c, const penetration& p) {
   const vec3& n = c.window.n_ab_w;
+  // Contacts as one potential have no windows.
+  const double size_m = 2.0 * c.window.half_size_m;
+  const std::string window = size_m > 0.0 ? ", window " + length_text(size_m) : "";
   std::string flags;
   for (const json& name : flag_names(p.flags)) flags += ", " + name.get<std::string>();
   const std::string what = p.depth_m > 0.0 ? "overlap " : "gap ";
   return row("contact " + std::to_string(i + 1), what + length_text(std::fabs(p.depth_m)) + " along (" + brief(n.x) +
-                                                     ", " + brief(n.y) + ", " + brief(n.z) + "), window " +
-                                                     length_text(2.0 * c.window.half_size_m) + ", " +
+                                                     ", " + brief(n.y) + ", " + brief(n.z) + ")" + window + ", " +
                                                      std::to_string(p.samples) + " samples" + flags);
 }
 

@@ -59,7 +59,7 @@ bool is_the_gpu_s(error_code code) { return code == error_code::unsupported || c
 }  // namespace
 
 result<chosen_renderer> make_paper_on_gpu(scene bodies, const render_options& options, gpu_depth_maker* make_depth) {
-  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
   const paper_settings settings{.depth = grid_settings(options)};
   result<cpu_depth> cpu = make_cpu_depth(bodies, settings.depth);  // refuses what no backend can use
   if (!cpu) return cpu.error();

@@ -25,8 +25,11 @@ struct render_options {
   std::optional<std::string> gpu;       ///< index of a GPU or part of its name; of backends on a GPU only
   bool fallback = false;                ///< of backends on a GPU only
   bool allow_scale_mismatch = false;
-  /// Of the loop that renders, where there is one: contacts as support planes look as far as it needs.
+  /// Of the loop that renders, where there is one: contacts as support planes look as far as it needs, and contacts as
+  /// one potential are as soft as it can follow.
   double contact_rate_hz = 1000.0;
+  /// Of contacts as one potential, N/m. For experiments: the command line has no option for it.
+  std::optional<double> contact_stiffness_n_per_m;
   /// Of the paper's contacts on grids with central differences, m; 0: the backend's choice. For experiments: the
   /// command line has no option for it.
   double difference_step_m = 0.0;

@@ -41,6 +41,7 @@ std::vector<rival> all_rivals() {
 struct loop_work {
   std::vector<double> share, work_j;  // of the way; done so far
   double turnover_j = 0.0;            // sum of |dW|
+  int cut = 0;                        // poses whose search ended at a limit
   [[nodiscard]] double ratio() const { return std::abs(work_j.back()) / turnover_j; }
 };
 
@@ -55,7 +56,9 @@ result<loop_work> go_round(command::chosen_renderer feel, int steps) {
     T_wa.position.y += 1e-3 * (0.4 + 0.9 * std::cos(t) + 0.2 * std::sin(2.0 * t));
     T_wa.position.z += 1e-3 * (0.25 * std::sin(t + 0.3) - 0.8);
     tick found;
-    if (feel.step({T_wa, T_wb}, found) != status::ok) {
+    const status felt = feel.step({T_wa, T_wb}, found);
+    if (felt == status::capacity_reached) ++out.cut;
+    if (felt != status::ok && felt != status::capacity_reached) {
       return error{error_code::invalid_argument, "loop work: the renderer had no answer at a pose on the way round"};
     }
     const vec3& force = found.force.on_probe_w.force;
@@ -220,6 +223,10 @@ result<findings> run(workbench& bench) {
     if (!work) return work.error();
     out.statements.push_back(at_most(
         "loop_" + kind.name, "work along a closed path over the sum of |dW| (" + kind.says + ")", work->ratio(), 1e-3));
+    if (work->cut > 0) {
+      out.notes.push_back(kind.says + ": at " + std::to_string(work->cut) + " of " +
+                          std::to_string(work->share.size()) + " poses of the closed path a limit ended the search.");
+    }
     row[3] = percent(work->ratio());
     shown.add_loop(kind.says, *work, index);
     if (kind.name == paper_soft().name) {

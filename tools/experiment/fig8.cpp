@@ -89,18 +89,18 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
   const std::string against = "RMS error of the rise against brute force, over the height 2a";
   // Asked for is 1 %. In a brief run the hand turns twice as fast, so that the block goes further from one contact to
   // the next: 1.01 %. A soft maximum counts how much lies deep; with a softness tau it rises tau ln(2 pi 2a / tau)
-  // less, 8.4 % of 2a with the default one, and measured are 7.7 to 8.3 %. The 1 % is asked of it against its own brute
-  // force, below.
-  out.statements.push_back(at_most("rise_" + kind.name, against + (central ? "" : ": a soft maximum misses some") + of,
-                                   rise_error, central ? (brief ? 0.011 : 0.01) : 0.09));
+  // less, 8.4 % of 2a with the paper's; the 1 % is asked of it against its own brute force, below. The least motion
+  // misses 6.5 %.
+  out.statements.push_back(at_most("rise_" + kind.name, against + (central ? "" : ", of which it misses some") + of,
+                                   rise_error,
+                                   central ? (brief ? 0.011 : 0.01) : (depth == depth_kind::way_out ? 0.08 : 0.09)));
   if (depth == depth_kind::soft) {
     out.statements.push_back(at_most("soft_rise_" + kind.name, "the same against brute force with a soft maximum" + of,
                                      rms(all, any, off_its_own) / ridge_height_m, 0.01));
   }
   // Asked for are 5 %. A soft maximum rounds off the crest that the rise ends on: with the paper's contacts the fit is
   // 1.10 of lambda / (2 w), and within 1 % of the same fit to brute force with that soft maximum, of which the 5 % are
-  // asked. One potential levels off at 1.18. Brute force with its softness accounts for 1.08 of that and not for the
-  // rest, so that the 5 % are not kept: its bound is of what was measured.
+  // asked. The bound of the least motion is of what was measured, 1.052.
   const double geometry = saturation_angle_rad();
   const double fitted = fitted_saturation(all, [](const turned_sample& s) { return s.rise_m; });
   const double of_its_own = fitted_saturation(all, [&](const turned_sample& s) { return rise(s.angle_rad); });
@@ -110,7 +110,7 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
                                      fitted / of_its_own, 0.95, 1.05));
   } else {
     out.statements.push_back(between("saturation_" + kind.name, "saturation angle over lambda / (2 w)" + of,
-                                     fitted / geometry, 0.95, central ? 1.05 : 1.2));
+                                     fitted / geometry, 0.95, central ? 1.05 : 1.08));
   }
   out.statements.push_back(at_least("opposes_" + kind.name,
                                     "share of samples from 4 to 90 mrad whose torque opposes the turn" + of,
@@ -127,7 +127,7 @@ void judge(const variant& kind, const samples& all, const rise_by_brute_force& l
   const double step_rad = central ? difference_rad : 0.0025;
   const auto slope_n_m = [&](const turned_sample& s) { return -s.force_n * rise.slope(s.angle_rad, step_rad); };
   const auto slope_error = [&](const turned_sample& s) { return s.torque_n_m - slope_n_m(s); };
-  if (depth != depth_kind::boltzmann) {
+  if (depth != depth_kind::way_out) {
     out.statements.push_back(at_most("slope_" + kind.name,
                                      "RMS error of the torque against F_n times the slope of the rise by brute force " +
                                          std::string(central ? "over the difference step" : "with a soft maximum") +
@@ -225,7 +225,7 @@ result<findings> run(workbench& bench) {
   if (bench.brief()) how = {.reach_rad = 0.13, .speed_rad_per_s = 0.4, .parts = 1.0};  // one way only
   const auto rise_of = [&](depth_kind d) { return rise_by_brute_force(how.reach_rad + 0.03, d); };
   const rise_by_brute_force largest = rise_of(depth_kind::largest);
-  const rise_by_brute_force soft = rise_of(depth_kind::soft), boltzmann = rise_of(depth_kind::boltzmann);
+  const rise_by_brute_force soft = rise_of(depth_kind::soft);
 
   findings out;
   over_time motion;
@@ -236,8 +236,7 @@ result<findings> run(workbench& bench) {
     const result<samples> turned = turn_block(std::move(feel).value(), how);
     if (!turned) return turned.error();
     const depth_kind depth = depth_of(kind.options);
-    const rise_by_brute_force& rise =
-        depth == depth_kind::largest ? largest : (depth == depth_kind::soft ? soft : boltzmann);
+    const rise_by_brute_force& rise = depth == depth_kind::soft ? soft : largest;
     judge(kind, *turned, largest, rise, bench.brief(), out);
     if (!kind.may_be_missing) {  // a GPU's curves would hide those of the CPU, on which they lie
       motion.add(kind, *turned);

@@ -34,7 +34,7 @@ constexpr loop_kind usual_loop{"linear_1000", "1 kHz, linearised", 1'000'000, fa
 constexpr std::array<loop_kind, 8> other_loops{
     {{"held_1000", "1 kHz, held", 1'000'000, true, false, false, 0.25, 0.0},
      {"linear_200", "200 Hz, linearised", 5'000'000, false, false, true, 0.3, 0.0},
-     {"held_200", "200 Hz, held", 5'000'000, true, false, false, 0.0, 0.3},
+     {"held_200", "200 Hz, held", 5'000'000, true, false, false, 0.0, 0.2},
      {"held_100", "100 Hz, held", 10'000'000, true, false, true, 0.0, 0.5},
      {"linear_1000_late", "1 kHz, linearised, late", 1'000'000, false, true, false, 0.25, 0.0},
      {"linear_200_late", "200 Hz, linearised, late", 5'000'000, false, true, false},

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <utility>
 
-#include "asperity/depth/shared_settings.hpp"
 #include "asperity/force/gradient_penalty.hpp"
+#include "asperity/force/least_motion_settings.hpp"
 #include "asperity/hal/simulated/simulated_config.hpp"
 #include "lattice_solid.hpp"
 
@@ -15,7 +15,7 @@ namespace asperity::experiment {
 namespace {
 
 constexpr double usual_stiffness_n_per_m = gradient_penalty_settings{}.stiffness_n_per_m;
-static_assert(usual_stiffness_n_per_m == shared_settings{}.stiffness_n_per_m);
+static_assert(usual_stiffness_n_per_m == least_motion_settings{}.stiffness_n_per_m);
 
 /// Renders with another renderer and changes what it finds.
 class changed_renderer {

@@ -118,21 +118,21 @@ double torque_arm_m(double angle_rad) noexcept {
 }
 
 depth_kind depth_of(const command::render_options& options) {
-  if (command::formulation_name(options) == "shared") return depth_kind::boltzmann;
+  if (command::formulation_name(options) == "shared") return depth_kind::way_out;
   return command::gradient_name(options) == "central" ? depth_kind::largest : depth_kind::soft;
 }
 
 rise_by_brute_force::rise_by_brute_force(double reach_rad, depth_kind kind) {
-  const bool hard = kind == depth_kind::largest;
+  const bool hard = kind != depth_kind::soft;
   // The largest overlap of samples 0.1 mm apart is 0.3 % of the amplitude too small at most; a mean needs fewer.
   const double step_m = hard ? 1e-4 : 2e-4;
-  const double tau_m = (kind == depth_kind::soft ? 0.02 : 0.05) * relief_m();
+  const double tau_m = 0.02 * relief_m();
   const auto last = static_cast<int>(std::ceil(reach_rad / step_rad)) + 1;
   const auto nx = static_cast<int>(std::lround(block_half_m[0] / step_m));
   const auto ny = static_cast<int>(std::lround(block_half_m[1] / step_m));
   for (int k = 0; k <= last; ++k) {
     const double c = std::cos(k * step_rad), s = std::sin(k * step_rad);
-    double largest = 0.0, count = 0.0, sum = 0.0, moment = 0.0;
+    double largest = 0.0, count = 0.0, sum = 0.0;
     // A turn by half a circle about z takes both blocks into themselves: half of the samples will do.
     for (int i = 0; i < nx; ++i) {
       for (int j = -ny; j < ny; ++j) {
@@ -142,13 +142,11 @@ rise_by_brute_force::rise_by_brute_force(double reach_rad, depth_kind kind) {
         const double overlap_m = ridges_at(x, y).top_m - ridges_at(ax, ay).bottom_m;
         largest = std::max(largest, overlap_m);
         if (hard) continue;
-        const double weight = std::exp(overlap_m / tau_m);
         count += 1.0;
-        sum += weight;
-        moment += weight * overlap_m;
+        sum += std::exp(overlap_m / tau_m);
       }
     }
-    rise_m_.push_back(hard ? largest : (kind == depth_kind::soft ? tau_m * std::log(sum / count) : moment / sum));
+    rise_m_.push_back(hard ? largest : tau_m * std::log(sum / count));
   }
 }
 

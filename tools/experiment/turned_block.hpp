@@ -48,16 +48,16 @@ struct turned_sample {
 
 /// Which depth of two surfaces a spring is compressed by.
 enum class depth_kind : std::uint8_t {
-  largest,    ///< the largest overlap
-  soft,       ///< the paper's contacts with the soft maximum: tau ln of the mean of exp(overlap / tau)
-  boltzmann,  ///< the shared formulation: mean overlap with weight exp(overlap / tau)
+  largest,  ///< the largest overlap
+  soft,     ///< the paper's contacts with the soft maximum: tau ln of the mean of exp(overlap / tau)
+  way_out,  ///< the default: the largest overlap as well, over relief that a way out takes from where it began
 };
 /// The one that a renderer of these options goes by.
 [[nodiscard]] depth_kind depth_of(const command::render_options& options);
 
 /// The rise of the upper block under a constant force, by brute force over both surfaces as the formulas of the
 /// full-resolution block give them: no mesh, no texture, no window and nothing else of the library has a part in it.
-/// The softness of the soft kinds is the documented one: 2 and 5 % of the relief.
+/// The softness of the soft kind is the documented one, 2 % of the relief.
 class rise_by_brute_force {
  public:
   explicit rise_by_brute_force(double reach_rad, depth_kind kind);

@@ -39,7 +39,7 @@ struct found_by<P> {
 }  // namespace detail
 
 /// What a policy's finder hands on: contacts with patches and windows, unless the policy names another found_type.
-/// near_cells is the other one: see cell_finder. The three policies of a renderer must agree on it.
+/// near_samples is the other one: see field_finder. The three policies of a renderer must agree on it.
 template <class P>
 using found_by = typename detail::found_by<P>::type;
 

@@ -107,6 +107,7 @@ class field_depth {
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return told_; }
   /// What these planes do not answer.
   [[nodiscard]] tick_flag flags() const noexcept { return flags_; }
+  [[nodiscard]] const field_scene& bodies() const noexcept { return *bodies_; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
     return asperity::heap_bytes(told_, watch_) + sizeof(field_scene) + bodies_->heap_bytes();
   }

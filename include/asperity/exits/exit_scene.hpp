@@ -62,6 +62,13 @@ struct exit_scene {
     }
   }
 
+  /// Whether it was made of these bodies, in this order.
+  [[nodiscard]] bool is_of(const field_scene& made) const noexcept {
+    return probe->body == made.probe &&
+           std::equal(fixed.begin(), fixed.end(), made.fixed.begin(), made.fixed.end(),
+                      [](const exit_body_ptr& own, const field_body_ptr& b) { return own->body == b; });
+  }
+
   /// Without the fields and samples, which belong to the field_scene.
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
     std::size_t bytes = asperity::heap_bytes(fixed) + sizeof(exit_body) + probe->heap_bytes();

@@ -35,6 +35,8 @@ using field_body_ptr = std::shared_ptr<const field_body>;
 struct field_body_settings {
   field_settings field{};
   double sample_pitch_m = 0.0;  ///< distance between samples; 0: 0.3 % of the body's diagonal
+
+  friend bool operator==(const field_body_settings&, const field_body_settings&) = default;
 };
 
 /// Makes a body's field and lays out its samples. Allocates; for fractions of a second, not for a tick.

@@ -8,13 +8,32 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "asperity/cells/cell_relief.hpp"
-#include "asperity/cells/sharp_edges.hpp"
 #include "asperity/depth/surface_index.hpp"
 #include "asperity/field/sample_tree.hpp"
 #include "asperity/model/textured_model.hpp"
 
 namespace asperity::detail {
+
+/// Texel columns or rows that a triangle's corners span, widened by `extra` and kept inside the image.
+struct texel_range {
+  std::size_t first, last;
+  texel_range(double a, double b, double c, double extra, std::uint32_t size) noexcept
+      : first(static_cast<std::size_t>(std::clamp<double>(std::floor(std::min({a, b, c}) - extra), 0.0, size))),
+        last(static_cast<std::size_t>(std::clamp(std::ceil(std::max({a, b, c}) + extra), 0.0, size - 1.0))) {}
+};
+
+/// Fine surface at a fraction f of edge k of triangle t, from its first corner on. Both charts have a say.
+[[nodiscard]] inline vec3 fine_edge_point(const textured_model& model, const surface_index& index, std::uint32_t t,
+                                          std::size_t k, double f) noexcept {
+  const coarse_triangle& tri = model.mesh.triangles[t];
+  const vec3 p = model.texture.sample((1.0 - f) * tri.uv[k] + f * tri.uv[(k + 1) % 3]);
+  const std::uint32_t across = index.neighbour[t][k];
+  if (across == surface_index::none) return p;
+  const coarse_triangle& other = model.mesh.triangles[across];
+  std::size_t m = 0;  // the neighbour's corner at the far end of this edge
+  while (other.vertex[m] != tri.vertex[(k + 1) % 3]) ++m;
+  return 0.5 * (p + model.texture.sample((1.0 - f) * other.uv[(m + 1) % 3] + f * other.uv[m]));
+}
 
 /// Lays out a body's samples: on its faces the highest texel of every block a pitch wide, because peaks are what
 /// touches; along its sharp edges, where no texel centre lies, points a pitch apart; and every vertex, whatever its

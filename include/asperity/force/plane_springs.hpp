@@ -43,7 +43,7 @@ struct plane_spring_settings {
 ///
 /// The probe of a control loop stays at the surface, and there this is the force to first order. It is no potential:
 /// where the deepest plane changes the torque steps. What a hand feels comes from the planes themselves, which the
-/// device thread holds the probe by; for a force as a function of the pose alone there is shared_potential.
+/// device thread holds the probe by; for a force as a function of the pose alone there is least_motion.
 class plane_springs {
  public:
   using policy_tag = force_tag;

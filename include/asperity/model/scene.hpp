@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "asperity/core/pose.hpp"
+#include "asperity/core/status.hpp"
 #include "asperity/model/textured_model.hpp"
 
 namespace asperity {
@@ -16,6 +17,12 @@ struct scene {
   model_ptr probe;
   std::vector<model_ptr> fixed;
 };
+
+/// Says so where a scene has nothing for the probe to touch. @return invalid_argument
+[[nodiscard]] inline result<void> check_has_fixed_body(const scene& bodies) {
+  if (!bodies.fixed.empty()) return {};
+  return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
+}
 
 /// Memory that a scene's models take, bytes; a model that appears several times counts once.
 [[nodiscard]] inline std::size_t memory_bytes(const scene& bodies) noexcept {

@@ -1,91 +1,75 @@
-// The renderers that most programs want: the shared formulation, and the paper's.
+// The renderers for programs that have poses: the default, which holds at any depth, and the paper's.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
+#include <limits>
 #include <memory>
 #include <utility>
 
-#include "asperity/collision/cell_finder.hpp"
 #include "asperity/collision/convex_piece_finder.hpp"
-#include "asperity/depth/cell_depth.hpp"
+#include "asperity/collision/field_finder.hpp"
 #include "asperity/depth/cpu_depth.hpp"
+#include "asperity/depth/field_depth.hpp"
+#include "asperity/exits/exit_scene.hpp"
 #include "asperity/force/gradient_penalty.hpp"
-#include "asperity/force/shared_potential.hpp"
+#include "asperity/force/least_motion.hpp"
+#include "asperity/render/field_renderer.hpp"
 #include "asperity/render/renderer.hpp"
 #include "asperity/render/settings.hpp"
 
 namespace asperity {
 
-/// The default: all contacts of two bodies as one potential. The force does not jump, whatever the motion.
-using renderer = basic_renderer<cell_finder, cell_depth, shared_potential>;
+/// The default: the least motion of the probe that clears the bodies, on a spring. Its wrench is a function of the pose
+/// alone, conservative, and held at any depth. Asked for, it tells the support planes of the field_renderer as well.
+using renderer = basic_renderer<field_finder, field_depth, least_motion>;
 
 /// The paper's: contacts clustered from convex pieces, each with a window and a spring of its own.
 using paper_renderer = basic_renderer<convex_piece_finder, cpu_depth, gradient_penalty>;
 
-namespace detail {
-
-[[nodiscard]] inline result<void> has_fixed_body(const scene& bodies) {
-  if (!bodies.fixed.empty()) return {};
-  return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
-}
-
-[[nodiscard]] inline result<void> has_cells(const scene& bodies, const cell_scene* cells) {
-  bool all = cells != nullptr && bodies.probe && cells->probe && cells->fixed.size() == bodies.fixed.size();
-  for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && cells->fixed[b];
-  if (all) return {};
-  return error{error_code::invalid_argument,
-               "the cells are not as many as the scene's bodies: cut these bodies, make_cell_scene() does"};
-}
-
-/// Softness of the shared maximum for a scene, the automatic one filled in. One for all bodies, whatever the pose.
-[[nodiscard]] inline double shared_tau_m(const shared_settings& s, const scene& bodies,
-                                         const cell_scene& cells) noexcept {
-  if (s.tau_m > 0.0) return s.tau_m;
-  double smaller = bodies.probe->box.diagonal(), rougher = cells.probe->relief_m;
-  for (std::size_t b = 0; b < bodies.fixed.size(); ++b) {
-    smaller = std::min(smaller, bodies.fixed[b]->box.diagonal());
-    rougher = std::max(rougher, cells.fixed[b]->relief_m);
+/// The default renderer for bodies that were made before, by make_field_scene() and of that exits::exit_scene: several
+/// renderers can share them, and their memory.
+/// @pre made are of these bodies, in their order; whether they are as many is checked, whether they are the same is not
+/// @return invalid_argument (no probe, no fixed body, bodies missing, ways_of other bodies, a setting out of range)
+[[nodiscard]] inline result<renderer> make_renderer(scene bodies, std::shared_ptr<const field_scene> made,
+                                                    std::shared_ptr<const exits::exit_scene> ways_of,
+                                                    const renderer_settings& settings = {}) {
+  if (const result<void> ok = check_field_scene(bodies, made.get(), settings.reach_m); !ok) return ok.error();
+  if (const result<void> ok = check(settings.force); !ok) return ok.error();
+  if (!ways_of || !ways_of->is_of(*made)) {
+    return error{error_code::invalid_argument, "the exit scene is of other fields: make it of these, in their order"};
   }
-  return std::max(0.05 * rougher, 5e-4 * smaller);
+  // A gap that no sample can have, and the finder finds nothing at its first look.
+  const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : -std::numeric_limits<double>::infinity();
+  field_depth depth(made, bodies, reach_m, settings.limits.readings());
+  least_motion force(*made, std::move(ways_of), bodies.probe->mass.centre_of_mass, settings.force);
+  return renderer(std::move(bodies), field_finder(std::move(made), reach_m), std::move(depth), std::move(force),
+                  settings.limits);
 }
 
-}  // namespace detail
-
-/// The default renderer for a scene whose models were cut before, by make_cell_scene(); its ticks' memory is taken
-/// here. Cutting takes about a second per model: several renderers of the same bodies can share the cells, and their
-/// memory.
-/// @pre cells are of these bodies, in their order; whether they are as many is checked, whether they are the same is
-/// not
-/// @return invalid_argument (no probe, no fixed body, cells missing, a setting out of range)
-[[nodiscard]] inline result<renderer> make_renderer(scene bodies, std::shared_ptr<const cell_scene> cells,
-                                                    const renderer_settings& settings) {
-  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
-  if (const result<void> ok = check(settings.shared); !ok) return ok.error();
-  if (const result<void> ok = detail::has_cells(bodies, cells.get()); !ok) return ok.error();
-  shared_settings shared = settings.shared;
-  shared.tau_m = detail::shared_tau_m(shared, bodies, *cells);
-  cell_depth depth(cells, bodies, shared);
-  return renderer(std::move(bodies), cell_finder(std::move(cells), cell_depth::reach_m(shared), shared.facing_none),
-                  std::move(depth), shared_potential(shared, settings.limits.readings()), settings.limits);
+/// The default renderer for bodies that were made before, by make_field_scene().
+/// @pre made are of these bodies, in their order
+/// @return invalid_argument (no probe, no fixed body, bodies missing, a setting out of range)
+[[nodiscard]] inline result<renderer> make_renderer(scene bodies, std::shared_ptr<const field_scene> made,
+                                                    const renderer_settings& settings = {}) {
+  if (const result<void> ok = check_field_scene(bodies, made.get(), settings.reach_m); !ok) return ok.error();
+  auto ways_of = std::make_shared<const exits::exit_scene>(*made);
+  return make_renderer(std::move(bodies), std::move(made), std::move(ways_of), settings);
 }
 
-/// The default renderer for a scene. Cuts its models in cells, about a second each; all memory that its ticks need is
-/// taken here.
+/// The default renderer for a scene. Makes the fields of its models, which takes fractions of a second each; all memory
+/// that its ticks need is taken here.
 /// @return invalid_argument (no probe, no fixed body, a setting out of range) | bad_mesh | bad_texture
 [[nodiscard]] inline result<renderer> make_renderer(scene bodies, const renderer_settings& settings = {}) {
-  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
-  if (const result<void> ok = check(settings.shared); !ok) return ok.error();
-  result<cell_scene> cut = make_cell_scene(bodies, settings.cells);  // refuses a missing model too
-  if (!cut) return cut.error();
-  auto cells = std::make_shared<const cell_scene>(std::move(cut).value());
-  return make_renderer(std::move(bodies), std::move(cells), settings);
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
+  result<field_scene> made = make_field_scene(bodies, settings.bodies);  // refuses a missing model too
+  if (!made) return made.error();
+  auto shared = std::make_shared<const field_scene>(std::move(made).value());
+  return make_renderer(std::move(bodies), std::move(shared), settings);
 }
 
 /// The paper's renderer for a scene; all memory that its ticks need is taken here.
 /// @return invalid_argument (no probe, no fixed body, a setting out of range) | bad_mesh | bad_texture
 [[nodiscard]] inline result<paper_renderer> make_paper_renderer(scene bodies, const paper_settings& settings = {}) {
-  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
   // Refuses a missing model too, which the finder takes for granted.
   result<cpu_depth> depth = make_cpu_depth(bodies, settings.depth);
   if (!depth) return depth.error();

@@ -24,7 +24,7 @@ struct exact_renderer_settings {
 /// @return invalid_argument (no probe, no fixed body, a setting out of range) | bad_mesh | bad_texture
 [[nodiscard]] inline result<exact_renderer> make_exact_renderer(scene bodies,
                                                                 const exact_renderer_settings& settings = {}) {
-  if (const result<void> ok = detail::has_fixed_body(bodies); !ok) return ok.error();
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
   result<exact_depth> depth = make_exact_depth(bodies, settings.depth);  // refuses a missing model too
   if (!depth) return depth.error();
   convex_piece_finder finder(bodies, settings.finder);

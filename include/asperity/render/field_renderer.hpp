@@ -48,7 +48,7 @@ namespace detail {
 /// @param made of the bodies, or nullptr   @param reach_m see field_renderer_settings
 [[nodiscard]] inline result<void> check_field_scene(const scene& bodies, const field_scene* made, double reach_m) {
   const auto bad = [](const char* what) { return error{error_code::invalid_argument, what}; };
-  if (bodies.fixed.empty()) return bad("the scene has no fixed body: give the probe something to touch");
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
   bool all = bodies.probe && made != nullptr && made->probe && made->fixed.size() == bodies.fixed.size();
   for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && made->fixed[b];
   if (!all) {
@@ -77,9 +77,7 @@ namespace detail {
 /// @return invalid_argument | bad_mesh | bad_texture
 [[nodiscard]] inline result<field_renderer> make_field_renderer(scene bodies,
                                                                 const field_renderer_settings& settings = {}) {
-  if (bodies.fixed.empty()) {
-    return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
-  }
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
   result<field_scene> made = make_field_scene(bodies, settings.bodies);
   if (!made) return made.error();
   auto shared = std::make_shared<const field_scene>(std::move(made).value());

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "asperity/collision/near_cells.hpp"
-#include "asperity/depth/cell_reading.hpp"
+#include "asperity/collision/near_samples.hpp"
+#include "asperity/depth/near_plane.hpp"
 
 namespace {
 
@@ -51,45 +51,41 @@ struct scripted_force {
   }
 };
 
-/// Policies of the other kind: near cells, their readings, and contacts that the force model tells.
-struct scripted_cells {
+/// Policies of the other kind: near samples, their planes, and contacts that the force model tells.
+struct scripted_samples {
   using policy_tag = collision_tag;
-  using found_type = near_cells;
+  using found_type = near_samples;
   script* s;
-  status find(const scene_pose&, near_cells& out) noexcept {
+  status find(const scene_pose&, near_samples& out) noexcept {
     ++s->finds;
     out.clear();
-    for (std::uint32_t i = 0; i < s->contacts; ++i) {
-      if (!out.add_cell(0, false, i)) continue;
-      out.add_tile(0);
-    }
-    out.add_edges({});
+    for (std::size_t i = 0; i < s->contacts; ++i) out.add({});
     return s->found;
   }
 };
 struct scripted_readings {
   using policy_tag = depth_tag;
-  using found_type = near_cells;
-  using reading_type = cell_reading;
+  using found_type = near_samples;
+  using reading_type = near_plane;
   script* s;
-  status measure(const scene_pose&, const near_cells& found, std::span<cell_reading> out) noexcept {
+  status measure(const scene_pose&, const near_samples& found, std::span<near_plane> out) noexcept {
     ++s->measures;
     EXPECT_EQ(found.size(), out.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i].depth_m = 1e-3 * static_cast<double>(i + 1);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i].plane.depth_m = 1e-3 * static_cast<double>(i + 1);
     return s->measured;
   }
 };
 struct telling_force {
   using policy_tag = force_tag;
-  using found_type = near_cells;
-  using reading_type = cell_reading;
+  using found_type = near_samples;
+  using reading_type = near_plane;
   script* s;
   std::size_t tells = 2;
   mutable std::vector<double> read{};
-  status accumulate(const near_cells&, std::span<const cell_reading> readings, contact_force& out) const noexcept {
+  status accumulate(const near_samples&, std::span<const near_plane> readings, contact_force& out) const noexcept {
     ++s->sums;
     read.clear();
-    for (const cell_reading& r : readings) read.push_back(r.depth_m);
+    for (const near_plane& r : readings) read.push_back(r.plane.depth_m);
     out.on_probe_w.force = s->force;
     return s->summed;
   }
@@ -169,18 +165,18 @@ TEST_F(renderer_test, any_failing_stage_leaves_a_zero_wrench) {
   EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
 }
 
-struct renderer_of_cells : testing::Test {
+struct renderer_of_samples : testing::Test {
   script s;
-  basic_renderer<scripted_cells, scripted_readings, telling_force> renderer{
-      one_fixed_body(), scripted_cells{&s}, scripted_readings{&s}, telling_force{&s}, near_limits{4, 8, 2}};
+  basic_renderer<scripted_samples, scripted_readings, telling_force> renderer{
+      one_fixed_body(), scripted_samples{&s}, scripted_readings{&s}, telling_force{&s}, near_sample_limits{4}};
   std::array<pose, 1> fixed{};
   tick out;
 };
 
-TEST_F(renderer_of_cells, reads_every_cell_and_pair_of_edges_and_hands_out_the_contacts_that_are_told) {
+TEST_F(renderer_of_samples, reads_every_leaf_and_hands_out_the_contacts_that_are_told) {
   s.contacts = 3;
   ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
-  EXPECT_EQ(renderer.force().read, (std::vector<double>{1e-3, 2e-3, 3e-3, 4e-3}));  // three cells, one pair of edges
+  EXPECT_EQ(renderer.force().read, (std::vector<double>{1e-3, 2e-3, 3e-3}));
   ASSERT_EQ(out.contacts.size(), 2U);
   ASSERT_EQ(out.depths.size(), 2U);
   EXPECT_EQ(out.contacts[1].id, 1U);
@@ -216,23 +212,23 @@ TEST_F(renderer_test, hands_out_the_planes_that_a_stage_knows) {
   EXPECT_TRUE(out.planes.empty());
 }
 
-TEST_F(renderer_of_cells, tells_no_more_contacts_than_it_has_room_for) {
+TEST_F(renderer_of_samples, tells_no_more_contacts_than_it_has_room_for) {
   renderer.force().tells = 1000;
   ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
   EXPECT_EQ(out.contacts.size(), 64U);
   EXPECT_EQ(out.depths.size(), 64U);
 }
 
-TEST_F(renderer_of_cells, cells_that_do_not_fit_are_counted_and_the_rest_is_used) {
+TEST_F(renderer_of_samples, leaves_that_do_not_fit_are_counted_and_the_rest_is_used) {
   s.contacts = 6;
   s.found = status::capacity_reached;
   EXPECT_EQ(renderer.step({{}, fixed}, out), status::capacity_reached);
   EXPECT_EQ(out.dropped_contacts, 2U);
-  EXPECT_EQ(renderer.force().read.size(), 5U);
+  EXPECT_EQ(renderer.force().read.size(), 4U);
   EXPECT_EQ(out.force.on_probe_w.force.z, 1.0);
 }
 
-TEST_F(renderer_of_cells, a_failing_stage_leaves_a_zero_wrench_and_no_contacts) {
+TEST_F(renderer_of_samples, a_failing_stage_leaves_a_zero_wrench_and_no_contacts) {
   ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
   s.summed = status::not_finite;
   EXPECT_EQ(renderer.step({{}, fixed}, out), status::not_finite);

@@ -1,5 +1,5 @@
-// The renderer for poses alone, from end to end.
-#include "asperity/render/pose_renderer.hpp"
+// The default renderer, from end to end.
+#include "asperity/render/default_renderer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,8 +31,8 @@ std::shared_ptr<const field_scene> fields_once() {
   return made;
 }
 
-pose_renderer make_pose_boxes(const pose_renderer_settings& settings = {}) {
-  return make_pose_renderer(box_over_box(), fields_once(), settings).value();
+renderer make_boxes(const renderer_settings& settings = {}) {
+  return make_renderer(box_over_box(), fields_once(), settings).value();
 }
 
 struct pose_drawing {
@@ -54,9 +54,9 @@ pose lowered_box(pose_drawing& draw, double depth_m) {
   return T_wa;
 }
 
-TEST(PoseRenderer, PushesByItsStiffnessAtAnyDepth) {
-  pose_drawing draw{std::mt19937_64(fresh_seed("PoseRenderer.PushesByItsStiffnessAtAnyDepth", "100 poses"))};
-  pose_renderer feel = make_pose_boxes();
+TEST(DefaultRenderer, PushesByItsStiffnessAtAnyDepth) {
+  pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.PushesByItsStiffnessAtAnyDepth", "100 poses"))};
+  renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   const double k = feel.force().settings().stiffness_n_per_m, soft = feel.force().settings().softness_m;
   tick t;
@@ -73,9 +73,9 @@ TEST(PoseRenderer, PushesByItsStiffnessAtAnyDepth) {
   }
 }
 
-TEST(PoseRenderer, FeelsNothingWhereNothingOverlaps) {
-  pose_drawing draw{std::mt19937_64(fresh_seed("PoseRenderer.FeelsNothing", "100 poses"))};
-  pose_renderer feel = make_pose_boxes();
+TEST(DefaultRenderer, FeelsNothingWhereNothingOverlaps) {
+  pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.FeelsNothing", "100 poses"))};
+  renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   tick t;
   for (int n = 0; n < 100; ++n) {
@@ -87,9 +87,9 @@ TEST(PoseRenderer, FeelsNothingWhereNothingOverlaps) {
 }
 
 // The wrench does not change where all bodies are carried elsewhere, but for being carried along.
-TEST(PoseRenderer, TheWorldDoesNotMatter) {
-  pose_drawing draw{std::mt19937_64(fresh_seed("PoseRenderer.TheWorldDoesNotMatter", "20 poses"))};
-  pose_renderer feel = make_pose_boxes();
+TEST(DefaultRenderer, TheWorldDoesNotMatter) {
+  pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.TheWorldDoesNotMatter", "20 poses"))};
+  renderer feel = make_boxes();
   tick t;
   for (int n = 0; n < 20; ++n) {
     const pose T_wa = lowered_box(draw, 1e-3);
@@ -104,10 +104,10 @@ TEST(PoseRenderer, TheWorldDoesNotMatter) {
   }
 }
 
-TEST(PoseRenderer, TellsPlanesWhereAskedTo) {
-  pose_renderer_settings settings;
+TEST(DefaultRenderer, TellsPlanesWhereAskedTo) {
+  renderer_settings settings;
   settings.reach_m = 1e-3;
-  pose_renderer feel = make_pose_boxes(settings);
+  renderer feel = make_boxes(settings);
   const std::vector<pose> T_wb{pose{}};
   tick t;
   ASSERT_EQ(feel.step({{quat(1, 0, 0, 0), {0.0, 0.0, 0.0145}}, T_wb}, t), status::ok);
@@ -115,11 +115,11 @@ TEST(PoseRenderer, TellsPlanesWhereAskedTo) {
   EXPECT_EQ(t.force.on_probe_w.force, vec3(0.0));
 }
 
-TEST(PoseRenderer, SaysWhenItsReadingsAreSpent) {
-  pose_drawing draw{std::mt19937_64(fresh_seed("PoseRenderer.SaysWhenItsReadingsAreSpent", "20 poses"))};
-  pose_renderer_settings settings;
+TEST(DefaultRenderer, SaysWhenItsReadingsAreSpent) {
+  pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.SaysWhenItsReadingsAreSpent", "20 poses"))};
+  renderer_settings settings;
   settings.force.most_readings = 1000;
-  pose_renderer feel = make_pose_boxes(settings);
+  renderer feel = make_boxes(settings);
   const std::vector<pose> T_wb{pose{}};
   tick t;
   int told = 0;
@@ -136,9 +136,9 @@ TEST(PoseRenderer, SaysWhenItsReadingsAreSpent) {
   EXPECT_GT(told, 5);
 }
 
-TEST(PoseRenderer, AllocatesNothingInATick) {
-  pose_drawing draw{std::mt19937_64(fresh_seed("PoseRenderer.AllocatesNothingInATick", "50 poses"))};
-  pose_renderer feel = make_pose_boxes();
+TEST(DefaultRenderer, AllocatesNothingInATick) {
+  pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.AllocatesNothingInATick", "50 poses"))};
+  renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   std::vector<pose> at;
   for (int n = 0; n < 50; ++n) at.push_back(lowered_box(draw, 3e-3 * draw.unit()));
@@ -151,9 +151,9 @@ TEST(PoseRenderer, AllocatesNothingInATick) {
 }
 
 // Under a micrometre the rounding of places hides what a step of the search gains; it has to end all the same.
-TEST(PoseRenderer, ALightTouchSettles) {
-  pose_drawing draw{std::mt19937_64(fresh_seed("PoseRenderer.ALightTouchSettles", "400 poses"))};
-  auto feel = make_pose_boxes();
+TEST(DefaultRenderer, ALightTouchSettles) {
+  pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.ALightTouchSettles", "400 poses"))};
+  auto feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   tick t;
   int felt = 0;
@@ -165,11 +165,11 @@ TEST(PoseRenderer, ALightTouchSettles) {
   EXPECT_GT(felt, 200);
 }
 
-TEST(PoseRenderer, RefusesSettingsOutOfRange) {
+TEST(DefaultRenderer, RefusesSettingsOutOfRange) {
   const auto refuses = [](auto change) {
-    pose_renderer_settings s;
+    renderer_settings s;
     change(s);
-    const auto made = make_pose_renderer(box_over_box(), fields_once(), s);
+    const auto made = make_renderer(box_over_box(), fields_once(), s);
     return !made && made.error().code == error_code::invalid_argument;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -182,12 +182,12 @@ TEST(PoseRenderer, RefusesSettingsOutOfRange) {
   EXPECT_TRUE(refuses([](auto& s) { s.force.most_samples = 1; }));
   EXPECT_TRUE(refuses([](auto& s) { s.reach_m = -1.0; }));
   EXPECT_FALSE(refuses([](auto&) {}));
-  EXPECT_FALSE(make_pose_renderer(scene{box_over_box().probe, {}}));
-  EXPECT_FALSE(make_pose_renderer(box_over_box(), nullptr));
+  EXPECT_FALSE(make_renderer(scene{box_over_box().probe, {}}));
+  EXPECT_FALSE(make_renderer(box_over_box(), nullptr));
 }
 
 // A quicker loop can follow a sharper contact; no softness blurs a texel.
-TEST(PoseRenderer, SoftnessFollowsTheLoop) {
+TEST(DefaultRenderer, SoftnessFollowsTheLoop) {
   const contact_softness slow = softness_for(1e-3, 1e-3), fast = softness_for(1e-4, 1e-3),
                          fine = softness_for(1e-3, 2e-5);
   EXPECT_NEAR(slow.softness_m, 15e-6, 1e-9);
@@ -195,13 +195,13 @@ TEST(PoseRenderer, SoftnessFollowsTheLoop) {
   EXPECT_LT(fast.softness_m, 0.2 * slow.softness_m);
   EXPECT_GT(fast.sharpness, 2.5 * slow.sharpness);
   EXPECT_NEAR(fine.softness_m, 5e-6, 1e-9);
-  pose_renderer_settings settings;
+  renderer_settings settings;
   settings.force.period_s = 1e-4;
-  EXPECT_LT(make_pose_boxes(settings).force().settings().softness_m, make_pose_boxes().force().settings().softness_m);
+  EXPECT_LT(make_boxes(settings).force().settings().softness_m, make_boxes().force().settings().softness_m);
 }
 
-TEST(PoseRenderer, CountsItsMemory) {
-  pose_renderer feel = make_pose_boxes();
+TEST(DefaultRenderer, CountsItsMemory) {
+  renderer feel = make_boxes();
   const std::size_t fields = fields_once()->heap_bytes();
   EXPECT_GT(feel.memory_bytes(), fields + feel.force().settings().most_samples * sizeof(exits::mark));
   EXPECT_LT(feel.memory_bytes(), 4 * fields + 20'000'000U);
