@@ -6,7 +6,7 @@
 #include <asperity/asperity.hpp>
 #include <asperity/io/textured_model_file.hpp>
 
-// force_tag says "I keep the contract of force/concept.hpp"; the compiler checks the signature, noexcept included.
+// force_tag says "I keep the contract of render/force_model.hpp"; the compiler checks the signature, noexcept included.
 class gentle_spring {
  public:
   using policy_tag = asperity::force_tag;

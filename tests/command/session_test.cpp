@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "unit/control/analytic_wall.hpp"
 
 namespace {

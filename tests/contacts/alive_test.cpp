@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <asperity/control/virtual_session.hpp>
-#include <asperity/hal/simulated/simulated_device.hpp>
+#include <asperity/device/simulated/simulated_device.hpp>
 
 #include "contact_meter.hpp"
 #include "support/extent.hpp"

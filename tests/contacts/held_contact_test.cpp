@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/collision/convex_piece_finder.hpp"
+#include "asperity/window/convex_piece_finder.hpp"
 #include "contact_meter.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/random_hulls.hpp"

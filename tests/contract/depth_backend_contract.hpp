@@ -24,7 +24,7 @@
 #include <span>
 #include <string>
 
-#include "asperity/depth/cpu_depth.hpp"
+#include "asperity/window/cpu_depth.hpp"
 #include "support/height_models.hpp"
 
 namespace asperity {

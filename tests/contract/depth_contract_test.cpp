@@ -1,4 +1,4 @@
-#include "asperity/depth/exact_depth.hpp"
+#include "asperity/window/exact_depth.hpp"
 #include "contract/depth_backend_contract.hpp"
 
 namespace asperity {

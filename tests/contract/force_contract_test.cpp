@@ -1,4 +1,4 @@
-#include "asperity/force/gradient_penalty.hpp"
+#include "asperity/window/gradient_penalty.hpp"
 #include "contract/force_model_contract.hpp"
 
 namespace asperity {

@@ -13,7 +13,7 @@
 #include <random>
 #include <vector>
 
-#include "asperity/force/concept.hpp"
+#include "asperity/render/force_model.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace asperity {

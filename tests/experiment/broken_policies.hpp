@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "broken_mutation.hpp"
 
 namespace broken {

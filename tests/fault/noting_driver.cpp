@@ -13,7 +13,7 @@
 #include <unistd.h>
 #include <vector>
 
-#include <asperity/hal/driver_export.hpp>
+#include <asperity/device/driver_export.hpp>
 
 #include "spring_handle.hpp"
 

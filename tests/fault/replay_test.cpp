@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <asperity/hal/device_recording.hpp>
+#include <asperity/device/device_recording.hpp>
 
 #include "command_process.hpp"
 

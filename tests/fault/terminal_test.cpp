@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <asperity/hal/device_recording.hpp>
+#include <asperity/device/device_recording.hpp>
 
 #include "command_process.hpp"
 

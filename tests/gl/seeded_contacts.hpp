@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "asperity/depth/cpu_depth.hpp"
+#include "asperity/window/cpu_depth.hpp"
 #include "support/height_models.hpp"
 
 namespace asperity::test_support {

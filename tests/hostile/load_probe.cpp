@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "asperity/bake/bake.hpp"
-#include "asperity/hal/device_recording.hpp"
+#include "asperity/device/device_recording.hpp"
 #include "asperity/io/image_file.hpp"
 #include "asperity/io/material_file.hpp"
 #include "asperity/io/mesh_file.hpp"

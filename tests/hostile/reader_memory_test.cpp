@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "asperity/hal/device_recording.hpp"
+#include "asperity/device/device_recording.hpp"
 #include "attacks.hpp"
 #include "probe_process.hpp"
 #include "support/byte_strings.hpp"

@@ -16,8 +16,8 @@
 
 #include "asperity/can/socketcan.hpp"
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/articulated/articulated_device.hpp"
-#include "asperity/hal/canopen/canopen_master.hpp"
+#include "asperity/drivers/articulated/articulated_device.hpp"
+#include "asperity/drivers/canopen/canopen_master.hpp"
 #include "hal/arm/arm_parts.hpp"
 #include "kernel/can_support.hpp"
 #include "kernel/network.hpp"

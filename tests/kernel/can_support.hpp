@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "asperity/can/socketcan.hpp"
-#include "asperity/hal/transport/can_bus.hpp"
+#include "asperity/transport/can_bus.hpp"
 
 namespace asperity::can_kernel_test {
 

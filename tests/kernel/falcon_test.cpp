@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "asperity/hal/falcon/falcon_driver.hpp"
+#include "asperity/drivers/falcon/falcon_driver.hpp"
 #include "hal/peers/fake_falcon.hpp"
 #include "hal/usb/falcon_rig.hpp"
 #include "kernel/usb_fixture.hpp"

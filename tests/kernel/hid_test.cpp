@@ -7,9 +7,9 @@
 #include <thread>
 
 #include <asperity/control/virtual_session.hpp>
-#include <asperity/hal/virtual/virtual_hid.hpp>
 #include <asperity/hid/hidraw_link.hpp>
 #include <asperity/hid/spacemouse_driver.hpp>
+#include <asperity/transport/virtual/virtual_hid.hpp>
 
 #include "enumerate.hpp"
 #include "hal/peers/fake_spacemouse.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/transport/real_clock.hpp"
+#include "asperity/transport/real_clock.hpp"
 #include "asperity/usb/usb.hpp"
 #include "kernel/usbip_device.hpp"
 

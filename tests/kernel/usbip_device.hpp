@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "asperity/hal/transport/usb_link.hpp"
+#include "asperity/transport/usb_link.hpp"
 
 namespace asperity::test_support {
 

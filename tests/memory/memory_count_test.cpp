@@ -4,7 +4,8 @@
 #include <optional>
 #include <utility>
 
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "counted_heap.hpp"
 #include "support/piece_models.hpp"
 #include "support/small_models.hpp"

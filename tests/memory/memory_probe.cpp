@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "asperity/io/textured_model_file.hpp"
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
 
 namespace {
 

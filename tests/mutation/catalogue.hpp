@@ -3,7 +3,7 @@
 // A line each, in any order of files; what stands in front of a bug holds until it is said anew:
 //
 //   room device
-//   file include/asperity/hal/output_gate.hpp
+//   file include/asperity/device/output_gate.hpp
 //   tests hal_test control_test                  quick ones first
 //
 //   bug gate_forgets_its_torque_limit

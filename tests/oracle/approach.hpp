@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "asperity/collision/contact.hpp"
 #include "asperity/core/pose.hpp"
+#include "asperity/render/contact.hpp"
 #include "oracle/placed_mesh.hpp"
 
 namespace asperity::oracle {

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "asperity/collision/contact.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/model/coarse_mesh.hpp"
 #include "asperity/model/triangle_mesh.hpp"
+#include "asperity/render/contact.hpp"
 
 namespace asperity::oracle {
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <span>
 
-#include "asperity/render/exact_renderer.hpp"
+#include "asperity/window/exact_renderer.hpp"
 #include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
 #include "oracle/touching_pose.hpp"

@@ -6,7 +6,7 @@
 
 #include "asperity/control/passivity_guard.hpp"
 #include "asperity/control/session_record.hpp"
-#include "asperity/hal/output_gate.hpp"
+#include "asperity/device/output_gate.hpp"
 
 namespace asperity::test_support {
 

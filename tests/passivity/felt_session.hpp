@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "passivity/energy_bound.hpp"
 #include "support/built_renderers.hpp"
 #include "support/held_force.hpp"

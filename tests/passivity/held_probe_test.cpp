@@ -10,7 +10,7 @@
 #include <string>
 
 #include "asperity/control/coupling_for.hpp"
-#include "asperity/render/field_renderer.hpp"
+#include "asperity/planes/field_renderer.hpp"
 #include "passivity/felt_session.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "asperity/render/field_renderer.hpp"
+#include "asperity/planes/field_renderer.hpp"
 #include "support/built_renderers.hpp"
 #include "support/fresh_seed.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "oracle/against_originals.hpp"
 
 namespace asperity::presses {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "oracle/against_originals.hpp"
 #include "support/fresh_seed.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "asperity/control/virtual_coupling.hpp"
-#include "asperity/hal/simulated/simulated_config.hpp"
+#include "asperity/device/simulated/simulated_config.hpp"
 #include "presses/press_law.hpp"
 #include "presses/rest_session.hpp"
 #include "support/extent.hpp"

@@ -1,5 +1,5 @@
 // The gate's function with arguments that a solver can name: what prove_gate translates, and what it runs.
-#include "asperity/hal/gate_function.hpp"
+#include "asperity/device/gate_function.hpp"
 
 // `out` receives the three components, then 1 or 0 for finite and for certified.
 extern "C" void gate(double wanted_x, double wanted_y, double wanted_z, double previous_x, double previous_y,

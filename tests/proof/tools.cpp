@@ -76,7 +76,7 @@ std::optional<std::string> find_tool(const std::vector<std::string>& names) {
 result<compiled_gate> compile_gate(const std::string& clang, const std::filesystem::path& folder,
                                    const std::vector<change>& changes) {
   const std::filesystem::path source = ASPERITY_SOURCE_DIR;
-  std::string header = read_file(source / "include/asperity/hal/gate_function.hpp");
+  std::string header = read_file(source / "include/asperity/device/gate_function.hpp");
   for (const change& c : changes) {
     const std::size_t at = header.find(c.from);
     if (at == std::string::npos || header.find(c.from, at + 1) != std::string::npos) {
@@ -85,8 +85,8 @@ result<compiled_gate> compile_gate(const std::string& clang, const std::filesyst
     }
     header.replace(at, c.from.size(), c.to);
   }
-  std::filesystem::create_directories(folder / "asperity/hal");
-  write_file(folder / "asperity/hal/gate_function.hpp", header);
+  std::filesystem::create_directories(folder / "asperity/device");
+  write_file(folder / "asperity/device/gate_function.hpp", header);
 
   const std::string flags = " -std=c++20 -O1 -ffp-contract=off -fno-math-errno -fno-exceptions -I " + quoted(folder) +
                             " -I " + quoted(source / "include") + ' ' + ASPERITY_GLM_FLAG + ' ';

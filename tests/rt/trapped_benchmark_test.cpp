@@ -9,7 +9,7 @@
 
 #include "approach.hpp"
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "rt/tick_trap.hpp"
 #include "support/built_renderers.hpp"

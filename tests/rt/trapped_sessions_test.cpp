@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/any_device.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/any_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "record_queue.hpp"
 #include "rt/tick_trap.hpp"
 #include "support/built_renderers.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "asperity/control/device_loop.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "simulation/dice.hpp"
 #include "simulation/scenes.hpp"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "simulation/scenario.hpp"
 
 namespace asperity::simulation {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "support/built_renderers.hpp"
 #include "support/small_models.hpp"
 

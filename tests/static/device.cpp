@@ -1,6 +1,6 @@
 // The device concept accepts the least that keeps its contract, and rejects what only looks like it.
 
-#include <asperity/hal/any_device.hpp>
+#include <asperity/device/any_device.hpp>
 
 namespace {
 

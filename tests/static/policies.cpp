@@ -1,7 +1,7 @@
 // Each policy concept accepts the least that keeps its contract, and rejects what only looks like it.
 
-#include <asperity/collision/near_samples.hpp>
-#include <asperity/depth/near_plane.hpp>
+#include <asperity/planes/near_plane.hpp>
+#include <asperity/planes/near_samples.hpp>
 #include <asperity/render/renderer.hpp>
 
 namespace {

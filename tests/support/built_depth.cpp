@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "asperity/depth/cpu_depth.hpp"
+#include "asperity/window/cpu_depth.hpp"
 
 namespace asperity::test_support {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <span>
 
-#include "asperity/depth/concept.hpp"
-#include "asperity/depth/settings.hpp"
+#include "asperity/render/depth_backend.hpp"
+#include "asperity/window/depth_settings.hpp"
 
 namespace asperity {
 class cpu_depth;

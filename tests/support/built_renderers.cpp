@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
 
 namespace asperity::test_support {
 

@@ -4,8 +4,9 @@
 
 #include <memory>
 
+#include "asperity/least_motion/renderer_settings.hpp"
 #include "asperity/render/renderer.hpp"
-#include "asperity/render/settings.hpp"
+#include "asperity/window/paper_settings.hpp"
 
 namespace asperity::test_support {
 

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
-#include "asperity/collision/contact.hpp"
 #include "asperity/core/pose.hpp"
-#include "asperity/depth/penetration.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/render/contact.hpp"
+#include "asperity/render/penetration.hpp"
 
 namespace asperity::test_support {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "asperity/render/default_renderer.hpp"
-#include "asperity/render/field_renderer.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/planes/field_renderer.hpp"
 #include "truth/made_or_thrown.hpp"
 
 namespace asperity::truth {

@@ -3,7 +3,7 @@ include(CMakePackageConfigHelpers)
 
 set(ASPERITY_TOOLS_COMPONENTS io bake)
 set(ASPERITY_GL_COMPONENTS gl gl_compute gl_occlusion)
-set(ASPERITY_HAL_COMPONENTS hid can serial usb urdf plugin)
+set(ASPERITY_HAL_COMPONENTS transport drivers hid can serial usb urdf plugin)
 set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} ${ASPERITY_HAL_COMPONENTS})
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 

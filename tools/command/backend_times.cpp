@@ -9,7 +9,7 @@
 #include "approach.hpp"
 #include "asperity/gl/compute_depth.hpp"
 #include "asperity/gl/uploaded_model.hpp"
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "interrupt.hpp"
 #include "paper_on_gpu.hpp"
 

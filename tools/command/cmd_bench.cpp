@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "asperity/depth/settings.hpp"
+#include "asperity/window/depth_settings.hpp"
 #include "backend_report.hpp"
 #include "cli.hpp"
 #include "interrupt.hpp"

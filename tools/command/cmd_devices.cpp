@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #ifdef ASPERITY_HAS_CAN
 #include "can_devices.hpp"
 #endif

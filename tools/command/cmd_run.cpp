@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "cli.hpp"
 #include "device_recorder.hpp"
 #include "device_replay.hpp"

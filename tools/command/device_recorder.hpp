@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "asperity/hal/any_device.hpp"
-#include "asperity/hal/device_recording.hpp"
+#include "asperity/device/any_device.hpp"
+#include "asperity/device/device_recording.hpp"
 #include "output_file.hpp"
 
 namespace asperity::command {

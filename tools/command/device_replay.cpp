@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "interrupt.hpp"
 #include "text.hpp"
 

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "asperity/hal/any_device.hpp"
-#include "asperity/hal/device_recording.hpp"
+#include "asperity/device/any_device.hpp"
+#include "asperity/device/device_recording.hpp"
 #include "session.hpp"
 
 namespace asperity::command {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "asperity/hal/any_device.hpp"
+#include "asperity/device/any_device.hpp"
 
 namespace asperity::command {
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "asperity/render/field_renderer.hpp"
+#include "asperity/planes/field_renderer.hpp"
 #include "render_kinds.hpp"
 
 namespace asperity::command {

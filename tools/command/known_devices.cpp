@@ -11,8 +11,8 @@
 #include "asperity/hid/spacemouse_driver.hpp"
 #endif
 #ifdef ASPERITY_HAS_USB
-#include "asperity/hal/falcon/falcon_driver.hpp"
-#include "asperity/hal/transport/real_clock.hpp"
+#include "asperity/drivers/falcon/falcon_driver.hpp"
+#include "asperity/transport/real_clock.hpp"
 #include "asperity/usb/usb.hpp"
 #endif
 #ifdef ASPERITY_HAS_PLUGIN

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/device_directory.hpp"
+#include "asperity/device/device_directory.hpp"
 
 namespace asperity::plugin {
 class child_driver;

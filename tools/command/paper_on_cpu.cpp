@@ -1,7 +1,7 @@
 // --backend cpu with --contacts paper.
 #include <utility>
 
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "render_kinds.hpp"
 
 namespace asperity::command {

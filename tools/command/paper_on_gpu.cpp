@@ -3,8 +3,8 @@
 #include <memory>
 #include <utility>
 
-#include "asperity/depth/fallback_depth.hpp"
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/window/fallback_depth.hpp"
+#include "asperity/window/paper_renderer.hpp"
 
 namespace asperity::command {
 namespace {

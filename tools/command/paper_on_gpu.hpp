@@ -1,9 +1,9 @@
 // What the backends on a GPU have in common: their device, their fallback, their counts.
 #pragma once
 
-#include "asperity/depth/any_depth.hpp"
-#include "asperity/depth/settings.hpp"
 #include "asperity/gl/context.hpp"
+#include "asperity/window/any_depth.hpp"
+#include "asperity/window/depth_settings.hpp"
 #include "render_kinds.hpp"
 
 namespace asperity::command {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/driver.hpp"
+#include "asperity/device/driver.hpp"
 
 namespace asperity::command {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/depth/settings.hpp"
+#include "asperity/window/depth_settings.hpp"
 #include "render_kinds.hpp"
 
 namespace asperity::command {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/depth/settings.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/window/depth_settings.hpp"
 #include "chosen_renderer.hpp"
 
 namespace asperity::command {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "asperity/depth/settings.hpp"
+#include "asperity/window/depth_settings.hpp"
 
 namespace asperity::command {
 

@@ -5,7 +5,7 @@
 
 #include "asperity/control/probe.hpp"
 #include "asperity/control/virtual_coupling.hpp"
-#include "asperity/hal/capabilities.hpp"
+#include "asperity/device/capabilities.hpp"
 #include "cli.hpp"
 #include "run_command.hpp"
 

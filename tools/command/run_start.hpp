@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "asperity/control/workspace_map.hpp"
-#include "asperity/hal/any_device.hpp"
-#include "asperity/hal/simulated/motion_script.hpp"
+#include "asperity/device/any_device.hpp"
+#include "asperity/device/simulated/motion_script.hpp"
 #include "chosen_renderer.hpp"
 #include "run_command.hpp"
 

@@ -10,7 +10,7 @@
 #include "asperity/control/contact_loop.hpp"
 #include "asperity/control/device_loop.hpp"
 #include "asperity/control/real_time_thread.hpp"
-#include "asperity/hal/any_device.hpp"
+#include "asperity/device/any_device.hpp"
 #include "chosen_renderer.hpp"
 #include "driver_guard.hpp"
 #include "progress.hpp"

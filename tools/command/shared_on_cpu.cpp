@@ -1,7 +1,7 @@
 // --backend cpu with --contacts shared: the library's default renderer.
 #include <utility>
 
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
 #include "render_kinds.hpp"
 
 namespace asperity::command {

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "approach.hpp"
-#include "asperity/render/default_renderer.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "cpu_clock.hpp"
 #include "interrupt.hpp"
 

@@ -66,12 +66,12 @@ check_no_exceptions() {
 
 # A translation unit that includes every header of asperity::asperity.
 all_core_headers() {
-  git ls-files include | sed -n 's|^include/\(asperity/.*\.h\(pp\)\{0,1\}\)$|\1|p' | grep -vE '^asperity/(io|bake)/' |
+  git ls-files include | sed -n 's|^include/\(asperity/.*\.h\(pp\)\{0,1\}\)$|\1|p' |
     sed 's/.*/#include "&"/'
 }
 
 # What an optimising compiler of another make could find something in. Clang compiles and runs more with the sanitizers.
-core_tests=(unit_core unit_force control_test hal_test contract_depth simulation_test)
+core_tests=(unit_core unit_window_force control_test hal_test contract_depth simulation_test)
 
 # whole_matrix PRESET STEP: every test but the long ones and those of an installation, with ASPERITY_WHOLE_MATRIX=1.
 whole_matrix() {
@@ -116,7 +116,7 @@ check_clang_release() {
 # A Debug build, assertions and all. What reads bytes from outside, keeps memory of its own or talks to somebody else's,
 # and the core's units. With ASPERITY_WHOLE_MATRIX=1 every test that is not long: a quarter of an hour more.
 check_asan_ubsan() {
-  local tests=(unit_core unit_core_triple_buffer unit_model unit_io unit_render collision_test unit_depth unit_force control_test
+  local tests=(unit_core unit_core_triple_buffer unit_model unit_io unit_render unit_window_finder unit_window_depth unit_window_force control_test
     real_session_test hal_test simulation_test contract_depth hostile_fuzz hostile_bakes unit_gl gl_compute_depth
     gl_occlusion hal_hid_test hal_can unit_joint_drives hal_falcon unit_arm hal_directory plugin_test) only=()
   configure asan-ubsan

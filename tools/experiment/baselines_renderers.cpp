@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "asperity/force/baselines/ho.hpp"
-#include "asperity/force/baselines/minsky.hpp"
-#include "asperity/force/baselines/point_depth.hpp"
-#include "asperity/force/baselines/siira_pai.hpp"
+#include "baselines/ho.hpp"
+#include "baselines/minsky.hpp"
+#include "baselines/point_depth.hpp"
+#include "baselines/siira_pai.hpp"
 
 namespace asperity::experiment {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "asperity/collision/convex_piece_finder.hpp"
+#include "asperity/window/convex_piece_finder.hpp"
 #include "cpu_clock.hpp"
 #include "trial.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "asperity/hal/simulated/simulated_config.hpp"
+#include "asperity/device/simulated/simulated_config.hpp"
 
 namespace asperity::experiment {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "asperity/core/spatial.hpp"
-#include "asperity/hal/device.hpp"
+#include "asperity/device/device.hpp"
 
 namespace asperity::experiment {
 

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <utility>
 
-#include "asperity/force/gradient_penalty.hpp"
-#include "asperity/force/least_motion_settings.hpp"
-#include "asperity/hal/simulated/simulated_config.hpp"
+#include "asperity/device/simulated/simulated_config.hpp"
+#include "asperity/least_motion/least_motion_settings.hpp"
+#include "asperity/window/gradient_penalty.hpp"
 #include "lattice_solid.hpp"
 
 namespace asperity::experiment {

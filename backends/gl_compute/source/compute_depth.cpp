@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/depth/cpu_depth.hpp"
 #include "asperity/gl/functions.hpp"
 #include "asperity/gl/mapped_buffer.hpp"
 #include "asperity/gl/program.hpp"
 #include "asperity/gl/uploaded_model.hpp"
+#include "asperity/window/cpu_depth.hpp"
 #include "job_layout.hpp"
 #include "job_writer.hpp"
 #include "read_back.hpp"

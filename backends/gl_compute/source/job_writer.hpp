@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "asperity/depth/central_difference.hpp"
-#include "asperity/depth/edge_taper.hpp"
-#include "asperity/depth/height_field.hpp"
-#include "asperity/depth/settings.hpp"
-#include "asperity/depth/texture_scale.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/window/central_difference.hpp"
+#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/edge_taper.hpp"
+#include "asperity/window/height_field.hpp"
+#include "asperity/window/pair_scale.hpp"
 #include "job_buffers.hpp"
 
 namespace asperity::gl {

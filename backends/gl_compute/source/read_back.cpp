@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "asperity/depth/height_lookup.hpp"
+#include "asperity/window/height_lookup.hpp"
 
 namespace asperity::gl {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "asperity/depth/penetration.hpp"
+#include "asperity/render/penetration.hpp"
 #include "job_writer.hpp"
 
 namespace asperity::gl {

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "asperity/depth/cpu_depth.hpp"
+#include "asperity/window/cpu_depth.hpp"
 #include "occlusion_parts.hpp"
 
 namespace asperity::gl {

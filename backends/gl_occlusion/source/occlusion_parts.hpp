@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "asperity/depth/central_difference.hpp"
 #include "asperity/gl/occlusion_depth.hpp"
 #include "asperity/gl/uploaded_model.hpp"
+#include "asperity/window/central_difference.hpp"
 #include "contact_slot.hpp"
 #include "difference_pass.hpp"
 #include "height_pass.hpp"

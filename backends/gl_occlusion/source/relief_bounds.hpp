@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "asperity/depth/surface_index.hpp"
+#include "asperity/model/surface_index.hpp"
 #include "asperity/model/textured_model.hpp"
 
 namespace asperity::gl {

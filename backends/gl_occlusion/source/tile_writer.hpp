@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "asperity/depth/height_field.hpp"
-#include "asperity/depth/settings.hpp"
-#include "asperity/depth/texture_scale.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/height_field.hpp"
+#include "asperity/window/pair_scale.hpp"
 #include "relief_bounds.hpp"
 
 namespace asperity::gl {

@@ -11,7 +11,7 @@
 #include <sys/uio.h>
 
 #include "asperity/can/error_frames.hpp"
-#include "asperity/hal/transport/can_length.hpp"
+#include "asperity/transport/can_length.hpp"
 
 namespace asperity::can {
 namespace {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
-#include "asperity/hal/capabilities.hpp"
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/capabilities.hpp"
+#include "asperity/device/driver_conversion.hpp"
 #include "asperity/plugin/driver_module.hpp"
 #include "checks.hpp"
 #include "subject.hpp"

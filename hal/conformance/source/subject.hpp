@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "asperity/core/spatial.hpp"
-#include "asperity/hal/device_state.hpp"
-#include "asperity/hal/driver_abi.h"
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/device_state.hpp"
+#include "asperity/device/driver_abi.h"
+#include "asperity/device/driver_conversion.hpp"
 #include "call_watch.hpp"
 #include "kit_clock.hpp"
 #include "ledger.hpp"

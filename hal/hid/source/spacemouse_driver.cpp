@@ -3,8 +3,8 @@
 #include <string>
 #include <utility>
 
-#include "asperity/hal/hid/descriptor_parser.hpp"
-#include "asperity/hal/spacemouse/products.hpp"
+#include "asperity/drivers/hid/descriptor_parser.hpp"
+#include "asperity/drivers/spacemouse/products.hpp"
 
 namespace asperity::hid {
 namespace {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "asperity/hal/hid/report_descriptor.hpp"
+#include "asperity/drivers/hid/report_descriptor.hpp"
 #include "enumerate.hpp"
 
 namespace asperity::hid {

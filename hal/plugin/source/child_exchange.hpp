@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asperity/hal/driver_abi.h"
+#include "asperity/device/driver_abi.h"
 #include "shared_slot.hpp"
 
 namespace asperity::plugin {

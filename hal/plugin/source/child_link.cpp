@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/driver_conversion.hpp"
 #include "asperity/plugin/table_check.hpp"
 #include "futex.hpp"
 

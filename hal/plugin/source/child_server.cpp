@@ -4,7 +4,7 @@
 #include <unistd.h>
 #include <utility>
 
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/driver_conversion.hpp"
 #include "futex.hpp"
 
 namespace asperity::plugin {

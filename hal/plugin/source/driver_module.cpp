@@ -5,7 +5,7 @@
 #include <dlfcn.h>
 #include <utility>
 
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/driver_conversion.hpp"
 #include "guarded_call.hpp"
 
 namespace asperity::plugin {

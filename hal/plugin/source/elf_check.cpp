@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "asperity/hal/driver_abi.h"
+#include "asperity/device/driver_abi.h"
 
 namespace asperity::plugin {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <type_traits>
 
-#include "asperity/hal/driver_abi.h"
+#include "asperity/device/driver_abi.h"
 
 namespace asperity::plugin {
 

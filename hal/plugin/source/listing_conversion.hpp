@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/driver.hpp"
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/driver.hpp"
+#include "asperity/device/driver_conversion.hpp"
 
 namespace asperity::plugin {
 

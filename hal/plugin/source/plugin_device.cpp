@@ -5,9 +5,9 @@
 #include <optional>
 #include <utility>
 
-#include "asperity/hal/device_state.hpp"
-#include "asperity/hal/driver_conversion.hpp"
-#include "asperity/hal/gate_function.hpp"
+#include "asperity/device/device_state.hpp"
+#include "asperity/device/driver_conversion.hpp"
+#include "asperity/device/gate_function.hpp"
 #include "guarded_call.hpp"
 
 namespace asperity::plugin {

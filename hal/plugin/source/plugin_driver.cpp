@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/driver_conversion.hpp"
 #include "guarded_call.hpp"
 #include "listing_conversion.hpp"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "asperity/hal/driver_conversion.hpp"
+#include "asperity/device/driver_conversion.hpp"
 
 namespace asperity::plugin {
 namespace {

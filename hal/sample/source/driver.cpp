@@ -2,7 +2,7 @@
 #include <memory>
 #include <vector>
 
-#include <asperity/hal/driver_export.hpp>
+#include <asperity/device/driver_export.hpp>
 
 #include "spring_handle.hpp"
 

@@ -1,4 +1,4 @@
-// The device: what asperity/hal/device.hpp asks for, in terms of the hardware.
+// The device: what asperity/device/device.hpp asks for, in terms of the hardware.
 #pragma once
 
 #include <array>
@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include <asperity/hal/device.hpp>
-#include <asperity/hal/driver_export.hpp>
+#include <asperity/device/device.hpp>
+#include <asperity/device/driver_export.hpp>
 
 #include "pretend_hardware.hpp"
 

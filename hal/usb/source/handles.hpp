@@ -6,8 +6,8 @@
 #include <string>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/transport/io_status.hpp"
-#include "asperity/hal/transport/usb_finder.hpp"
+#include "asperity/transport/io_status.hpp"
+#include "asperity/transport/usb_finder.hpp"
 
 namespace asperity::usb {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "asperity/hal/transport/usb_finder.hpp"
+#include "asperity/transport/usb_finder.hpp"
 #include "handles.hpp"
 
 namespace asperity::usb {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "asperity/control/support_plane.hpp"
+#include "asperity/control/support_planes.hpp"
 #include "asperity/core/cholesky.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"

@@ -10,8 +10,8 @@
 #include "asperity/control/rate_monitor.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/control/workspace_map.hpp"
-#include "asperity/hal/output_gate.hpp"
-#include "asperity/hal/sample_check.hpp"
+#include "asperity/device/output_gate.hpp"
+#include "asperity/device/sample_check.hpp"
 
 namespace asperity {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "asperity/control/virtual_coupling.hpp"
-#include "asperity/hal/capabilities.hpp"
+#include "asperity/device/capabilities.hpp"
 
 namespace asperity {
 

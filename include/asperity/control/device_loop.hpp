@@ -13,9 +13,9 @@
 #include "asperity/control/rate_monitor.hpp"
 #include "asperity/control/session_record.hpp"
 #include "asperity/control/workspace_map.hpp"
-#include "asperity/hal/device.hpp"
-#include "asperity/hal/output_gate.hpp"
-#include "asperity/hal/sample_check.hpp"
+#include "asperity/device/device.hpp"
+#include "asperity/device/output_gate.hpp"
+#include "asperity/device/sample_check.hpp"
 
 namespace asperity {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asperity/depth/tick_flag.hpp"
+#include "asperity/render/tick_flag.hpp"
 
 namespace asperity {
 

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asperity/control/support_plane.hpp"
+#include "asperity/control/support_planes.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"

@@ -7,11 +7,11 @@
 
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
-#include "asperity/control/support_plane.hpp"
+#include "asperity/control/support_planes.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
-#include "asperity/depth/plane_source.hpp"
+#include "asperity/render/plane_source.hpp"
 
 namespace asperity {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "asperity/control/linear_contact.hpp"
-#include "asperity/hal/output_gate.hpp"
+#include "asperity/device/output_gate.hpp"
 
 namespace asperity {
 

@@ -7,10 +7,10 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
-#include "asperity/depth/tick_flag.hpp"
-#include "asperity/hal/device_state.hpp"
-#include "asperity/hal/output_gate.hpp"
-#include "asperity/hal/sample_check.hpp"
+#include "asperity/device/device_state.hpp"
+#include "asperity/device/output_gate.hpp"
+#include "asperity/device/sample_check.hpp"
+#include "asperity/render/tick_flag.hpp"
 
 namespace asperity {
 

@@ -11,12 +11,12 @@
 
 #include "asperity/core/memory.hpp"
 #include "asperity/core/status.hpp"
-#include "asperity/depth/surface_index.hpp"
 #include "asperity/field/body_field.hpp"
 #include "asperity/field/make_body_field.hpp"
 #include "asperity/field/sample_tree.hpp"
 #include "asperity/field/surface_samples.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/model/surface_index.hpp"
 
 namespace asperity {
 

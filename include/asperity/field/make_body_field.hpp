@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/depth/surface_index.hpp"
-#include "asperity/depth/texture_scale.hpp"
 #include "asperity/field/body_field.hpp"
 #include "asperity/field/fill_distance.hpp"
 #include "asperity/field/fine_surface.hpp"
 #include "asperity/field/fit_relief.hpp"
 #include "asperity/field/inside_columns.hpp"
+#include "asperity/model/surface_index.hpp"
+#include "asperity/model/texture_scale.hpp"
 #include "asperity/model/textured_model.hpp"
 
 namespace asperity {

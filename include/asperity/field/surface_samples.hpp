@@ -8,8 +8,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "asperity/depth/surface_index.hpp"
 #include "asperity/field/sample_tree.hpp"
+#include "asperity/model/surface_index.hpp"
 #include "asperity/model/textured_model.hpp"
 
 namespace asperity::detail {

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/collision/concept.hpp"
 #include "asperity/core/memory.hpp"
-#include "asperity/depth/concept.hpp"
-#include "asperity/depth/plane_source.hpp"
-#include "asperity/depth/support_plane.hpp"
-#include "asperity/force/concept.hpp"
+#include "asperity/render/collision_finder.hpp"
+#include "asperity/render/depth_backend.hpp"
+#include "asperity/render/force_model.hpp"
+#include "asperity/render/plane_source.hpp"
+#include "asperity/render/support_plane.hpp"
 
 namespace asperity {
 
@@ -38,9 +38,9 @@ struct tick {
 /// Data goes forward only; no stage knows the next. All memory is taken by the constructor.
 /// The policies agree on what is handed on: contacts and penetrations, or near cells and their readings. In the second
 /// case the contacts of a tick are told by the force model afterwards; they are a description of the force.
-/// @tparam Finder  who touches whom          (asperity/collision/concept.hpp)
-/// @tparam Depth   how deep, and which way   (asperity/depth/concept.hpp)
-/// @tparam Force   what that feels like      (asperity/force/concept.hpp)
+/// @tparam Finder  who touches whom          (asperity/render/collision_finder.hpp)
+/// @tparam Depth   how deep, and which way   (asperity/render/depth_backend.hpp)
+/// @tparam Force   what that feels like      (asperity/render/force_model.hpp)
 template <collision_finder Finder, depth_backend Depth, force_model Force>
 requires std::same_as<found_by<Finder>, found_by<Depth>> && std::same_as<found_by<Finder>, found_by<Force>> &&
     std::same_as<reading_of<Depth>, reading_of<Force>>

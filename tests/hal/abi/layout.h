@@ -3,7 +3,7 @@
  * lines, and changes the sizes of the structs that it appends to. */
 #include <stddef.h>
 
-#include "asperity/hal/driver_abi.h"
+#include "asperity/device/driver_abi.h"
 
 #ifdef __cplusplus
 #define HOLDS(name, condition) static_assert(condition, #name)

@@ -4,7 +4,7 @@
 set -euo pipefail
 compiler=$1 include=$2 work=$3/planted
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-header=$include/asperity/hal/driver_abi.h
+header=$include/asperity/device/driver_abi.h
 as_c=(-x c -std=c99 -Wall -Wextra -pedantic -Werror -fsyntax-only)
 as_cxx=(-x c++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only)
 
@@ -20,12 +20,12 @@ for options in as_c as_cxx; do
 done
 
 rm -rf "$work"
-mkdir -p "$work/asperity/hal"
+mkdir -p "$work/asperity/device"
 planted=0
 # plant SED-SCRIPT: changes a copy, and expects neither language to take it.
 plant() {
-  sed -E "$1" "$header" > "$work/asperity/hal/driver_abi.h"
-  if cmp -s "$header" "$work/asperity/hal/driver_abi.h"; then
+  sed -E "$1" "$header" > "$work/asperity/device/driver_abi.h"
+  if cmp -s "$header" "$work/asperity/device/driver_abi.h"; then
     echo "the change '$1' changes nothing" >&2
     exit 1
   fi

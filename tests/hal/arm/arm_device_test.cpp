@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "asperity/hal/any_device.hpp"
+#include "asperity/device/any_device.hpp"
 #include "hal/arm/arm_rig.hpp"
 #include "support/counted_news.hpp"
 

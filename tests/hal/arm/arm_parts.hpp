@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include "asperity/hal/articulated/articulated_config.hpp"
-#include "asperity/hal/canopen/cia402_drive.hpp"
+#include "asperity/drivers/articulated/articulated_config.hpp"
+#include "asperity/drivers/canopen/cia402_drive.hpp"
 #include "hal/peers/fake_arm.hpp"
 #include "hal/peers/fake_cia402.hpp"
 

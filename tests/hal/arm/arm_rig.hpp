@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/articulated/articulated_device.hpp"
-#include "asperity/hal/canopen/canopen_master.hpp"
-#include "asperity/hal/canopen/cia402_drive.hpp"
-#include "asperity/hal/virtual/manual_clock.hpp"
-#include "asperity/hal/virtual/virtual_can.hpp"
+#include "asperity/drivers/articulated/articulated_device.hpp"
+#include "asperity/drivers/canopen/canopen_master.hpp"
+#include "asperity/drivers/canopen/cia402_drive.hpp"
+#include "asperity/transport/virtual/manual_clock.hpp"
+#include "asperity/transport/virtual/virtual_can.hpp"
 #include "hal/arm/arm_parts.hpp"
 
 namespace asperity::test_support {

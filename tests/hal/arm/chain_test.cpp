@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "asperity/hal/articulated/chain_inertia.hpp"
-#include "asperity/hal/articulated/joint_torques.hpp"
+#include "asperity/drivers/articulated/chain_inertia.hpp"
+#include "asperity/drivers/articulated/joint_torques.hpp"
 #include "hal/arm/arm_rig.hpp"
 #include "hal/peers/fake_arm.hpp"
 

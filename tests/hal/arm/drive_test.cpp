@@ -2,10 +2,10 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "asperity/hal/canopen/canopen_master.hpp"
-#include "asperity/hal/canopen/cia402_drive.hpp"
-#include "asperity/hal/virtual/manual_clock.hpp"
-#include "asperity/hal/virtual/virtual_can.hpp"
+#include "asperity/drivers/canopen/canopen_master.hpp"
+#include "asperity/drivers/canopen/cia402_drive.hpp"
+#include "asperity/transport/virtual/manual_clock.hpp"
+#include "asperity/transport/virtual/virtual_can.hpp"
 #include "hal/peers/fake_cia402.hpp"
 
 namespace {

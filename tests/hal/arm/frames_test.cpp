@@ -5,8 +5,8 @@
 #include <limits>
 #include <random>
 
-#include "asperity/hal/canopen/cia402.hpp"
-#include "asperity/hal/canopen/sdo.hpp"
+#include "asperity/drivers/canopen/cia402.hpp"
+#include "asperity/drivers/canopen/sdo.hpp"
 
 namespace {
 

@@ -1,10 +1,10 @@
 // How long frames hold the bus.
-#include "asperity/hal/transport/can_timing.hpp"
+#include "asperity/transport/can_timing.hpp"
 
 #include <cstdint>
 #include <gtest/gtest.h>
 
-#include "asperity/hal/transport/can_length.hpp"
+#include "asperity/transport/can_length.hpp"
 
 namespace asperity::can_timing_test {
 namespace {

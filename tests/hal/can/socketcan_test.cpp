@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "asperity/can/socketcan_bus.hpp"
-#include "asperity/hal/transport/can_length.hpp"
+#include "asperity/transport/can_length.hpp"
 #include "hal/can/fake_kernel.hpp"
 #include "support/counted_news.hpp"
 

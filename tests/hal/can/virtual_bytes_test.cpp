@@ -1,5 +1,5 @@
 // The twin of a serial line: every fault of a script, both ways.
-#include "asperity/hal/virtual/virtual_bytes.hpp"
+#include "asperity/transport/virtual/virtual_bytes.hpp"
 
 #include <array>
 #include <bit>

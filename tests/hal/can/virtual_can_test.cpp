@@ -1,5 +1,5 @@
 // The twin of a CAN bus and of time: every fault of a script, both ways.
-#include "asperity/hal/virtual/virtual_can.hpp"
+#include "asperity/transport/virtual/virtual_can.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "asperity/hal/virtual/manual_clock.hpp"
+#include "asperity/transport/virtual/manual_clock.hpp"
 #include "support/counted_news.hpp"
 
 namespace asperity::virtual_can_test {

@@ -8,7 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <asperity/hal/spacemouse/products.hpp>
+#include <asperity/drivers/spacemouse/products.hpp>
 #include <asperity/hid/hidraw_link.hpp>
 #include <asperity/hid/spacemouse_driver.hpp>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <asperity/hal/spacemouse/spacemouse_device.hpp>
-#include <asperity/hal/virtual/virtual_hid.hpp>
+#include <asperity/drivers/spacemouse/spacemouse_device.hpp>
+#include <asperity/transport/virtual/virtual_hid.hpp>
 
 #include "hal/peers/fake_spacemouse.hpp"
 #include "rt/tick_trap.hpp"

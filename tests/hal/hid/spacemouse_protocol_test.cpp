@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include <asperity/hal/hid/descriptor_parser.hpp>
-#include <asperity/hal/spacemouse/products.hpp>
-#include <asperity/hal/spacemouse/protocol.hpp>
+#include <asperity/drivers/hid/descriptor_parser.hpp>
+#include <asperity/drivers/spacemouse/products.hpp>
+#include <asperity/drivers/spacemouse/protocol.hpp>
 
 #include "hal/peers/fake_spacemouse.hpp"
 #include "rt/tick_trap.hpp"

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <asperity/control/virtual_session.hpp>
-#include <asperity/hal/spacemouse/spacemouse_device.hpp>
-#include <asperity/hal/virtual/virtual_hid.hpp>
+#include <asperity/drivers/spacemouse/spacemouse_device.hpp>
+#include <asperity/transport/virtual/virtual_hid.hpp>
 
 #include "hal/peers/fake_spacemouse.hpp"
 #include "unit/control/analytic_wall.hpp"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <asperity/hal/virtual/virtual_hid.hpp>
+#include <asperity/transport/virtual/virtual_hid.hpp>
 
 namespace {
 

@@ -10,11 +10,11 @@
 #include <cstdlib>
 #include <gtest/gtest.h>
 
-#include "asperity/hal/canopen/cia402.hpp"
-#include "asperity/hal/falcon/falcon_frame.hpp"
-#include "asperity/hal/joint/wire_number.hpp"
-#include "asperity/hal/mit/mit_codec.hpp"
-#include "asperity/hal/moteus/moteus_codec.hpp"
+#include "asperity/drivers/canopen/cia402.hpp"
+#include "asperity/drivers/falcon/falcon_frame.hpp"
+#include "asperity/drivers/joint/wire_number.hpp"
+#include "asperity/drivers/mit/mit_codec.hpp"
+#include "asperity/drivers/moteus/moteus_codec.hpp"
 
 namespace asperity {
 namespace {

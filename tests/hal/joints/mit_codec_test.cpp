@@ -1,5 +1,5 @@
 // The MIT frames: bytes of the reference implementation, limits, signs.
-#include "asperity/hal/mit/mit_codec.hpp"
+#include "asperity/drivers/mit/mit_codec.hpp"
 
 #include <cmath>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // moteus frames: the examples of its documents, integer units, hostile numbers and hostile bytes.
-#include "asperity/hal/moteus/moteus_codec.hpp"
+#include "asperity/drivers/moteus/moteus_codec.hpp"
 
 #include <array>
 #include <cmath>

@@ -1,5 +1,5 @@
 // CANSimple frames: bytes of the documents, limits, signs.
-#include "asperity/hal/odrive/odrive_codec.hpp"
+#include "asperity/drivers/odrive/odrive_codec.hpp"
 
 #include <cmath>
 #include <cstdint>

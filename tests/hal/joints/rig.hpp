@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
-#include "asperity/hal/mit/mit_drive.hpp"
-#include "asperity/hal/moteus/moteus_drive.hpp"
-#include "asperity/hal/odrive/odrive_drive.hpp"
-#include "asperity/hal/virtual/manual_clock.hpp"
-#include "asperity/hal/virtual/virtual_can.hpp"
+#include "asperity/drivers/mit/mit_drive.hpp"
+#include "asperity/drivers/moteus/moteus_drive.hpp"
+#include "asperity/drivers/odrive/odrive_drive.hpp"
+#include "asperity/transport/virtual/manual_clock.hpp"
+#include "asperity/transport/virtual/virtual_can.hpp"
 #include "hal/peers/fake_mit.hpp"
 #include "hal/peers/fake_moteus.hpp"
 #include "hal/peers/fake_odrive.hpp"

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asperity/hal/articulated/chain_inertia.hpp"
-#include "asperity/hal/simulated/motion_script.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/motion_script.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
+#include "asperity/drivers/articulated/chain_inertia.hpp"
 
 namespace asperity::test_support {
 

@@ -10,8 +10,8 @@
 #include <set>
 #include <vector>
 
-#include "asperity/hal/canopen/cia402.hpp"
-#include "asperity/hal/canopen/sdo.hpp"
+#include "asperity/drivers/canopen/cia402.hpp"
+#include "asperity/drivers/canopen/sdo.hpp"
 
 namespace asperity::test_support {
 

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/falcon/falcon_torque.hpp"
-#include "asperity/hal/falcon/ftdi_line.hpp"
+#include "asperity/drivers/falcon/falcon_torque.hpp"
+#include "asperity/drivers/falcon/ftdi_line.hpp"
 
 namespace asperity::test_support {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "asperity/hal/mit/mit_codec.hpp"
-#include "asperity/hal/transport/can_bus.hpp"
+#include "asperity/drivers/mit/mit_codec.hpp"
+#include "asperity/transport/can_bus.hpp"
 
 namespace asperity::test_support {
 

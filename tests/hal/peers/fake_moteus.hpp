@@ -8,8 +8,8 @@
 #include <limits>
 #include <numbers>
 
-#include "asperity/hal/moteus/moteus_codec.hpp"
-#include "asperity/hal/transport/can_bus.hpp"
+#include "asperity/drivers/moteus/moteus_codec.hpp"
+#include "asperity/transport/can_bus.hpp"
 
 namespace asperity::test_support {
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "asperity/hal/odrive/odrive_codec.hpp"
-#include "asperity/hal/transport/can_bus.hpp"
+#include "asperity/drivers/odrive/odrive_codec.hpp"
+#include "asperity/transport/can_bus.hpp"
 
 namespace asperity::test_support {
 

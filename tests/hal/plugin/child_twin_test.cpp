@@ -10,8 +10,8 @@
 #include <thread>
 #include <vector>
 
-#include "asperity/hal/driver_conversion.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/driver_conversion.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "asperity/plugin/plugin_driver.hpp"
 #include "child_rig.hpp"
 

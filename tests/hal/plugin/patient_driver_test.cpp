@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "asperity/hal/device_directory.hpp"
+#include "asperity/device/device_directory.hpp"
 #include "child_rig.hpp"
 
 namespace asperity::plugin {

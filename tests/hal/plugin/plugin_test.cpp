@@ -10,8 +10,8 @@
 #include <unistd.h>
 #include <vector>
 
-#include "asperity/hal/driver_conversion.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/driver_conversion.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "asperity/plugin/plugin_driver.hpp"
 #include "module_files.hpp"
 

@@ -2,8 +2,8 @@
 #include <memory>
 #include <vector>
 
-#include "asperity/hal/driver_export.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/driver_export.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 
 namespace {
 

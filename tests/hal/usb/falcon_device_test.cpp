@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include "asperity/hal/falcon/falcon_driver.hpp"
+#include "asperity/drivers/falcon/falcon_driver.hpp"
 #include "hal/usb/falcon_rig.hpp"
 #include "support/counted_news.hpp"
 

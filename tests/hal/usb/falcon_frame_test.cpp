@@ -1,5 +1,5 @@
 // Bytes of a Falcon: published vectors both ways, every number, and bytes that mean harm.
-#include "asperity/hal/falcon/falcon_frame.hpp"
+#include "asperity/drivers/falcon/falcon_frame.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "asperity/hal/falcon/ftdi_line.hpp"
+#include "asperity/drivers/falcon/ftdi_line.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "asperity/hal/falcon/falcon_device.hpp"
+#include "asperity/drivers/falcon/falcon_device.hpp"
 
 namespace {
 

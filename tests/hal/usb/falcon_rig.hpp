@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/falcon/falcon_device.hpp"
-#include "asperity/hal/virtual/manual_clock.hpp"
-#include "asperity/hal/virtual/virtual_usb.hpp"
+#include "asperity/drivers/falcon/falcon_device.hpp"
+#include "asperity/transport/virtual/manual_clock.hpp"
+#include "asperity/transport/virtual/virtual_usb.hpp"
 #include "hal/peers/fake_falcon.hpp"
 
 namespace asperity::test_support {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <string>
 
-#include <asperity/hal/falcon/falcon_driver.hpp>
+#include <asperity/drivers/falcon/falcon_driver.hpp>
 #include <asperity/usb/usb.hpp>
 
 namespace {

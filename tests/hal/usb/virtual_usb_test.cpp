@@ -1,5 +1,5 @@
 // The cable that exists in this process only does what its script says.
-#include "asperity/hal/virtual/virtual_usb.hpp"
+#include "asperity/transport/virtual/virtual_usb.hpp"
 
 #include <array>
 #include <cstdint>

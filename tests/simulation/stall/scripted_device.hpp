@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "asperity/hal/device.hpp"
+#include "asperity/device/device.hpp"
 
 namespace asperity::simulation {
 

@@ -7,8 +7,8 @@
 #include <memory>
 #include <string>
 
-#include "asperity/depth/cpu_depth.hpp"
 #include "asperity/model/textured_model.hpp"
+#include "asperity/window/cpu_depth.hpp"
 #include "mapped_shapes.hpp"
 #include "support/height_models.hpp"
 

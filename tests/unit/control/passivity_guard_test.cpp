@@ -5,7 +5,7 @@
 
 #include <asperity/control/passivity_guard.hpp>
 #include <asperity/control/virtual_session.hpp>
-#include <asperity/hal/simulated/simulated_device.hpp>
+#include <asperity/device/simulated/simulated_device.hpp>
 
 #include "unit/control/analytic_wall.hpp"
 

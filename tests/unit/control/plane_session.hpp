@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "asperity/control/virtual_session.hpp"
-#include "asperity/hal/simulated/simulated_device.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
 #include "unit/control/plane_bodies.hpp"
 
 namespace asperity::test_support {

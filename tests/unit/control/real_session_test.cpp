@@ -18,7 +18,7 @@
 
 #include <asperity/control/real_session.hpp>
 #include <asperity/control/real_time_thread.hpp>
-#include <asperity/hal/simulated/simulated_device.hpp>
+#include <asperity/device/simulated/simulated_device.hpp>
 
 #include "support/sanitizers.hpp"
 #include "unit/control/analytic_wall.hpp"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <asperity/control/virtual_session.hpp>
-#include <asperity/hal/simulated/simulated_device.hpp>
+#include <asperity/device/simulated/simulated_device.hpp>
 
 #include "unit/control/analytic_wall.hpp"
 

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "asperity/collision/near_samples.hpp"
-#include "asperity/depth/near_plane.hpp"
+#include "asperity/planes/near_plane.hpp"
+#include "asperity/planes/near_samples.hpp"
 
 namespace {
 

@@ -21,9 +21,9 @@
 #include <string>
 #include <vector>
 
-#include "asperity/depth/concept.hpp"
-#include "asperity/depth/settings.hpp"
 #include "asperity/gl/context.hpp"
+#include "asperity/render/depth_backend.hpp"
+#include "asperity/window/depth_settings.hpp"
 
 namespace asperity::gl {
 

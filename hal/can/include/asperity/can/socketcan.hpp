@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/transport/can_bus.hpp"
+#include "asperity/transport/can_bus.hpp"
 
 namespace asperity::can {
 

@@ -5,7 +5,7 @@
 #include <linux/can.h>
 #include <linux/can/error.h>
 
-#include "asperity/hal/transport/can_bus.hpp"
+#include "asperity/transport/can_bus.hpp"
 
 namespace asperity::can {
 

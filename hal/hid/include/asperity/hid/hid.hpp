@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/transport/hid_link.hpp"
+#include "asperity/transport/hid_link.hpp"
 
 namespace asperity::hid {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/hal/transport/hid_link.hpp"
+#include "asperity/transport/hid_link.hpp"
 
 namespace asperity::hid {
 

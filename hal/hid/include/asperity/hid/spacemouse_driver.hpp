@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "asperity/hal/driver.hpp"
-#include "asperity/hal/spacemouse/spacemouse_device.hpp"
+#include "asperity/device/driver.hpp"
+#include "asperity/drivers/spacemouse/spacemouse_device.hpp"
 #include "asperity/hid/hid.hpp"
 
 namespace asperity::hid {

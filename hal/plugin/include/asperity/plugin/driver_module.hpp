@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/driver_abi.h"
+#include "asperity/device/driver_abi.h"
 #include "asperity/plugin/driver_file.hpp"
 #include "asperity/plugin/table_check.hpp"
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/device.hpp"
-#include "asperity/hal/driver_abi.h"
+#include "asperity/device/device.hpp"
+#include "asperity/device/driver_abi.h"
 #include "asperity/plugin/driver_module.hpp"
 
 namespace asperity::plugin {

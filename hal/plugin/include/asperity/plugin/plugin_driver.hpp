@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "asperity/hal/driver.hpp"
+#include "asperity/device/driver.hpp"
 #include "asperity/plugin/driver_module.hpp"
 #include "asperity/plugin/plugin_device.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "asperity/hal/driver_abi.h"
+#include "asperity/device/driver_abi.h"
 
 namespace asperity::plugin {
 

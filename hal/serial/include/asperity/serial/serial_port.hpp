@@ -6,7 +6,7 @@
 #include <string>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/transport/byte_link.hpp"
+#include "asperity/transport/byte_link.hpp"
 
 namespace asperity::serial {
 

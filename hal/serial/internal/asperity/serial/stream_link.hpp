@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "asperity/hal/transport/byte_link.hpp"
+#include "asperity/transport/byte_link.hpp"
 
 namespace asperity::serial {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/articulated/serial_chain.hpp"
+#include "asperity/drivers/articulated/serial_chain.hpp"
 
 namespace asperity {
 

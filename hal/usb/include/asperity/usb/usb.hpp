@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/hal/transport/usb_finder.hpp"
+#include "asperity/transport/usb_finder.hpp"
 
 namespace asperity::usb {
 

@@ -1,0 +1,50 @@
+// The host on a CANopen bus: SYNC for all drives, and our own sign of life.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "asperity/drivers/canopen/frames.hpp"
+#include "asperity/drivers/joint/bus_service.hpp"
+
+namespace asperity {
+
+struct canopen_master_config {
+  std::uint8_t node = 127;                      ///< cia402_config::host_node of every drive on the bus
+  std::int64_t heartbeat_every_ns = 5'000'000;  ///< several within cia402_config::host_silence_ms
+  bool reset_when_finished = true;  ///< reset the communication of every node on the bus at the end of a session
+};
+
+/// Sends SYNC in every step, and a heartbeat when one is due. It has no clock and no thread of its own: an application
+/// that stops ticking stops the heartbeat, and every drive on the bus then stops by itself (object 1016).
+/// One per bus.
+/// @rt safe
+class canopen_master final : public bus_service {
+ public:
+  explicit canopen_master(const canopen_master_config& config = {}) noexcept : config_(config) {}
+
+  [[nodiscard]] io_status step(std::int64_t now_ns, can_bus& bus) noexcept override {
+    const io_status synced = bus.send(now_ns, canopen::encode_sync());
+    if (beaten_ && now_ns - beat_ns_ < config_.heartbeat_every_ns) return synced;
+    const io_status beat = bus.send(now_ns, canopen::encode_heartbeat(config_.node, canopen::nmt_state::operational));
+    if (beat == io_status::ok) {
+      beaten_ = true;
+      beat_ns_ = now_ns;
+    }
+    return synced == io_status::ok ? beat : synced;
+  }
+
+  /// Ends the supervision of our heartbeat, which would otherwise find the end of a session to be a fault.
+  void finish(std::int64_t now_ns, can_bus& bus) noexcept override {
+    beaten_ = false;
+    if (!config_.reset_when_finished) return;
+    static_cast<void>(bus.send(now_ns, canopen::encode_nmt(canopen::nmt_command::reset_communication, 0)));
+  }
+
+ private:
+  canopen_master_config config_;
+  bool beaten_ = false;
+  std::int64_t beat_ns_ = 0;
+};
+
+}  // namespace asperity

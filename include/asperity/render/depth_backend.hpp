@@ -1,0 +1,50 @@
+// The second policy: how deep, and which way out.
+//
+// Contract of a depth backend
+// - measure() fills out[i] for contact i of the set, for every contact, in one call: a GPU pays for its round trip once
+//   per tick.
+// - Heights along n are those of the textured surfaces over the coarse patches (paper, Eq. 8); out.depth_m is their
+//   largest difference h_A - h_B over the window. Gradients are about c_A, in world axes, the component along n is 1.
+// - Where the patches share no sample: no_overlap is set and every number is zero.
+// - Agreement with the double-precision CPU backend is within a bound that the backend states.
+// - Nothing in measure() allocates, locks, throws, prints or reads a clock (a GPU backend says what its driver does).
+#pragma once
+
+#include <concepts>
+#include <span>
+
+#include "asperity/core/status.hpp"
+#include "asperity/model/scene.hpp"
+#include "asperity/render/collision_finder.hpp"
+#include "asperity/render/penetration.hpp"
+
+namespace asperity {
+
+/// Base of a backend's `policy_tag`: naming it says "I keep the contract above".
+struct depth_tag {};
+
+namespace detail {
+template <class P>
+struct reading_of {
+  using type = penetration;
+};
+template <class P>
+requires requires { typename P::reading_type; }
+struct reading_of<P> {
+  using type = typename P::reading_type;
+};
+}  // namespace detail
+
+/// What a policy's depth backend measures of one thing found: a penetration, unless the policy names another
+/// reading_type. Depth backend and force model must agree on it.
+template <class P>
+using reading_of = typename detail::reading_of<P>::type;
+
+template <class P>
+concept depth_backend = std::derived_from<typename P::policy_tag, depth_tag> &&
+    requires(P& backend, const scene_pose& at, const found_by<P>& found, std::span<reading_of<P>> out) {
+  { backend.measure(at, found, out) }
+  noexcept->std::same_as<status>;
+};
+
+}  // namespace asperity

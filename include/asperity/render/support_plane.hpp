@@ -1,0 +1,49 @@
+// The surface near the probe as planes: what a renderer can tell of contacts and of gaps alike.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+#include "asperity/core/spatial.hpp"
+#include "asperity/render/tick_flag.hpp"
+
+namespace asperity {
+
+/// One plane that a small part of a fixed body's surface puts in the way of the probe, as seen from one probe pose q0.
+/// The depth at another pose q near it is depth_m + gradient . (q - q0), q = (translation of c_A; rotation vector).
+/// All planes together are the depth of the pair: the largest of them. World axes.
+struct support_plane {
+  double depth_m = 0.0;      ///< directional penetration depth at q0; negative: a gap
+  vec6 gradient{};           ///< of the depth by the probe's motion about c_A, m/m and m/rad
+  vec3 n_ab_w{0.0};          ///< direction of the contact: unit, from the probe A to the body B
+  vec3 r_w{0.0};             ///< from c_A to the point that the plane stands for, m
+  double spread_m = 0.0;     ///< radius across n_ab_w of the surface that the plane stands for, m
+  std::uint32_t body = 0;    ///< index of B in scene::fixed
+  std::uint32_t sample = 0;  ///< planes of one body with the same number stand for the same point; 0: not told
+};
+
+/// @rt safe
+[[nodiscard]] inline bool is_finite(const support_plane& p) noexcept {
+  return std::isfinite(p.depth_m) && is_finite(p.gradient) && is_finite(p.n_ab_w) && is_finite(p.r_w) &&
+         std::isfinite(p.spread_m);
+}
+
+/// A stage of a renderer that knows the support planes of its last tick, gaps included. Gaps should be told up to
+/// 3 v T, v the fastest approach and T the contact loop's period: a contact is handed over a period after its pose and
+/// used for another, and what is not told by then is met by surprise.
+/// The order of the planes must not depend on addresses or time. The span lives until the next tick.
+template <class P>
+concept tells_support_planes = requires(const P& stage) {
+  { stage.support_planes() }
+  noexcept->std::same_as<std::span<const support_plane>>;
+};
+
+/// A stage of a renderer that knows what the planes of its last tick do not answer.
+template <class P>
+concept tells_tick_flags = requires(const P& stage) {
+  { stage.flags() }
+  noexcept->std::same_as<tick_flag>;
+};
+
+}  // namespace asperity

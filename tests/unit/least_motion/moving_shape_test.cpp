@@ -1,0 +1,160 @@
+// The moving shape of a body with a notch, and its bounds.
+#include "asperity/least_motion/moving_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <memory>
+
+#include "exit_lab.hpp"
+#include "support/fresh_seed.hpp"
+
+namespace asperity {
+namespace {
+
+using namespace test_support;
+using namespace exits;
+
+const exit_body& block() {
+  static const exit_body made(grooved_block());
+  return made;
+}
+
+// Most of them in and about the groove.
+vec3 drawn_place(drawing& draw) {
+  const vec3 about = draw.between(0.0, 1.0) < 0.7 ? vec3(1.0, 7.0, 1.0) : vec3(13.0, 9.0, 7.0);
+  return mm * (about * draw.vector() + (about.x < 2.0 ? vec3(0.0, 0.0, 3.0) : vec3(0.0)));
+}
+
+TEST(MovingShape, IsTheSmoothPartAndWhatMovesInNotches) {
+  drawing draw{std::mt19937_64(fresh_seed("MovingShape.IsTheSmoothPartAndWhatMovesInNotches", "40000 points"))};
+  const body_field& field = block().body->field;
+  const double pitch = field.smooth.pitch_m;
+  int away = 0, moved = 0;
+  double most = 0.0, worst = 0.0, sum = 0.0;
+  for (int i = 0; i < 40000; ++i) {
+    const vec3 p = drawn_place(draw);
+    const double smooth_m = field.coarse(p).value_m, moves_m = block().relief.moving_m(field, p);
+    if (!block().shape.is_finer(p)) {
+      EXPECT_EQ(block().shape.value_m(p), smooth_m);
+      EXPECT_EQ(moves_m, 0.0);
+      ++away;
+      continue;
+    }
+    const double off = std::fabs(block().shape.value_m(p) - smooth_m - moves_m);
+    worst = std::max(worst, off);
+    if (moves_m == 0.0) continue;
+    ++moved;
+    sum += off;
+    most = std::max(most, -moves_m);
+  }
+  std::printf("  relief moves at %d places, by up to %.3f pitches; the shape is off by %.4f, at worst by %.4f\n", moved,
+              most / pitch, sum / moved / pitch, worst / pitch);
+  EXPECT_GT(away, 10000);
+  EXPECT_GT(moved, 1000);
+  EXPECT_GT(most, 0.05 * pitch);
+  EXPECT_LT(worst, 0.4 * most);
+  EXPECT_LT(sum / moved, 0.06 * most);
+}
+
+TEST(MovingShape, IsContinuousWithTwoDerivatives) {
+  drawing draw{std::mt19937_64(fresh_seed("MovingShape.IsContinuousWithTwoDerivatives", "1500 points"))};
+  const moving_shape& shape = block().shape;
+  const detail::coarse_grid& grid = shape.grid();
+  const double brick_m = static_cast<double>(moving_shape::cells) * grid.pitch_m;
+  int finer = 0;
+  for (int i = 0; i < 100000 && finer < 1500; ++i) {
+    vec3 p = drawn_place(draw);
+    // On a face between two bricks.
+    const int axis = i % 3;
+    p[axis] = grid.low[axis] + brick_m * std::round((p[axis] - grid.low[axis]) / brick_m);
+    vec3 step(0.0);
+    step[axis] = 1e-9;
+    if (!shape.is_finer(p + step) && !shape.is_finer(p - step)) continue;
+    ++finer;
+    const coarse_reading a = shape.read(p - step), b = shape.read(p + step);
+    // Coefficients are floats: they are a billionth of a body's size off.
+    EXPECT_NEAR(a.value_m, b.value_m, 1e-8 * mm + 2e-9 * glm::length(b.slope));
+    EXPECT_LT(glm::length(a.slope - b.slope), 2e-5 + 4e-9 * glm::length(b.hessian_per_m[axis]));
+    EXPECT_LT(glm::length(a.hessian_per_m[axis] - b.hessian_per_m[axis]), 0.02 / grid.pitch_m);
+    const vec3 along = draw.vector();
+    const double h = 1e-7;
+    const double rise = (shape.value_m(p + h * along) - shape.value_m(p - h * along)) / (2.0 * h);
+    EXPECT_NEAR(rise, glm::dot(b.slope, along), 4e-4);
+  }
+  EXPECT_EQ(finer, 1500);
+}
+
+TEST(MovingShape, AConvexBodyHasNoFinerNodes) {
+  const exit_body box(waved_box(vec3(7, 6, 5) * mm, 0.0, 1.0));
+  EXPECT_LT(box.shape.heap_bytes(), sizeof(std::uint32_t) * box.body->field.smooth.value.size());
+}
+
+TEST(FieldBounds, HoldForEveryPointOfABall) {
+  drawing draw{std::mt19937_64(fresh_seed("FieldBounds.HoldForEveryPointOfABall", "6000 balls"))};
+  const exit_body box(waved_box(vec3(12, 11, 6) * mm, 0.06 * mm, 0.7 * mm));
+  int finer = 0;
+  for (int i = 0; i < 6000; ++i) {
+    const exit_body& body = i % 2 == 0 ? box : block();
+    const detail::coarse_grid& grid = body.shape.grid();
+    const vec3 c = i % 2 == 0 ? 14.0 * mm * draw.vector() : drawn_place(draw);
+    const double radius = std::exp(draw.between(std::log(0.02), std::log(4.0))) * mm;
+    vec3 step;
+    do step = draw.vector();
+    while (glm::dot(step, step) > 1.0);
+    const vec3 p = c + radius * step;
+    const coarse_reading at = body.shape.read(p);
+    EXPECT_NEAR(body.shape.value_m(p), at.value_m, 1e-15);
+    finer += body.shape.is_finer(p) ? 1 : 0;
+    EXPECT_LE(at.value_m, body.bounds.most_by_table(c, radius) + 1e-12);
+    if (grid.clamped(p) != p) continue;
+    EXPECT_LE(glm::length(at.slope), body.bounds.steepest());
+    double squares = 0.0;
+    for (int k = 0; k < 3; ++k) squares += glm::dot(at.hessian_per_m[k], at.hessian_per_m[k]);
+    EXPECT_LE(std::sqrt(squares), body.bounds.bend_per_m(c, radius) * (1.0 + 1e-6) + 1e-6);
+  }
+  EXPECT_GT(finer, 300);
+}
+
+// The search may not leave out a sample because its bounds do not know of the finer nodes.
+TEST(PosedSamples, FindTheDeepestInANotch) {
+  drawing draw{std::mt19937_64(fresh_seed("PosedSamples.FindTheDeepestInANotch", "40 poses"))};
+  const field_body_ptr probe = waved_box(vec3(3, 5, 3) * mm, 0.03 * mm, 0.4 * mm);
+  const field_scene bodies{probe, {block().body}};
+  const auto scene = std::make_shared<const exit_scene>(bodies);
+  posed_samples samples(scene, vec3(0.0));
+  int in_notch = 0;
+  for (int i = 0; i < 40; ++i) {
+    // An edge of the probe in the groove, 0.3 mm deep.
+    const pose T_wa{exp_rotation(vec3(0.0, 0.7854, 0.0) + 0.02 * draw.vector()),
+                    mm * (vec3(0.0, 0.0, 6.94) + vec3(0.1, 0.4, 0.3) * draw.vector())};
+    const pose T_wb;
+    const vec3 x_w = 0.3 * mm * draw.vector();
+    samples.place({T_wa, {&T_wb, 1}}, 10'000'000);
+    double most = -1.0;
+    vec3 deepest_b(0.0);
+    const auto look = [&](const field_body& of, const exit_body& in, const pose& T_yx, const vec3& moved_y, bool own) {
+      for (const field_sample& s : of.samples.samples()) {
+        const vec3 p_y = T_yx * vec3(s.position_b);
+        const double depth_m = in.shape.value_m(p_y + moved_y) + in.relief.read(in.body->field, p_y).value_m;
+        if (depth_m <= most) continue;
+        most = depth_m;
+        deepest_b = own ? p_y + moved_y : vec3(1.0);
+      }
+    };
+    look(*probe, *scene->fixed[0], T_wa, x_w, true);
+    look(*block().body, *scene->probe, inverse(T_wa), -(glm::conjugate(T_wa.rotation) * x_w), false);
+    in_notch += scene->fixed[0]->shape.is_finer(deepest_b) ? 1 : 0;
+    mark m;
+    EXPECT_FALSE(samples.deepest(x_w, most + 1e-12, m));
+    ASSERT_TRUE(samples.deepest(x_w, most - 0.3 * mm, m));
+    EXPECT_NEAR(m.depth_m, most, 1e-12);
+    EXPECT_NEAR(samples.depth(m, x_w), most, 1e-12);
+  }
+  std::printf("  %d of 40 poses are deepest where nodes are finer\n", in_notch);
+  EXPECT_GT(in_notch, 5);
+}
+
+}  // namespace
+}  // namespace asperity
