@@ -50,7 +50,7 @@ TEST_P(BakedPair, TheDefaultNeitherJumpsNorMakesWork) {
 
 // Without this the test above could pass because nothing was touched, or because the measure cannot tell.
 TEST_P(BakedPair, ThePapersClustersDoBoth) {
-  const double k = renderers_->shared().settings().stiffness_n_per_m;
+  const double k = renderers_->shared().force().settings().stiffness_n_per_m;
   const feel_function feel = feel_with(renderers_->paper());
   bool jumped = false, worked = false;
   for (std::uint64_t index = 0; index < 8 && !(jumped && worked); ++index) {

@@ -37,7 +37,7 @@ trace trace_slide(const std::string& pair, pair_of_renderers& renderers, std::ui
     std::uint64_t index;
     touching_pose start;
   };
-  const double k = renderers.shared().settings().stiffness_n_per_m;
+  const double k = renderers.shared().force().settings().stiffness_n_per_m;
   const feel_function feel_shared = feel_with(renderers.shared()), feel_paper = feel_with(renderers.paper());
   std::vector<candidate> seen;
   for (std::uint64_t index = 0; seen.size() < candidates; ++index) {
@@ -76,7 +76,7 @@ result<void> draw_traces(const std::vector<trace>& traces, const std::filesystem
 result<void> draw_spectra(const std::filesystem::path& file) {
   result<pair_of_renderers> renderers = pair_of_renderers::make(uniform_slide::bodies());
   if (!renderers) return renderers.error();
-  const double k = renderers->shared().settings().stiffness_n_per_m;
+  const double k = renderers->shared().force().settings().stiffness_n_per_m;
   const auto decades = [](const std::vector<double>& force_n) {
     std::vector<double> out = amplitude_spectrum(force_n);
     for (double& x : out) x = std::log10(std::max(x, 1e-10));

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "asperity/window/paper_renderer.hpp"
 #include "contact_study/jumps.hpp"
 
 namespace asperity::contact_study {
@@ -48,10 +49,10 @@ struct study_options {
 }
 
 /// The paper's formulation with room for every contact: where contacts are dropped, the force jumps for that alone.
-[[nodiscard]] inline result<built_paper_renderer> make_roomy_paper_renderer(const scene& bodies) {
+[[nodiscard]] inline result<paper_renderer> make_roomy_paper_renderer(const scene& bodies) {
   paper_settings settings;
   settings.limits = {.contacts = 128, .triangles = 262144};
-  return build_paper_renderer(bodies, settings);
+  return make_paper_renderer(bodies, settings);
 }
 
 /// Both renderers of a pair. The fixed body is the world.
@@ -59,22 +60,21 @@ class pair_of_renderers {
  public:
   /// @return what make_renderer() and make_paper_renderer() refuse
   [[nodiscard]] static result<pair_of_renderers> make(const scene& bodies) {
-    result<built_renderer> shared = build_renderer(bodies);
+    result<renderer> shared = build_renderer(bodies);
     if (!shared) return shared.error();
-    result<built_paper_renderer> paper = make_roomy_paper_renderer(bodies);
+    result<paper_renderer> paper = make_roomy_paper_renderer(bodies);
     if (!paper) return paper.error();
     return pair_of_renderers(std::move(shared).value(), std::move(paper).value());
   }
 
-  [[nodiscard]] built_renderer& shared() noexcept { return shared_; }
-  [[nodiscard]] built_paper_renderer& paper() noexcept { return paper_; }
+  [[nodiscard]] renderer& shared() noexcept { return shared_; }
+  [[nodiscard]] paper_renderer& paper() noexcept { return paper_; }
 
  private:
-  pair_of_renderers(built_renderer shared, built_paper_renderer paper)
-      : shared_(std::move(shared)), paper_(std::move(paper)) {}
+  pair_of_renderers(renderer shared, paper_renderer paper) : shared_(std::move(shared)), paper_(std::move(paper)) {}
 
-  built_renderer shared_;
-  built_paper_renderer paper_;
+  renderer shared_;
+  paper_renderer paper_;
 };
 
 [[nodiscard]] inline pair_result study_pair(const std::string& name, pair_of_renderers& renderers,
@@ -82,7 +82,7 @@ class pair_of_renderers {
   pair_result out;
   out.pair = name;
   const feel_function feel_shared = feel_with(renderers.shared()), feel_paper = feel_with(renderers.paper());
-  const double k = renderers.shared().settings().stiffness_n_per_m;
+  const double k = renderers.shared().force().settings().stiffness_n_per_m;
   for (std::uint64_t index = options.first_index; out.shared.size() < options.poses; ++index) {
     const std::optional<touching_pose> start = find_touching_pose(renderers.shared(), options.seed, index);
     if (!start) {

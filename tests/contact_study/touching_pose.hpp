@@ -9,14 +9,11 @@
 #include <random>
 #include <string_view>
 
-#include "support/built_renderers.hpp"
+#include "support/kept_bodies.hpp"
 
 namespace asperity::contact_study {
 
-using test_support::build_paper_renderer;
 using test_support::build_renderer;
-using test_support::built_paper_renderer;
-using test_support::built_renderer;
 
 /// Numbers that depend on a seed alone, whatever the standard library.
 class seeded_numbers {
@@ -63,7 +60,7 @@ struct touching_pose {
 /// Marches the probe, turned at random, towards the fixed body from a random side until it is touch_depth_m deep.
 /// @param index which pose: every index has a generator of its own, so that any pose can be repeated alone
 /// @return nothing where the probe passes by
-[[nodiscard]] inline std::optional<touching_pose> find_touching_pose(built_renderer& feel, std::uint64_t seed,
+[[nodiscard]] inline std::optional<touching_pose> find_touching_pose(renderer& feel, std::uint64_t seed,
                                                                      std::uint64_t index) {
   seeded_numbers random(seed * 1'000'003 + index);
   const textured_model &a = *feel.scene().probe, &b = *feel.scene().fixed.front();
@@ -75,8 +72,8 @@ struct touching_pose {
   const auto deep_enough = [&](double distance) {
     out.T_wa.position = c_b + distance * from - out.T_wa.rotation * c_a;
     const status s = feel.step({out.T_wa, {&T_wb, 1}}, found);
-    const double k = feel.settings().stiffness_n_per_m;
-    return s == status::ok && std::sqrt(2.0 * feel.energy_j() / k) >= touch_depth_m;
+    const double k = feel.force().settings().stiffness_n_per_m;
+    return s == status::ok && std::sqrt(2.0 * feel.force().energy_j() / k) >= touch_depth_m;
   };
   constexpr double step_m = 5e-4;
   double outside = 0.5 * (a.box.diagonal() + b.box.diagonal()) + step_m, inside = outside;

@@ -18,7 +18,7 @@ pair_of_renderers& renderers() {
 
 const std::vector<double>& exact_spectrum() {
   static const std::vector<double> made =
-      amplitude_spectrum(exact_on_slide(renderers().shared().settings().stiffness_n_per_m));
+      amplitude_spectrum(exact_on_slide(renderers().shared().force().settings().stiffness_n_per_m));
   return made;
 }
 
@@ -51,7 +51,7 @@ constexpr double textures_limit = 1e-4, above_limit = 3e-5;
 TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
   for (const std::uint32_t box_texture : {384U, 768U}) {
     if (box_texture == 768U && !test_support::at_length()) continue;
-    built_renderer made = build_renderer(uniform_slide::bodies(box_texture)).value();
+    renderer made = build_renderer(uniform_slide::bodies(box_texture)).value();
     const excess more = excess_of(felt_on_slide(feel_with(made)));
     std::printf("box of %u texels: %.2g in the textures' band, %.2g above\n", box_texture, more.textures, more.above);
     EXPECT_LT(more.textures, textures_limit) << box_texture;
@@ -63,7 +63,7 @@ TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
 TEST(UniformSlide, FewSamplesRing) {
   renderer_settings settings;
   settings.bodies.sample_pitch_m = 8.0 * 0.003 * uniform_slide::bodies(384).probe->box.diagonal();
-  built_renderer coarse = build_renderer(uniform_slide::bodies(384), settings).value();
+  renderer coarse = build_renderer(uniform_slide::bodies(384), settings).value();
   const excess more = excess_of(felt_on_slide(feel_with(coarse)));
   std::printf("few samples: %.2g in the textures' band, %.2g above\n", more.textures, more.above);
   EXPECT_GT(more.textures, 2.0 * textures_limit);
@@ -71,7 +71,7 @@ TEST(UniformSlide, FewSamplesRing) {
 
 // The exact depth is the measure of the above: it has to be one.
 TEST(UniformSlide, IsFeltAsDeepAsItIs) {
-  const least_motion_settings& s = renderers().shared().settings();
+  const least_motion_settings& s = renderers().shared().force().settings();
   const feel_function feel = feel_with(renderers().shared());
   for (std::size_t i = 0; i < uniform_slide::ticks; i += 256) {
     const pose T = uniform_slide::at(i);

@@ -11,14 +11,11 @@
 #include <vector>
 
 #include "contact_scenes.hpp"
-#include "support/built_renderers.hpp"
+#include "support/kept_bodies.hpp"
 
 namespace asperity::contacts_test {
 
-using test_support::build_paper_renderer;
 using test_support::build_renderer;
-using test_support::built_paper_renderer;
-using test_support::built_renderer;
 
 inline constexpr double stiffness_n_per_m = 2000.0;
 
@@ -36,8 +33,8 @@ template <class T>
   return std::move(made).value();
 }
 
-[[nodiscard]] inline built_renderer make_scene_renderer(const contact_scene& s, const renderer_settings& settings,
-                                                        const model_plan& plan = {}) {
+[[nodiscard]] inline renderer make_scene_renderer(const contact_scene& s, const renderer_settings& settings,
+                                                  const model_plan& plan = {}) {
   return value_of(build_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}, settings));
 }
 
@@ -146,8 +143,8 @@ template <class Renderer>
 }
 
 /// A renderer of the scene, plain or with waves on both bodies.
-[[nodiscard]] inline built_renderer make_waved_renderer(const contact_scene& s, bool textured,
-                                                        const renderer_settings& settings) {
+[[nodiscard]] inline renderer make_waved_renderer(const contact_scene& s, bool textured,
+                                                  const renderer_settings& settings) {
   model_plan probe, fixed;
   if (textured) {
     probe.height = waves(3.7 * mm);

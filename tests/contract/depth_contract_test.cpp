@@ -1,5 +1,5 @@
-#include "asperity/window/exact_depth.hpp"
 #include "contract/depth_backend_contract.hpp"
+#include "exact/exact_depth.hpp"
 
 namespace asperity {
 namespace {

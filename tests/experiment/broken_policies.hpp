@@ -11,6 +11,13 @@
 
 #include "asperity/window/paper_renderer.hpp"
 #include "broken_mutation.hpp"
+#include "model/surface_index.hpp"
+#include "model/texture_scale.hpp"
+#include "window/central_difference.hpp"
+#include "window/deepest.hpp"
+#include "window/height_lookup.hpp"
+#include "window/pair_scale.hpp"
+#include "window/patch_projection.hpp"
 
 namespace broken {
 

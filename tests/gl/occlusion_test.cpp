@@ -6,6 +6,7 @@
 
 #include "gl/occlusion_fixture.hpp"
 #include "support/counted_news.hpp"
+#include "window/central_difference.hpp"
 
 namespace asperity::gl {
 namespace {

@@ -8,7 +8,8 @@
 
 #include "asperity/io/image_file.hpp"
 #include "asperity/model/validate.hpp"
-#include "support/built_renderers.hpp"
+#include "asperity/window/paper_renderer.hpp"
+#include "support/kept_bodies.hpp"
 
 namespace asperity::hostile {
 namespace {
@@ -84,8 +85,7 @@ std::optional<std::string> complaint(const result<textured_model>& loaded) {
   if (!loaded) return complaint(loaded.error());
   if (const auto valid = validate(*loaded); !valid) return "an invalid model: " + valid.error().message;
   const auto model = std::make_shared<const textured_model>(*loaded);
-  if (auto bad = complaint_of_tick(test_support::build_paper_renderer({model, {model}}, small_settings()), *model))
-    return bad;
+  if (auto bad = complaint_of_tick(make_paper_renderer({model, {model}}, small_settings()), *model)) return bad;
   // Making fields takes longer than all the rest; one model in 64, the first among them, is enough of it.
   static std::uint64_t models = 0;
   if (models++ % 64 != 0) return std::nullopt;

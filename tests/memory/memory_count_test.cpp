@@ -9,6 +9,7 @@
 #include "counted_heap.hpp"
 #include "support/piece_models.hpp"
 #include "support/small_models.hpp"
+#include "window/collision_body.hpp"
 
 namespace asperity {
 namespace {
@@ -168,7 +169,7 @@ TEST_F(DefaultRendererMemory, RenderersOfTheSameBodiesCanShareThem) {
   auto made = make_field_scene(bodies);
   ASSERT_TRUE(made);
   const auto shared = std::make_shared<const field_scene>(std::move(made).value());
-  const auto ways_of = std::make_shared<const exits::exit_scene>(*shared);
+  const auto ways_of = exits::make_exit_scene(*shared);
   renderer_settings stiffer;
   stiffer.force.stiffness_n_per_m *= 2.0;
   auto one = make_renderer(bodies, shared, ways_of), two = make_renderer(bodies, shared, ways_of, stiffer);
@@ -191,7 +192,7 @@ TEST_F(DefaultRendererMemory, RenderersOfTheSameBodiesCanShareThem) {
   EXPECT_FALSE(make_renderer(bodies, nullptr));
   EXPECT_FALSE(make_renderer(bodies, shared, nullptr));
   // What was made for the search of other bodies.
-  EXPECT_FALSE(make_renderer(bodies, shared, std::make_shared<const exits::exit_scene>(fields())));
+  EXPECT_FALSE(make_renderer(bodies, shared, exits::make_exit_scene(fields())));
 }
 
 TEST_F(DefaultRendererMemory, StaysTheSameInTicks) {

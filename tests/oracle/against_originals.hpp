@@ -15,8 +15,9 @@
 #include <vector>
 
 #include "asperity/control/contact_loop.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
 #include "asperity/model/triangle_mesh.hpp"
-#include "support/built_renderers.hpp"
+#include "asperity/window/paper_renderer.hpp"
 
 namespace asperity::oracle {
 
@@ -68,14 +69,14 @@ struct compared_contact {
 };
 
 /// The paper's renderer with the grid of these comparisons.
-[[nodiscard]] test_support::built_paper_renderer make_compared(const original_and_bake& a, const original_and_bake& b);
+[[nodiscard]] paper_renderer make_compared(const original_and_bake& a, const original_and_bake& b);
 
 /// Every contact of the paper's renderer at a pose. A bake's error is a distance across the surface; along n a slope
 /// makes it longer. A wall, where that has no limit, counts as `steepest` (1: 45 degrees).
 /// @param disagreed raised by contacts that one side sees and the other does not
-[[nodiscard]] std::vector<compared_contact> compare_contacts(test_support::built_paper_renderer& feel,
-                                                             const original_and_bake& a, const original_and_bake& b,
-                                                             const pose& T_wa, double steepest, int& disagreed);
+[[nodiscard]] std::vector<compared_contact> compare_contacts(paper_renderer& feel, const original_and_bake& a,
+                                                             const original_and_bake& b, const pose& T_wa,
+                                                             double steepest, int& disagreed);
 
 /// Compares contacts at that many poses of the sampler, pressed on by up to half a millimetre.
 [[nodiscard]] comparison compare_with_originals(const original_and_bake& a, const original_and_bake& b, int poses,

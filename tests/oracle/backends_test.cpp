@@ -18,8 +18,8 @@ template <parallax_mode Lookup>
 struct on_the_cpu {
   static std::string unavailable() { return ""; }
   static depth_settings settings() { return soft(Lookup); }
-  static built_depth make(const scene& s) { return built_depth(s, settings()); }
-  static double bound_m(const built_depth& /*backend*/, const contact_window& /*window*/) { return 0.0; }
+  static cpu_depth make(const scene& s) { return cpu_depth(s, settings()); }
+  static double bound_m(const cpu_depth& /*backend*/, const contact_window& /*window*/) { return 0.0; }
 };
 
 /// One context for all cases: opening one takes longer than measuring.
@@ -70,7 +70,7 @@ const std::vector<double>& depths_on_the_cpu(std::span<const depth_case> cases) 
   static const std::vector<double> found = [&] {
     std::vector<double> out;
     for (const depth_case& c : cases) {
-      built_depth backend = on_the_cpu<Lookup>::make(c.bodies);
+      cpu_depth backend = on_the_cpu<Lookup>::make(c.bodies);
       out.push_back(test_support::measure_whole(backend, c.bodies, c.window, c.T_wa).depth_m);
     }
     return out;

@@ -1,6 +1,6 @@
 asperity_add_test_library(oracle_originals
   SOURCES against_originals.cpp approach.cpp brute_force.cpp fresh_poses.cpp originals_agree.cpp placed_mesh.cpp
-  LIBS built_renderers asperity_test_parts)
+  LIBS asperity_test_parts)
 asperity_optimise(oracle_originals)
 asperity_add_test(oracle_brute_force_self WARM
   SOURCES brute_force_self_test.cpp APART placed_mesh_test.cpp LIBS oracle_originals)

@@ -11,8 +11,8 @@
 #include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
 #include "oracle/expect_known.hpp"
-#include "support/built_renderers.hpp"
 #include "support/fresh_seed.hpp"
+#include "support/kept_bodies.hpp"
 
 namespace {
 
@@ -91,7 +91,7 @@ void compare_single(std::uint64_t seed, std::uint64_t poses_per_pair) {
     ASSERT_TRUE(a.model && b.model);
     auto made = test_support::build_renderer({a.model, {b.model}});
     ASSERT_TRUE(made) << made.error().message;
-    const double softness_m = made->settings().softness_m;
+    const double softness_m = made->force().settings().softness_m;
     const std::array<pose, 1> fixed{};
     oracle::approach_sampler sampler("single contacts of " + a.name + " on " + b.name, a.full, b.full);
     std::vector<double> errors_m;

@@ -13,13 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "support/built_depth.hpp"
+#include "asperity/window/cpu_depth.hpp"
 #include "support/height_models.hpp"
 
 namespace asperity::oracle {
 
 using json = nlohmann::json;
-using test_support::built_depth;
 
 /// The data are in millimetres; the library is not.
 inline constexpr double mm = 1e-3;

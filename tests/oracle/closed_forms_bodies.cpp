@@ -20,19 +20,19 @@ constexpr grid_limit by_grid[] = {{50, 4e-2}, {64, 2.5e-2}, {100, 1e-2}, {200, 3
 void check_gradient(error_table& table, const scene& bodies, const contact_window& window, const pose& T_wa,
                     const vec6& expected) {
   for (const auto& [n, limit] : by_grid) {
-    built_depth differences(bodies, settings_for(gradient_scheme::central_difference, n, 0.01, 0.1));
+    cpu_depth differences(bodies, settings_for(gradient_scheme::central_difference, n, 0.01, 0.1));
     // The step alone, with the maximum found exactly, costs up to 3.7e-3 on R1: the limit is on the median.
     table.add_typical("gradient, central difference 0.1 mm, N = " + std::to_string(n),
                       gradient_error(measure_whole(differences, bodies, window, T_wa).gradient, expected), limit);
-    built_depth soft(bodies, settings_for(gradient_scheme::soft_max, n, 0.01, 0.0));
+    cpu_depth soft(bodies, settings_for(gradient_scheme::soft_max, n, 0.01, 0.0));
     table.add("gradient, soft maximum tau 0.01 mm, N = " + std::to_string(n),
               gradient_error(measure_whole(soft, bodies, window, T_wa).gradient, expected), 2e-2);
   }
   depth_settings sharp = settings_for(gradient_scheme::central_difference, 200, 0.01, 0.02);
   sharp.refine_maximum = true;
-  built_depth about_contact(bodies, sharp);
+  cpu_depth about_contact(bodies, sharp);
   sharp.origin = rotation_origin::centre_of_mass;
-  built_depth about_centre(bodies, sharp);
+  cpu_depth about_centre(bodies, sharp);
   const vec6 g = measure_whole(about_contact, bodies, window, T_wa).gradient;
   table.add("gradient, refined maximum, 0.02 mm, N = 200", gradient_error(g, expected), 5e-4);
   const double size = gradient_error(g, {});
@@ -60,7 +60,7 @@ TEST(ClosedForms, BallOnBall) {
     const scene bodies{make_plate(probe), {make_plate(fixed)}};
     const pose T_wa{up, mm * apex};
     const vec6 expected = gradient_of(vector_of(c["F"]), vector_of(c["T"]), c["k"], delta);
-    built_depth fine(bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
+    cpu_depth fine(bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
     table.add("depth, N = 400", std::fabs(measure_whole(fine, bodies, window, T_wa).depth_m / mm - delta), 1e-3);
     check_gradient(table, bodies, window, T_wa, expected);
   }
@@ -72,7 +72,7 @@ TEST(ClosedForms, EllipsoidOnPlane) {
     const ellipsoid_on_plane e = make_ellipsoid_on_plane(c, 2.2, 2048);
     const double delta = c["delta"];
     const contact_window window = window_downwards(2.0 * mm, mm * vec3(e.lowest.x, e.lowest.y, 0.0));
-    built_depth fine(e.bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
+    cpu_depth fine(e.bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
     table.add("depth, N = 400", std::fabs(measure_whole(fine, e.bodies, window, e.T_wa).depth_m / mm - delta), 1e-3);
     check_gradient(table, e.bodies, window, e.T_wa, gradient_of(vector_of(c["F"]), vector_of(c["T"]), 1.0, delta));
   }
@@ -84,7 +84,7 @@ TEST(ClosedForms, GaussianAndParabolicBumps) {
                          double delta, const vec3& gradient) {
     const pose T_wa{face_down(), mm * position};
     for (const std::uint32_t n : {50U, 400U}) {
-      built_depth backend(bodies, settings_for(gradient_scheme::soft_max, n, 0.002, 0.0));
+      cpu_depth backend(bodies, settings_for(gradient_scheme::soft_max, n, 0.002, 0.0));
       const penetration p = measure_whole(backend, bodies, window_downwards(half_window * mm), T_wa);
       const double pitch = 2.0 * half_window / n;
       // The parabola of the deepest spot over half a pitch both ways: curvature at most 2 a / sigma^2 = 0.8 per mm.
@@ -126,7 +126,7 @@ TEST(ClosedForms, TiltedPlate) {
     for (const double way : {1.0, -1.0}) {
       const pose T_wa{exp_rotation(vec3(way * theta, 0.0, 0.0)) * face_down(), mm * vec3(0.0, 0.0, -d0)};
       depth_settings settings = settings_for(gradient_scheme::central_difference, 400, 0.01, turn * half);
-      built_depth differences(bodies, settings);
+      cpu_depth differences(bodies, settings);
       const penetration p = measure_whole(differences, bodies, window, T_wa);
       const double full = p.depth_m / mm * half;  // k delta a
       const double torque = -p.depth_m / mm * p.gradient.angular.x / mm;
@@ -135,7 +135,7 @@ TEST(ClosedForms, TiltedPlate) {
       table.add(theta == 0.0 ? "torque at rest, share of k delta a" : "torque, share of k delta a",
                 std::fabs(torque - way * double(c["T_central"])) / full, theta == 0.0 ? 1e-9 : 2e-2);
       if (theta == 0.0) {
-        built_depth soft(bodies, settings_for(gradient_scheme::soft_max, 64, 0.01, 0.0));
+        cpu_depth soft(bodies, settings_for(gradient_scheme::soft_max, 64, 0.01, 0.0));
         const penetration q = measure_whole(soft, bodies, window, T_wa);
         table.add("torque at rest, soft maximum, share of k delta a",
                   std::sqrt(glm::dot(q.gradient.angular, q.gradient.angular)) / (half * mm), 1e-9);
@@ -166,11 +166,11 @@ TEST(ClosedForms, BumpPlatesInSixDegreesOfFreedom) {
     const pose T_wa{exp_rotation(vector_of(c["rotvec_then_RX"])) * face_down(), mm * vector_of(c["p"])};
     ASSERT_LT(glm::length(centre_of_mass_w(bodies, T_wa) - mm * vector_of(c["c_A"])), 1e-9);
     depth_settings settings = settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0);
-    built_depth exact(bodies, settings);
+    cpu_depth exact(bodies, settings);
     table.add("depth, exact, N = 400", std::fabs(measure_whole(exact, bodies, window, T_wa).depth_m / mm - delta),
               1e-3);
     settings.parallax = parallax_mode::paper_lookup;
-    built_depth paper(bodies, settings);
+    cpu_depth paper(bodies, settings);
     table.add("depth, paper lookup, N = 400",
               std::fabs(measure_whole(paper, bodies, window, T_wa).depth_m / mm - double(c["delta_paper_lookup"])),
               1e-3);

@@ -76,7 +76,7 @@ struct energy_scene {
 
   [[nodiscard]] vec3 centre_b() const { return bodies.probe->mass.centre_of_mass; }
   [[nodiscard]] double work(const depth_settings& settings, int steps, bool without_transport = false) const {
-    built_depth backend(bodies, settings);
+    cpu_depth backend(bodies, settings);
     loop fine = path;
     fine.steps = steps;
     return relative_work(fine, base, centre_b(), [&](const pose& T_wa, const vec3& centre) {
@@ -115,7 +115,7 @@ energy_scene silhouette_in_window(height_function a, height_function b) {
 
 /// Presses the probe in until the loop's shallowest pose is `margin_mm` deep.
 void press(energy_scene& s, double margin_mm) {
-  built_depth probe(s.bodies, settings_for(gradient_scheme::soft_max, 64, 0.02, 0.0));
+  cpu_depth probe(s.bodies, settings_for(gradient_scheme::soft_max, 64, 0.02, 0.0));
   double shallowest = 1e9;
   loop coarse = s.path;
   coarse.steps = 40;

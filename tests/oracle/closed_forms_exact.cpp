@@ -2,7 +2,7 @@
 #include <array>
 #include <numbers>
 
-#include "asperity/window/exact_depth.hpp"
+#include "exact/exact_depth.hpp"
 #include "oracle/closed_forms.hpp"
 #include "oracle/ellipsoid_on_plane.hpp"
 

@@ -39,17 +39,17 @@ TEST(ClosedForms, RidgesOnRidgesTranslated) {
     const scene& bodies = ridges_on_ridges(a, b, lambda);
     const contact_window window = window_downwards(2.0 * lambda * mm);
 
-    built_depth fine(bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
+    cpu_depth fine(bodies, settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0));
     const penetration f = measure_whole(fine, bodies, window, above(s, 0, d));
     table.add("depth, N = 400", std::fabs(f.depth_m / mm - double(c["delta"])), 1e-3);
 
-    built_depth coarse(bodies, settings_for(gradient_scheme::central_difference, 50, 0.01, 0.1));
+    cpu_depth coarse(bodies, settings_for(gradient_scheme::central_difference, 50, 0.01, 0.1));
     const penetration p = measure_whole(coarse, bodies, window, above(s, 0, d));
     const double bound = missed(a, 4.0 * lambda / 50, lambda) + missed(b, 4.0 * lambda / 50, lambda);
     table.add("depth, N = 50, against the sampling bound", std::fabs(p.depth_m / mm - double(c["delta"])), bound);
 
     // The difference quotient is that of the closed form over the same step; what differs is the sampled maximum.
-    built_depth differences(bodies, settings_for(gradient_scheme::central_difference, 200, 0.01, 0.1));
+    cpu_depth differences(bodies, settings_for(gradient_scheme::central_difference, 200, 0.01, 0.1));
     const penetration q = measure_whole(differences, bodies, window, above(s, 0, d));
     const auto depth = [&](double at) { return d + sum_amplitude(a, b, K, at); };
     table.add("d(depth)/ds, central difference, N = 200",
@@ -74,7 +74,7 @@ TEST(ClosedForms, SoftMaximumOfRidges) {
     depth_settings settings = settings_for(gradient_scheme::soft_max, 400, c["tau"], 0.0);
     settings.taper_window = false;  // the closed form weighs all samples alike
     settings.reference_area_m2 = 16.0 * lambda * lambda * mm * mm;
-    built_depth backend(bodies, settings);
+    cpu_depth backend(bodies, settings);
     const penetration p = measure_whole(backend, bodies, window_downwards(2.0 * lambda * mm), above(c["s"], 0, c["d"]));
     table.add("soft depth", std::fabs(p.soft_depth_m / mm - double(c["delta"])), 1e-3);
     table.add("d(soft depth)/ds", std::fabs(p.gradient.linear.x - double(c["ddelta_ds"])), 1e-2);
@@ -97,7 +97,7 @@ TEST(ClosedForms, EggCrates) {
     const contact_window window = window_downwards(2.0 * lambda * mm);
     for (const std::uint32_t n : {50U, 400U}) {
       const double bound = 2.0 * (missed(a, 4.0 * lambda / n, lambda) + missed(b, 4.0 * lambda / n, lambda));
-      built_depth backend(bodies, settings_for(gradient_scheme::soft_max, n, 0.01, 0.0));
+      cpu_depth backend(bodies, settings_for(gradient_scheme::soft_max, n, 0.01, 0.0));
       const penetration p = measure_whole(backend, bodies, window, above(sx, sy, d));
       table.add("depth, N = " + std::to_string(n), std::fabs(p.depth_m / mm - delta), n == 400 ? 1e-3 : bound);
       if (n == 400 && sx != 1.5) {
@@ -124,7 +124,7 @@ TEST(ClosedForms, StripedDiscTurns) {
                    {make_plate(plate_mm(1.1 * w, 1024, [=](double x, double) { return a * std::cos(K * x); }))}};
     });
     const quat turn = exp_rotation(vec3(0.0, 0.0, theta));
-    built_depth backend(bodies, settings_for(gradient_scheme::central_difference, 200, 0.01, 0.1));
+    cpu_depth backend(bodies, settings_for(gradient_scheme::central_difference, 200, 0.01, 0.1));
     const double pitch = 2.04 * w / 200;
     const penetration p =
         measure_whole(backend, bodies, window_downwards(1.02 * w * mm), {turn * face_down(), mm * vec3(0.0, 0.0, -d)});
@@ -156,7 +156,7 @@ TEST(ClosedForms, BallOnSine) {
     const pose T_wa{face_down(), mm * vec3(s, 0.0, centre_z - R)};
     const double pitch = 2.0 * half / 400;
     const double curvature = a * K * K + 1.0 / R;  // at most, across the ridges; 1 / R along them
-    built_depth backend(bodies, settings_for(gradient_scheme::soft_max, 400, 0.002, 0.0));
+    cpu_depth backend(bodies, settings_for(gradient_scheme::soft_max, 400, 0.002, 0.0));
     const penetration p = measure_whole(backend, bodies, window, T_wa);
     table.add("depth, N = 400", std::fabs(p.depth_m / mm - depth),
               0.125 * (curvature + 1.0 / R) * pitch * pitch + 2e-4);

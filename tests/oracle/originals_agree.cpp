@@ -5,9 +5,10 @@
 #include <stdexcept>
 #include <utility>
 
-#include "support/built_depth.hpp"
-#include "support/built_renderers.hpp"
+#include "asperity/window/cpu_depth.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "support/height_models.hpp"
+#include "support/kept_bodies.hpp"
 
 namespace asperity::oracle {
 namespace {
@@ -33,7 +34,7 @@ double window_depth::excess_m() const noexcept {
 struct judged_pair::renderers {
   explicit renderers(const scene& bodies)
       : shared(made_or_thrown(test_support::build_renderer(bodies))),
-        paper(made_or_thrown(test_support::build_paper_renderer(bodies))),
+        paper(made_or_thrown(make_paper_renderer(bodies))),
         backend(bodies, {.grid = grid}),
         contacts({.contacts = 1, .triangles = 1U << 16}),
         patch_a(test_support::all_triangles(*bodies.probe)),
@@ -52,8 +53,9 @@ struct judged_pair::renderers {
     felt_depth out{0.0, t.contacts.size()};
     if (t.force.on_probe_w.force == vec3(0.0)) return out;
     out.towards_w = glm::normalize(t.force.on_probe_w.force);
-    out.depth_m = f == formulation::shared ? std::sqrt(2.0 * shared.energy_j() / shared.settings().stiffness_n_per_m)
-                                           : std::max(0.0, deepest(t));
+    out.depth_m = f == formulation::shared
+                      ? std::sqrt(2.0 * shared.force().energy_j() / shared.force().settings().stiffness_n_per_m)
+                      : std::max(0.0, deepest(t));
     return out;
   }
   std::optional<double> depth(const contact_window& window, const pose& T_wa) {
@@ -70,9 +72,9 @@ struct judged_pair::renderers {
     return p.depth_m;
   }
 
-  test_support::built_renderer shared;
-  test_support::built_paper_renderer paper;
-  test_support::built_depth backend;
+  renderer shared;
+  paper_renderer paper;
+  cpu_depth backend;
   contact_set contacts;
   std::vector<std::uint32_t> patch_a, patch_b;
 };
@@ -128,7 +130,7 @@ judged judged_pair::judge(formulation f, const approach& on, press by, double wa
 }
 
 double judged_pair::missing_m(formulation f) const noexcept {
-  return f == formulation::shared ? 2.0 * made_->shared.settings().softness_m : 0.01 * smaller_m_ / grid;
+  return f == formulation::shared ? 2.0 * made_->shared.force().settings().softness_m : 0.01 * smaller_m_ / grid;
 }
 
 double judged_pair::overlap_m(double way_m) {

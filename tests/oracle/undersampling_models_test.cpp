@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 #include <span>
 
-#include "asperity/window/exact_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
+#include "exact/exact_renderer.hpp"
 #include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
 #include "oracle/touching_pose.hpp"
-#include "support/built_renderers.hpp"
 
 namespace {
 
@@ -35,7 +35,7 @@ tally undersampling(const std::string& probe_name, const std::string& fixed_name
   const scene bodies{a.model, {b.model}};
   paper_settings settings;
   settings.depth.grid = grid;
-  auto made = test_support::build_paper_renderer(bodies, settings);
+  auto made = make_paper_renderer(bodies, settings);
   if (!made) {
     ADD_FAILURE() << made.error().message;
     return out;

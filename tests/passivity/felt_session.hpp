@@ -10,8 +10,8 @@
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
 #include "passivity/energy_bound.hpp"
-#include "support/built_renderers.hpp"
 #include "support/held_force.hpp"
+#include "support/kept_bodies.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/analytic_wall.hpp"
 
@@ -151,7 +151,7 @@ template <contact_renderer Renderer>
   }
   renderer_settings settings;
   settings.force.stiffness_n_per_m = c.stiffness_n_per_m;
-  result<built_renderer> made = build_renderer({boxes.cube, {boxes.plate}}, settings);
+  result<renderer> made = build_renderer({boxes.cube, {boxes.plate}}, settings);
   if (!made) return {};
   felt_case raised = c;  // so that the cube's lower face begins where the wall's points do
   raised.device.motion.T_dh.position.z += 0.0065;

@@ -9,8 +9,9 @@
 #include <utility>
 
 #include "asperity/planes/field_renderer.hpp"
-#include "support/built_renderers.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "support/fresh_seed.hpp"
+#include "support/kept_bodies.hpp"
 
 namespace asperity::presses {
 namespace {
@@ -39,7 +40,7 @@ result<render_function> render_as_the_paper(const press_body& probe, const press
                                             double stiffness_n_per_m) {
   paper_settings settings;
   settings.force.stiffness_n_per_m = stiffness_n_per_m;
-  return render_of(test_support::build_paper_renderer({probe.model, {fixed.model}}, settings));
+  return render_of(make_paper_renderer({probe.model, {fixed.model}}, settings));
 }
 
 // Support planes bring the stiffness of the control loop's contact_law; the reported force has the one asked for.

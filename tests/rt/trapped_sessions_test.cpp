@@ -9,9 +9,10 @@
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/any_device.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
+#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/window/paper_renderer.hpp"
 #include "record_queue.hpp"
 #include "rt/tick_trap.hpp"
-#include "support/built_renderers.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/analytic_wall.hpp"
 
@@ -19,8 +20,6 @@ namespace {
 
 using namespace asperity;
 using test_support::analytic_wall;
-using test_support::build_paper_renderer;
-using test_support::built_paper_renderer;
 using test_support::tick_trap;
 
 // Without a trap (under a sanitizer) the sessions still run, for the sanitizer's sake.
@@ -95,7 +94,7 @@ TEST_P(trapped_renderer, textured_boxes) {
   settings.depth.gradient = GetParam().gradient;
   settings.depth.parallax = GetParam().parallax;
   settings.depth.grid = 32;
-  result<built_paper_renderer> feel = build_paper_renderer({probe, {plate}}, settings);
+  result<paper_renderer> feel = make_paper_renderer({probe, {plate}}, settings);
   ASSERT_TRUE(feel);
   simulated_config c = hand(motion_kind::scrub);
   c.motion.T_dh.position.z = 0.022;
@@ -127,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(trapped_session, a_renderer_that_refuses_or_drops) {
   const auto box = std::make_shared<const textured_model>(
       test_support::make_textured_box({0.01, 0.01, 0.01}, 64, test_support::ridges(0.0002, 0.004)));
-  result<built_paper_renderer> feel = build_paper_renderer({box, {box}}, {.limits = {.contacts = 1, .triangles = 1}});
+  result<paper_renderer> feel = make_paper_renderer({box, {box}}, {.limits = {.contacts = 1, .triangles = 1}});
   ASSERT_TRUE(feel);
   const pose T_wb;
   tick found;

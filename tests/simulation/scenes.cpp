@@ -5,15 +5,14 @@
 #include <cstdlib>
 #include <utility>
 
-#include "support/built_renderers.hpp"
 #include "support/height_models.hpp"
+#include "support/kept_bodies.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity::simulation {
 namespace {
 
 using test_support::build_renderer;
-using test_support::built_renderer;
 using test_support::make_flat_box;
 using test_support::make_plate;
 using test_support::make_textured_box;
@@ -50,11 +49,11 @@ const std::array<textured_bodies, textured_scene_count>& all_bodies() {
 
 class rendered_scene final : public touched_scene {
  public:
-  explicit rendered_scene(built_renderer r) : renderer_(std::move(r)) {}
+  explicit rendered_scene(renderer r) : renderer_(std::move(r)) {}
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept override { return renderer_.step(at, out); }
 
  private:
-  built_renderer renderer_;
+  renderer renderer_;
 };
 
 }  // namespace
@@ -66,7 +65,7 @@ std::unique_ptr<touched_scene> make_textured_scene(std::size_t i, double stiffne
   renderer_settings settings;
   settings.force.stiffness_n_per_m = stiffness_n_per_m;
   settings.force.most_readings = 20'000;  // thousands of sessions: a tick that takes more says so, and is felt as it is
-  result<built_renderer> made = build_renderer({bodies.probe, {bodies.fixed}}, settings);
+  result<renderer> made = build_renderer({bodies.probe, {bodies.fixed}}, settings);
   if (!made) {
     std::fprintf(stderr, "simulation: %s\n", made.error().message.c_str());
     std::abort();

@@ -14,7 +14,7 @@
 #include "asperity/bake/repair.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
-#include "asperity/model/surface_index.hpp"
+#include "model/surface_index.hpp"
 #include "support/real_meshes.hpp"
 #include "truth/made_or_thrown.hpp"
 

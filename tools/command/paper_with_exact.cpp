@@ -1,7 +1,7 @@
 // --backend exact: the paper's contacts with the maximum itself.
 #include <utility>
 
-#include "asperity/window/exact_renderer.hpp"
+#include "exact/exact_renderer.hpp"
 #include "render_kinds.hpp"
 
 namespace asperity::command {

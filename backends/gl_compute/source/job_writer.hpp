@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "asperity/model/scene.hpp"
-#include "asperity/window/central_difference.hpp"
 #include "asperity/window/depth_settings.hpp"
-#include "asperity/window/edge_taper.hpp"
-#include "asperity/window/height_field.hpp"
-#include "asperity/window/pair_scale.hpp"
 #include "job_buffers.hpp"
+#include "window/central_difference.hpp"
+#include "window/edge_taper.hpp"
+#include "window/height_field.hpp"
+#include "window/pair_scale.hpp"
 
 namespace asperity::gl {
 

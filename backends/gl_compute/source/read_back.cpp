@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "asperity/window/height_lookup.hpp"
+#include "window/height_lookup.hpp"
 
 namespace asperity::gl {
 namespace {

@@ -7,12 +7,12 @@
 
 #include "asperity/gl/occlusion_depth.hpp"
 #include "asperity/gl/uploaded_model.hpp"
-#include "asperity/window/central_difference.hpp"
 #include "contact_slot.hpp"
 #include "difference_pass.hpp"
 #include "height_pass.hpp"
 #include "query_pass.hpp"
 #include "tile_writer.hpp"
+#include "window/central_difference.hpp"
 
 namespace asperity::gl {
 

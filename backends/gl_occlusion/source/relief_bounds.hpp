@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "asperity/model/surface_index.hpp"
 #include "asperity/model/textured_model.hpp"
+#include "model/surface_index.hpp"
 
 namespace asperity::gl {
 

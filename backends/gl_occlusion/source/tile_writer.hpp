@@ -10,9 +10,9 @@
 
 #include "asperity/model/scene.hpp"
 #include "asperity/window/depth_settings.hpp"
-#include "asperity/window/height_field.hpp"
-#include "asperity/window/pair_scale.hpp"
 #include "relief_bounds.hpp"
+#include "window/height_field.hpp"
+#include "window/pair_scale.hpp"
 
 namespace asperity::gl {
 

@@ -1,16 +1,11 @@
-// Settings and counters of the convex-piece finder, and the body data it prepares once.
+// Settings and counters of the convex-piece finder.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
-#include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/model/textured_model.hpp"
-#include "asperity/window/aabb_tree.hpp"
-#include "asperity/window/convex_shape.hpp"
-#include "asperity/window/mesh_features.hpp"
 
 namespace asperity {
 
@@ -47,47 +42,7 @@ struct finder_statistics {
 /// - depth limit: half the sum of both bodies' thinnest box sides, at most 10 % of the smaller diagonal: beyond it the
 ///   way out on the other side may be shorter.
 /// - windows: from one tolerance to half the smaller diagonal.
-[[nodiscard]] inline finder_settings resolve(finder_settings s, const textured_model& a,
-                                             const textured_model& b) noexcept {
-  const double diagonal = std::min(a.box.diagonal(), b.box.diagonal());
-  const auto thinnest = [](const bounds& box) {
-    const vec3 size = box.high - box.low;
-    return std::min(size.x, std::min(size.y, size.z));
-  };
-  if (s.tolerance_m <= 0.0) {
-    s.tolerance_m = a.report.max_displacement_m + b.report.max_displacement_m + 0.005 * diagonal;
-  }
-  if (s.max_depth_m <= 0.0) s.max_depth_m = std::min(0.5 * (thinnest(a.box) + thinnest(b.box)), 0.1 * diagonal);
-  if (s.min_half_size_m <= 0.0) s.min_half_size_m = s.tolerance_m;
-  if (s.max_half_size_m <= 0.0) s.max_half_size_m = std::max(0.5 * diagonal, s.min_half_size_m);
-  return s;
-}
-
-/// A body as the finder sees it: convex shapes, triangle normals, and trees over both. Body frame.
-struct collision_body {
-  model_ptr model;
-  std::vector<convex_shape> shapes;
-  std::vector<vec3> triangle_normals;
-  aabb_tree piece_tree;
-  aabb_tree triangle_tree;
-
-  /// Offline: allocates. @pre every piece has a vertex and covers a triangle
-  explicit collision_body(model_ptr m) : model(std::move(m)) {
-    mesh_features features = make_mesh_features(model->mesh);
-    std::vector<bounds> boxes;
-    for (const convex_piece& p : model->pieces) {
-      shapes.push_back(make_convex_shape(model->mesh, features, p));
-      boxes.push_back(shapes.back().box);
-    }
-    piece_tree = aabb_tree(boxes);
-    triangle_tree = aabb_tree(triangle_boxes(model->mesh));
-    triangle_normals = std::move(features.triangle_normals);
-  }
-
-  /// Without the model, which others share.
-  [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(shapes, triangle_normals, piece_tree, triangle_tree);
-  }
-};
+[[nodiscard]] ASPERITY_API finder_settings resolve(finder_settings s, const textured_model& a,
+                                                   const textured_model& b) noexcept;
 
 }  // namespace asperity

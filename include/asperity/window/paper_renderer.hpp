@@ -1,8 +1,7 @@
 // The paper's renderer.
 #pragma once
 
-#include <utility>
-
+#include "asperity/core/export.hpp"
 #include "asperity/render/renderer.hpp"
 #include "asperity/window/convex_piece_finder.hpp"
 #include "asperity/window/cpu_depth.hpp"
@@ -16,14 +15,7 @@ using paper_renderer = basic_renderer<convex_piece_finder, cpu_depth, gradient_p
 
 /// The paper's renderer for a scene; all memory that its ticks need is taken here.
 /// @return invalid_argument (no probe, no fixed body, a setting out of range) | bad_mesh | bad_texture
-[[nodiscard]] inline result<paper_renderer> make_paper_renderer(scene bodies, const paper_settings& settings = {}) {
-  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
-  // Refuses a missing model too, which the finder takes for granted.
-  result<cpu_depth> depth = make_cpu_depth(bodies, settings.depth);
-  if (!depth) return depth.error();
-  convex_piece_finder finder(bodies, settings.finder);
-  return paper_renderer(std::move(bodies), std::move(finder), std::move(depth).value(),
-                        gradient_penalty(settings.force), settings.limits);
-}
+[[nodiscard]] ASPERITY_API result<paper_renderer> make_paper_renderer(scene bodies,
+                                                                      const paper_settings& settings = {});
 
 }  // namespace asperity

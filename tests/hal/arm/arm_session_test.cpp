@@ -11,8 +11,8 @@
 #include "asperity/control/virtual_session.hpp"
 #include "hal/arm/clocked_arm.hpp"
 #include "passivity/energy_bound.hpp"
-#include "support/built_renderers.hpp"
 #include "support/held_force.hpp"
+#include "support/kept_bodies.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/analytic_wall.hpp"
 
@@ -191,7 +191,7 @@ TEST(arm_session, textured_boxes_are_felt_as_well) {
       std::make_shared<const textured_model>(make_textured_box({0.04, 0.04, 0.01}, 96, ridges(0.0003, 0.01)));
   renderer_settings settings;
   settings.force.stiffness_n_per_m = 1500.0;
-  result<built_renderer> made = build_renderer({cube, {plate}}, settings);
+  result<renderer> made = build_renderer({cube, {plate}}, settings);
   ASSERT_TRUE(made);
   const pose T_wb{quat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, -0.0103 - 0.0065}};
   const arm_session_result r =

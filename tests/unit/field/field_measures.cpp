@@ -7,6 +7,10 @@
 #include <numbers>
 #include <random>
 
+#include "field/fill_distance.hpp"
+#include "field/fine_surface.hpp"
+#include "model/surface_index.hpp"
+
 namespace asperity::test_support {
 
 result<body_field> built_field(const textured_model& model, const field_settings& settings) {

@@ -7,8 +7,8 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/field/body_field.hpp"
-#include "asperity/field/make_body_field.hpp"
 #include "asperity/model/textured_model.hpp"
+#include "field/make_body_field.hpp"
 
 namespace asperity::test_support {
 

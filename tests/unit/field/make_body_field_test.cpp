@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
+#include "field/fine_surface.hpp"
 #include "support/small_models.hpp"
 #include "unit/field/charted_model.hpp"
 #include "unit/field/field_measures.hpp"

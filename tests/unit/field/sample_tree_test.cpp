@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "asperity/field/surface_samples.hpp"
+#include "field/surface_samples.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
 

@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "least_motion/exit_scene.hpp"
+#include "least_motion/exit_solver.hpp"
 #include "support/counted_news.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "asperity/field/field_scene.hpp"
-#include "asperity/least_motion/exit_solver.hpp"
+#include "asperity/least_motion/exit_limits.hpp"
+#include "least_motion/exit_solver.hpp"
 
 namespace asperity::test_support {
 

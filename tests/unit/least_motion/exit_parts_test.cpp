@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 #include <numbers>
 
-#include "asperity/least_motion/eigen6.hpp"
-#include "asperity/least_motion/mix.hpp"
 #include "exit_lab.hpp"
+#include "least_motion/eigen6.hpp"
+#include "least_motion/mix.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace asperity {

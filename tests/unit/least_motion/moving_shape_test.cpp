@@ -1,5 +1,5 @@
 // The moving shape of a body with a notch, and its bounds.
-#include "asperity/least_motion/moving_shape.hpp"
+#include "least_motion/moving_shape.hpp"
 
 #include <algorithm>
 #include <cmath>

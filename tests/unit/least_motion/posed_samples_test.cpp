@@ -1,5 +1,5 @@
 // The bounded search for deep samples against one that looks at every sample.
-#include "asperity/least_motion/posed_samples.hpp"
+#include "least_motion/posed_samples.hpp"
 
 #include <algorithm>
 #include <cmath>

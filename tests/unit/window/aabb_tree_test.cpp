@@ -1,5 +1,5 @@
 // The tree against testing every box.
-#include "asperity/window/aabb_tree.hpp"
+#include "window/aabb_tree.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>

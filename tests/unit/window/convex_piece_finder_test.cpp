@@ -10,6 +10,8 @@
 
 #include "rt/tick_trap.hpp"
 #include "support/piece_models.hpp"
+#include "window/clustering.hpp"
+#include "window/contact_builder.hpp"
 
 namespace asperity {
 namespace {

@@ -1,5 +1,5 @@
 // The exact maximum against what can be known without it: merged grids of aligned textures, dense samples, itself.
-#include "asperity/window/exact_depth.hpp"
+#include "exact/exact_depth.hpp"
 
 #include <cstdio>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // GJK against slow answers, against itself warm and cold, and against Bullet where that is installed.
-#include "asperity/window/gjk.hpp"
+#include "window/gjk.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>

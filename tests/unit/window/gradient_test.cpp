@@ -4,6 +4,8 @@
 
 #include "asperity/window/cpu_depth.hpp"
 #include "support/height_models.hpp"
+#include "window/central_difference.hpp"
+#include "window/soft_max.hpp"
 
 namespace asperity {
 namespace {

@@ -1,5 +1,5 @@
 // Reading the texture: bilinear patches, and the fine point that lies over a sample.
-#include "asperity/window/height_lookup.hpp"
+#include "window/height_lookup.hpp"
 
 #include <gtest/gtest.h>
 #include <limits>

@@ -5,8 +5,8 @@
 #include <random>
 #include <utility>
 
-#include "asperity/window/height_field.hpp"
 #include "support/height_models.hpp"
+#include "window/height_field.hpp"
 
 namespace asperity::detail {
 namespace {

@@ -1,12 +1,12 @@
 // Penetration depth and the real directions of pieces.
-#include "asperity/window/sat.hpp"
+#include "window/sat.hpp"
 
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "asperity/window/close_pair.hpp"
 #include "support/piece_models.hpp"
 #include "support/random_hulls.hpp"
+#include "window/close_pair.hpp"
 
 namespace asperity {
 namespace {

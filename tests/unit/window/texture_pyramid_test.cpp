@@ -1,12 +1,12 @@
 // The bounds that the search for the deepest line stands on: every point of the surface is where its block says.
-#include "asperity/window/texture_pyramid.hpp"
+#include "exact/texture_pyramid.hpp"
 
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
 
-#include "asperity/window/pair_bound.hpp"
+#include "exact/pair_bound.hpp"
 #include "support/height_models.hpp"
 
 namespace asperity::detail {

@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/model/texture_tap.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/window/depth_settings.hpp"
-#include "asperity/window/patch_projection.hpp"
 #include "baselines/point_reading.hpp"
+#include "model/texture_tap.hpp"
+#include "window/patch_projection.hpp"
 
 namespace asperity::baselines {
 

@@ -1,0 +1,389 @@
+// Fits the relief of a depth field to the fine surface.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "asperity/field/body_field.hpp"
+#include "field/fine_surface.hpp"
+#include "field/lanes.hpp"
+
+namespace asperity::detail {
+
+/// Least squares over points of the fine surface: at the foot of each, the relief is what the smooth part lacks there.
+///
+/// A B-spline with samples as coefficients would smooth the texture away; the fit does not. It goes by simultaneous
+/// iteration (SIRT: residuals, averaged at the nodes by their weights, correct the coefficients). The first pass
+/// averages, and counts each point above and below the surface along its normal, so that the relief does not change
+/// across the surface. The others correct what is read at the feet, with Chebyshev's step lengths for wavelengths from
+/// three pitches up, and go on where residuals are left: beside sharp edges.
+///
+/// All passes go brick by brick, over a dense copy of a brick with what lies around it.
+/// @source Gilbert, Iterative methods for the three-dimensional reconstruction of an object from projections, 1972
+class relief_fit {
+ public:
+  /// @param points  about how many there will be   @param fine_enough_m  residuals that need no further pass
+  relief_fit(relief_bricks& out, const body_field& field, double points, double fine_enough_m)
+      : out_(out), field_(field), fine_enough_(static_cast<float>(fine_enough_m)) {
+    points_.reserve(static_cast<std::size_t>(points));
+    out_.index.assign(out_.bricks_along[0] * out_.bricks_along[1] * out_.bricks_along[2], 0);
+  }
+
+  /// Takes a point of the fine surface. What the smooth part has lost or buried (a fold of the texture) is left out.
+  void add(const vec3& p_b) {
+    const coarse_reading at = read_smooth(p_b);
+    if (!(std::fabs(at.value_m) < 1.25 * field_.smooth.pitch_m)) return;
+    const foot_and_fade foot = field_.foot(p_b, at);
+    const double length = std::sqrt(glm::dot(at.slope, at.slope));
+    if (!(length > 0.05) || !(foot.fade > 0.25)) return;
+    const vec3 q = (foot.foot_b - out_.low) / out_.pitch_m;
+    const vec3 along = off_surface / length * at.slope;
+    const auto wanted = static_cast<float>(-at.value_m / foot.fade);
+    point p{{}, glm::vec3(along), wanted, 0};
+    std::array<std::size_t, 3> brick{};
+    std::array<std::array<std::size_t, 3>, 2> first{}, last{};  // bricks, by side
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      // Three nodes around the places above and below.
+      if (!(q[axis] >= 3.0 && q[axis] < static_cast<double>(side * out_.bricks_along[k]) - 3.0)) return;
+      brick[k] = static_cast<std::size_t>(std::floor(q[axis] + 0.5)) / side;
+      p.place[axis] = static_cast<float>(q[axis] - static_cast<double>(side * brick[k]));
+      for (std::size_t s = 0; s < 2; ++s) {
+        const auto middle = static_cast<std::size_t>(q[axis] + 0.5 + (s == 0 ? -along[axis] : along[axis]));
+        first[s][k] = (middle - 1) / side;
+        last[s][k] = (middle + 1) / side;
+      }
+    }
+    p.cell = static_cast<std::uint32_t>((brick[2] * out_.bricks_along[1] + brick[1]) * out_.bricks_along[0] + brick[0]);
+    for (std::size_t s = 0; s < 2; ++s) mark(first[s], last[s], marked_[s]);
+    points_.push_back(p);
+    lowest_ = std::min(lowest_, wanted);
+    highest_ = std::max(highest_, wanted);
+  }
+
+  void solve() {
+    sort();
+    const std::size_t count = cells_.size();
+    work_.assign(count, {});
+    residual_.assign(count, 0.0F);
+    rows_.assign(count, 0);
+    for (std::size_t b = 1; b < count; ++b) average(b);
+    correct(1.0F);
+    for (work_brick& b : work_) {
+      for (work_row& row : b) row.weight = lanes{};
+    }
+    for (std::size_t b = 1; b < count; ++b) compare(b, true);
+    correct(1.816F);
+    for (int pass = 0; pass < most_passes; ++pass) {
+      const std::vector<float> before = std::exchange(residual_, std::vector<float>(count, 0.0F));
+      bool any = false;
+      for (std::size_t b = 1; b < count; ++b) {
+        if (!unsettled(b, before)) continue;
+        any = true;
+        compare(b, false);
+      }
+      if (!any) break;
+      constexpr std::array<float, 4> steps{2.669F, 1.251F, 1.026F, 1.816F};
+      correct(steps[static_cast<std::size_t>(pass) % 4]);
+    }
+    finish();
+  }
+
+ private:
+  static constexpr std::size_t side = relief_bricks::side;
+  static constexpr double off_surface = 0.6;  // pitches: reaches all nodes within two pitches of the surface
+  static constexpr int most_passes = 2;
+
+  struct point {
+    glm::vec3 place;  // of the foot in its brick, in pitches from the brick's first node: -0.5 to 3.5
+    glm::vec3 along;  // to the place above, pitches
+    float relief_m;
+    std::uint32_t cell;  // of its brick in the index
+  };
+
+  /// Four nodes of a brick along x, together because they are asked for together.
+  struct work_row {
+    lanes value{}, sum{}, weight{};
+  };
+  using work_brick = std::array<work_row, side * side>;
+
+  /// A brick and two nodes around it, x fastest.
+  static constexpr std::size_t reach = 2, across = side + 2 * reach, lanes_across = across / 4;
+  struct dense {
+    std::array<lanes, across * across * lanes_across> at{};
+  };
+
+  /// Weights of the three nodes around a place along each axis.
+  struct stencil {
+    std::size_t first;                  // its first row in a dense copy, in lanes
+    std::array<lanes, lanes_across> x;  // of the nodes of a row, most of them 0
+    std::array<float, 9> yz;
+
+    explicit stencil(const glm::vec3& place) noexcept {
+      const float g = place.x + static_cast<float>(reach);
+      const lanes zero{}, node{0.0F, 1.0F, 2.0F, 3.0F};
+      for (std::size_t h = 0; h < lanes_across; ++h) {
+        const lanes from = node + (static_cast<float>(4 * h) - g), d = from > zero ? from : -from;
+        const lanes outer = d < 1.5F ? 1.5F - d : zero, inner = d < 0.5F ? 0.5F - d : zero;
+        x[h] = 0.5F * outer * outer - 1.5F * inner * inner;
+      }
+      std::array<std::int32_t, 2> from{};
+      std::array<std::array<float, 3>, 2> w{};
+      for (std::size_t k = 0; k < 2; ++k) {
+        const float c = place[static_cast<int>(k) + 1] + (static_cast<float>(reach) + 0.5F);
+        const auto middle = static_cast<std::int32_t>(c);
+        const float f = c - 0.5F - static_cast<float>(middle);
+        from[k] = middle - 1;
+        w[k] = {0.5F * (0.5F - f) * (0.5F - f), 0.75F - f * f, 0.5F * (0.5F + f) * (0.5F + f)};
+      }
+      first = (static_cast<std::size_t>(from[1]) * across + static_cast<std::size_t>(from[0])) * lanes_across;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t j = 0; j < 3; ++j) yz[3 * k + j] = w[1][k] * w[0][j];
+      }
+    }
+
+    /// Its rows of a dense copy, a bit each.
+    [[nodiscard]] std::uint64_t rows() const noexcept { return std::uint64_t{0x070707} << (first / lanes_across); }
+
+    [[nodiscard]] float read(const dense& from) const noexcept {
+      lanes low{}, high{};
+      const lanes* layer = from.at.data() + first;
+      for (std::size_t k = 0; k < 3; ++k, layer += across * lanes_across) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          low += yz[3 * k + j] * layer[lanes_across * j];
+          high += yz[3 * k + j] * layer[lanes_across * j + 1];
+        }
+      }
+      return sum_of(low * x[0] + high * x[1]);
+    }
+
+    /// Adds a number by the weights.
+    void add(dense& to, float number) const noexcept {
+      const lanes low = number * x[0], high = number * x[1];
+      lanes* layer = to.at.data() + first;
+      for (std::size_t k = 0; k < 3; ++k, layer += across * lanes_across) {
+        for (std::size_t j = 0; j < 3; ++j) {
+          layer[lanes_across * j] += yz[3 * k + j] * low;
+          layer[lanes_across * j + 1] += yz[3 * k + j] * high;
+        }
+      }
+    }
+  };
+
+  /// Value and slope of the smooth part, in single precision: some 1e-6 pitches.
+  [[nodiscard]] coarse_reading read_smooth(const vec3& p_b) const noexcept {
+    const coarse_grid& grid = field_.smooth;
+    coarse_reading out;
+    std::array<std::size_t, 3> first{};
+    std::array<std::array<float, 4>, 3> value{}, slope{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const double g = (p_b[axis] - grid.low[axis]) / grid.pitch_m;
+      if (!(g >= 1.0 && g < static_cast<double>(grid.nodes[k]) - 2.0)) {
+        out.value_m = -1e30;
+        return out;
+      }
+      first[k] = static_cast<std::size_t>(g) - 1;
+      const cubic_weights w(g - 1.0 - static_cast<double>(first[k]));
+      for (std::size_t i = 0; i < 4; ++i) {
+        value[k][i] = static_cast<float>(w.value[i]);
+        slope[k][i] = static_cast<float>(w.slope[i]);
+      }
+    }
+    lanes s{}, sy{}, sz{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        const lanes row = load_lanes(grid.value.data() + grid.at(first[0], first[1] + j, first[2] + k));
+        s += value[1][j] * value[2][k] * row;
+        sy += slope[1][j] * value[2][k] * row;
+        sz += value[1][j] * slope[2][k] * row;
+      }
+    }
+    const lanes x = load_lanes(value[0].data());
+    const glm::vec3 by(sum_of(load_lanes(slope[0].data()) * s), sum_of(x * sy), sum_of(x * sz));
+    const float v = sum_of(x * s);
+    out.value_m = static_cast<double>(v);
+    out.slope = vec3(by) / grid.pitch_m;
+    return out;
+  }
+
+  /// Numbers the bricks that are asked for.
+  void mark(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last,
+            std::array<std::array<std::size_t, 3>, 2>& before) {
+    if (first == before[0] && last == before[1]) return;
+    before = {first, last};
+    for (std::size_t z = first[2]; z <= last[2]; ++z) {
+      for (std::size_t y = first[1]; y <= last[1]; ++y) {
+        for (std::size_t x = first[0]; x <= last[0]; ++x) {
+          const std::size_t cell = (z * out_.bricks_along[1] + y) * out_.bricks_along[0] + x;
+          if (out_.index[cell] != 0) continue;
+          out_.index[cell] = static_cast<std::uint32_t>(cells_.size());
+          cells_.push_back(static_cast<std::uint32_t>(cell));
+        }
+      }
+    }
+  }
+
+  /// Brings the points in the order of their bricks.
+  void sort() {
+    first_.assign(cells_.size() + 1, 0);
+    for (const point& p : points_) ++first_[out_.index[p.cell] + 1];
+    for (std::size_t b = 1; b < first_.size(); ++b) first_[b] += first_[b - 1];
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    std::vector<point> sorted(points_.size());
+    for (const point& p : points_) sorted[next[out_.index[p.cell]]++] = p;
+    points_ = std::move(sorted);
+  }
+
+  /// Calls visit(brick, number) for a brick and the 26 around it; number 0 to 26, x fastest.
+  template <class Visit>
+  void for_each_beside(std::size_t brick, Visit&& visit) const noexcept {
+    const auto [nx, ny, nz] = out_.bricks_along;
+    const std::size_t cell = cells_[brick], x = cell % nx, y = cell / nx % ny, z = cell / (nx * ny);
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          const bool inside = x + i >= 1 && x + i <= nx && y + j >= 1 && y + j <= ny && z + k >= 1 && z + k <= nz;
+          visit(inside ? out_.index[((z + k - 1) * ny + y + j - 1) * nx + x + i - 1] : 0U, (3 * k + j) * 3 + i);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] std::array<std::uint32_t, 27> beside(std::size_t brick) const noexcept {
+    std::array<std::uint32_t, 27> out{};
+    for_each_beside(brick, [&](std::uint32_t b, std::size_t number) noexcept { out[number] = b; });
+    return out;
+  }
+
+  /// Calls visit(three bricks, row in each of them, dense row) for rows around a brick, by their bits.
+  template <class Visit>
+  static void for_each_row(const std::array<std::uint32_t, 27>& around, std::uint64_t rows, Visit&& visit) noexcept {
+    for (; rows != 0; rows &= rows - 1) {
+      const auto at = static_cast<std::size_t>(std::countr_zero(rows));
+      const std::size_t z = at / across + side - reach, y = at % across + side - reach;
+      visit(around.data() + (3 * (z / side) + y / side) * 3, z % side * side + y % side, at * lanes_across);
+    }
+  }
+
+  void scatter(const dense& from, const std::array<std::uint32_t, 27>& around, std::uint64_t rows,
+               lanes work_row::*to) noexcept {
+    for_each_row(around, rows, [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
+      const lanes &a = from.at[at], &b = from.at[at + 1];
+      work_[bricks[1]][row].*to += lanes{a[2], a[3], b[0], b[1]};
+      if (a[0] != 0.0F || a[1] != 0.0F) work_[bricks[0]][row].*to += lanes{0.0F, 0.0F, a[0], a[1]};
+      if (b[2] != 0.0F || b[3] != 0.0F) work_[bricks[2]][row].*to += lanes{b[2], b[3], 0.0F, 0.0F};
+    });
+  }
+
+  /// What the points of a brick want, above and below the surface.
+  void average(std::size_t brick) noexcept {
+    if (first_[brick] == first_[brick + 1]) return;
+    dense sum, weight;
+    std::uint64_t rows = 0, at_feet = 0;
+    for (std::size_t i = first_[brick]; i < first_[brick + 1]; ++i) {
+      const point& p = points_[i];
+      for (const float way : {-1.0F, 1.0F}) {
+        const stencil at(p.place + way * p.along);
+        at.add(weight, 1.0F);
+        at.add(sum, p.relief_m);
+        rows |= at.rows();
+      }
+      at_feet |= stencil(p.place).rows();
+    }
+    rows_[brick] = at_feet;
+    const auto around = beside(brick);
+    scatter(sum, around, rows, &work_row::sum);
+    scatter(weight, around, rows, &work_row::weight);
+  }
+
+  /// What the points of a brick want, less what is read at their feet.
+  void compare(std::size_t brick, bool weigh) noexcept {
+    if (first_[brick] == first_[brick + 1]) return;
+    const auto around = beside(brick);
+    dense value, sum, weight;
+    for_each_row(around, rows_[brick], [&](const std::uint32_t* bricks, std::size_t row, std::size_t at) noexcept {
+      const lanes &low = work_[bricks[0]][row].value, &own = work_[bricks[1]][row].value;
+      value.at[at] = lanes{0.0F, low[3], own[0], own[1]};
+      value.at[at + 1] = lanes{own[2], own[3], work_[bricks[2]][row].value[0], 0.0F};
+    });
+    float most = 0.0F;
+    for (std::size_t i = first_[brick]; i < first_[brick + 1]; ++i) {
+      const point& p = points_[i];
+      const stencil at(p.place);
+      const float rest = p.relief_m - at.read(value);
+      most = std::max(most, std::fabs(rest));
+      at.add(sum, rest);
+      if (weigh) at.add(weight, 1.0F);
+    }
+    residual_[brick] = most;
+    scatter(sum, around, rows_[brick], &work_row::sum);
+    if (weigh) scatter(weight, around, rows_[brick], &work_row::weight);
+  }
+
+  /// Whether points of a brick or beside it are not met yet. @param residual by brick
+  [[nodiscard]] bool unsettled(std::size_t brick, const std::vector<float>& residual) const noexcept {
+    if (first_[brick] == first_[brick + 1]) return false;
+    bool out = false;
+    for_each_beside(brick, [&](std::uint32_t b, std::size_t) noexcept { out = out || residual[b] > fine_enough_; });
+    return out;
+  }
+
+  void correct(float step) noexcept {
+    for (work_brick& b : work_) {
+      for (work_row& row : b) {
+        row.value += step * row.sum / (row.weight + 1e-30F);  // no weight, no sum
+        row.sum = lanes{};
+      }
+    }
+    // The first one stands for all places without a brick.
+    work_[0] = {};
+  }
+
+  /// Hands the coefficients over. Bricks with next to nothing in them, on flat faces, are left out.
+  void finish() {
+    points_ = std::vector<point>();  // gives its memory back, as = {} does not
+    const float nothing = 0.01F * fine_enough_;
+    std::uint32_t kept = 1;
+    for (std::size_t b = 1; b < work_.size(); ++b) {
+      float most = 0.0F;
+      for (const work_row& row : work_[b]) {
+        for (std::size_t i = 0; i < side; ++i) most = std::max(most, std::fabs(row.value[i]));
+      }
+      out_.index[cells_[b]] = most > nothing ? kept++ : 0;
+    }
+    out_.bricks.reserve(kept);
+    out_.bricks.assign(1, relief_bricks::brick{});
+    for (std::size_t b = 1; b < work_.size(); ++b) {
+      if (out_.index[cells_[b]] == 0) continue;
+      relief_bricks::brick& to = out_.bricks.emplace_back();
+      for (std::size_t row = 0; row < side * side; ++row) {
+        for (std::size_t i = 0; i < side; ++i) {
+          // Beside few points, at sharp corners, a coefficient is not well known, and all of them bound the relief.
+          to[row * side + i] = std::min(std::max(1.25F * lowest_, work_[b][row].value[i]), 1.25F * highest_);
+        }
+      }
+    }
+    work_ = std::vector<work_brick>();
+  }
+
+  relief_bricks& out_;
+  const body_field& field_;
+  float fine_enough_;
+  std::vector<point> points_;
+  std::array<std::array<std::array<std::size_t, 3>, 2>, 2> marked_{};  // first and last bricks of a point, by side
+  std::vector<std::uint32_t> cells_{0};                                // of the bricks, in the index
+  std::vector<std::uint32_t> first_;                                   // of each brick's points
+  std::vector<work_brick> work_;
+  std::vector<std::uint64_t> rows_;       // of each brick's dense copy, that its points' feet reach
+  std::vector<float> residual_;           // the largest of each brick's points
+  float lowest_ = 0.0F, highest_ = 0.0F;  // of the points' relief, and zero
+};
+
+}  // namespace asperity::detail

@@ -1,0 +1,181 @@
+// Lays out the samples that other bodies are felt with.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "asperity/field/sample_tree.hpp"
+#include "asperity/model/textured_model.hpp"
+#include "model/surface_index.hpp"
+
+namespace asperity::detail {
+
+/// Texel columns or rows that a triangle's corners span, widened by `extra` and kept inside the image.
+struct texel_range {
+  std::size_t first, last;
+  texel_range(double a, double b, double c, double extra, std::uint32_t size) noexcept
+      : first(static_cast<std::size_t>(std::clamp<double>(std::floor(std::min({a, b, c}) - extra), 0.0, size))),
+        last(static_cast<std::size_t>(std::clamp(std::ceil(std::max({a, b, c}) + extra), 0.0, size - 1.0))) {}
+};
+
+/// Fine surface at a fraction f of edge k of triangle t, from its first corner on. Both charts have a say.
+[[nodiscard]] inline vec3 fine_edge_point(const textured_model& model, const surface_index& index, std::uint32_t t,
+                                          std::size_t k, double f) noexcept {
+  const coarse_triangle& tri = model.mesh.triangles[t];
+  const vec3 p = model.texture.sample((1.0 - f) * tri.uv[k] + f * tri.uv[(k + 1) % 3]);
+  const std::uint32_t across = index.neighbour[t][k];
+  if (across == surface_index::none) return p;
+  const coarse_triangle& other = model.mesh.triangles[across];
+  std::size_t m = 0;  // the neighbour's corner at the far end of this edge
+  while (other.vertex[m] != tri.vertex[(k + 1) % 3]) ++m;
+  return 0.5 * (p + model.texture.sample((1.0 - f) * other.uv[(m + 1) % 3] + f * other.uv[m]));
+}
+
+/// Lays out a body's samples: on its faces the highest texel of every block a pitch wide, because peaks are what
+/// touches; along its sharp edges, where no texel centre lies, points a pitch apart; and every vertex, whatever its
+/// edges: the tip of a cone of many sides has no sharp edge and is felt all the same. Valleys need no samples of their
+/// own: what reaches down into one is a peak of the other body.
+class surface_samples {
+ public:
+  /// @param pitch_m distance between samples, at least a texel is used
+  surface_samples(const textured_model& model, const surface_index& index, double pitch_m)
+      : model_(model), index_(index), pitch_m_(pitch_m) {}
+
+  /// All samples, body frame. Points without a surface (NaN texels) are left out.
+  [[nodiscard]] std::vector<field_sample> make() const {
+    std::vector<field_sample> out;
+    for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) {
+      add_face(t, out);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t across = index_.neighbour[t][k];
+        if ((across == surface_index::none || t < across) && is_sharp(t, across)) add_edge(t, k, out);
+      }
+    }
+    add_vertices(out);
+    return out;
+  }
+
+ private:
+  static void add(const vec3& p_b, const vec3& axis_b, double cone_rad, std::vector<field_sample>& to) {
+    if (is_finite(p_b)) to.push_back({glm::vec3(p_b), glm::vec3(axis_b), static_cast<float>(cone_rad)});
+  }
+
+  // Edges that turn by less lie on a curved surface, and its texels are as high as they are.
+  [[nodiscard]] bool is_sharp(std::uint32_t t, std::uint32_t across) const noexcept {
+    constexpr double cos_smooth = 0.97;
+    return across == surface_index::none || !(glm::dot(index_.normal[t], index_.normal[across]) > cos_smooth);
+  }
+
+  void add_face(std::uint32_t t, std::vector<field_sample>& to) const {
+    const texel_triangle& z = index_.texels[t];
+    if (!z.usable) return;
+    const auto c = corners(model_.mesh, t);
+    const auto [per_x, per_y] = z.per_texel(c);
+    const double texel_m = std::sqrt(glm::length(glm::cross(per_x, per_y)));
+    const double widest = std::max(model_.texture.width, model_.texture.height);
+    const auto block = static_cast<std::size_t>(std::clamp(std::round(pitch_m_ / texel_m), 1.0, widest));
+    const texel_range columns(z.corner[0].x, z.corner[1].x, z.corner[2].x, 0.0, model_.texture.width);
+    const texel_range rows(z.corner[0].y, z.corner[1].y, z.corner[2].y, 0.0, model_.texture.height);
+    const std::size_t before = to.size();
+    for (std::size_t row = rows.first / block; row <= rows.last / block; ++row) {
+      for (std::size_t column = columns.first / block; column <= columns.last / block; ++column) {
+        add_highest(t, {column * block, row * block, block}, texel_m, to);
+      }
+    }
+    // A sliver that holds no texel centre still is a piece of surface.
+    if (to.size() == before) {
+      const coarse_triangle& tri = model_.mesh.triangles[t];
+      add(model_.texture.sample((tri.uv[0] + tri.uv[1] + tri.uv[2]) / 3.0), index_.normal[t], 0.0, to);
+    }
+  }
+
+  struct texel_block {
+    std::size_t column, row, size;
+  };
+
+  // The highest texel of a block; between equals the one nearest to its middle.
+  void add_highest(std::uint32_t t, const texel_block& block, double texel_m, std::vector<field_sample>& to) const {
+    const auto c = corners(model_.mesh, t);
+    const double middle = 0.5 * static_cast<double>(block.size - 1);
+    double best_score = -1e30;
+    vec3 best(0.0);
+    for (std::size_t j = block.row; j < std::min<std::size_t>(block.row + block.size, model_.texture.height); ++j) {
+      for (std::size_t i = block.column; i < std::min<std::size_t>(block.column + block.size, model_.texture.width);
+           ++i) {
+        const vec3 bary = index_.texels[t].barycentric({static_cast<double>(i), static_cast<double>(j)});
+        if (!(bary.x >= 0.0 && bary.y >= 0.0 && bary.z >= 0.0)) continue;
+        const vec3 p = model_.texture.at(i, j);
+        if (!is_finite(p)) continue;
+        const double x = static_cast<double>(i - block.column) - middle;
+        const double y = static_cast<double>(j - block.row) - middle;
+        const double height = glm::dot(index_.normal[t], p - (bary.x * c[0] + bary.y * c[1] + bary.z * c[2]));
+        const double score = height - 1e-4 * texel_m * (x * x + y * y);
+        if (score > best_score) {
+          best_score = score;
+          best = p;
+        }
+      }
+    }
+    if (best_score > -1e30) add(best, index_.normal[t], 0.0, to);
+  }
+
+  void add_edge(std::uint32_t t, std::size_t k, std::vector<field_sample>& to) const {
+    const auto c = corners(model_.mesh, t);
+    const double length_m = glm::length(c[(k + 1) % 3] - c[k]);
+    const std::uint32_t across = index_.neighbour[t][k];
+    const vec3 here = index_.normal[t], there = across == surface_index::none ? here : index_.normal[across];
+    const vec3 axis = middle_of(here + there, here);
+    const double cone_rad = angle(axis, here);
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m / pitch_m_)));
+    for (std::size_t i = 0; i < count; ++i) {
+      const double f = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+      add(fine_edge_point(model_, index_, t, k, f), axis, cone_rad, to);
+    }
+  }
+
+  [[nodiscard]] static vec3 middle_of(const vec3& sum, const vec3& otherwise) noexcept {
+    const double squared = glm::dot(sum, sum);
+    return squared > 1e-12 ? sum / std::sqrt(squared) : otherwise;
+  }
+  [[nodiscard]] static double angle(const vec3& a, const vec3& b) noexcept {
+    return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+  }
+
+  // At the mean of what the charts around a vertex say of it, looking to all its triangles.
+  void add_vertices(std::vector<field_sample>& to) const {
+    const std::size_t vertices = model_.mesh.positions.size();
+    std::vector<vec3> place(vertices, vec3(0.0)), axis(vertices, vec3(0.0));
+    std::vector<std::uint32_t> corners_at(vertices, 0);
+    std::vector<double> cone_rad(vertices, 0.0);
+    for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) {
+      const coarse_triangle& tri = model_.mesh.triangles[t];
+      for (std::size_t k = 0; k < 3; ++k) {
+        axis[tri.vertex[k]] += index_.normal[t];
+        const vec3 p = model_.texture.sample(tri.uv[k]);
+        if (!is_finite(p)) continue;
+        place[tri.vertex[k]] += p;
+        ++corners_at[tri.vertex[k]];
+      }
+    }
+    for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) {
+      for (const std::uint32_t v : model_.mesh.triangles[t].vertex) {
+        const vec3 middle = middle_of(axis[v], index_.normal[t]);
+        cone_rad[v] = std::max(cone_rad[v], angle(middle, index_.normal[t]));
+      }
+    }
+    for (std::size_t v = 0; v < vertices; ++v) {
+      if (corners_at[v] == 0) continue;
+      add(place[v] / static_cast<double>(corners_at[v]), middle_of(axis[v], {0.0, 0.0, 1.0}), cone_rad[v], to);
+    }
+  }
+
+  const textured_model& model_;
+  const surface_index& index_;
+  double pitch_m_;
+};
+
+}  // namespace asperity::detail

@@ -1,0 +1,83 @@
+// The bodies of a scene as a search for ways out needs them: fields with bounds, samples in branches.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "asperity/core/memory.hpp"
+#include "asperity/field/field_scene.hpp"
+#include "least_motion/field_bounds.hpp"
+#include "least_motion/kept_relief.hpp"
+#include "least_motion/make_moving_shape.hpp"
+#include "least_motion/mark_tree.hpp"
+#include "least_motion/moving_shape.hpp"
+#include "least_motion/relief_bounds.hpp"
+
+namespace asperity::exits {
+
+/// One body. Immutable once made.
+struct exit_body {
+  field_body_ptr body;
+  kept_relief relief;
+  moving_shape shape;
+  field_bounds bounds;
+  relief_bounds most_relief;
+  mark_tree marks;
+
+  /// @pre made
+  explicit exit_body(field_body_ptr made)
+      : body(std::move(made)),
+        relief(usual_relief(body->field, body->samples.samples())),
+        shape(make_moving_shape(body->field, relief)),
+        bounds(shape),
+        most_relief(body->field.fine),
+        marks(body->samples.samples()) {}
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(shape, bounds, most_relief, marks);
+  }
+};
+
+using exit_body_ptr = std::shared_ptr<const exit_body>;
+
+/// One per body, in the order of the scene; a body that appears several times is made once. Immutable once made.
+struct exit_scene {
+  exit_body_ptr probe;
+  std::vector<exit_body_ptr> fixed;
+
+  /// Allocates; for a tenth of a second a body and more for long notches, not for a tick.   @pre all bodies of made are
+  /// there
+  explicit exit_scene(const field_scene& made) : probe(std::make_shared<const exit_body>(made.probe)) {
+    for (const field_body_ptr& b : made.fixed) {
+      const auto same = std::find_if(fixed.begin(), fixed.end(), [&](const exit_body_ptr& f) { return f->body == b; });
+      if (b == made.probe) {
+        fixed.push_back(probe);
+      } else if (same != fixed.end()) {
+        fixed.push_back(exit_body_ptr(*same));
+      } else {
+        fixed.push_back(std::make_shared<const exit_body>(b));
+      }
+    }
+  }
+
+  /// Whether it was made of these bodies, in this order.
+  [[nodiscard]] bool is_of(const field_scene& made) const noexcept {
+    return probe->body == made.probe &&
+           std::equal(fixed.begin(), fixed.end(), made.fixed.begin(), made.fixed.end(),
+                      [](const exit_body_ptr& own, const field_body_ptr& b) { return own->body == b; });
+  }
+
+  /// Without the fields and samples, which belong to the field_scene.
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    std::size_t bytes = asperity::heap_bytes(fixed) + sizeof(exit_body) + probe->heap_bytes();
+    for (auto b = fixed.begin(); b != fixed.end(); ++b) {
+      const bool counted = *b == probe || std::find(fixed.begin(), b, *b) != b;
+      if (!counted) bytes += sizeof(exit_body) + (*b)->heap_bytes();
+    }
+    return bytes;
+  }
+};
+
+}  // namespace asperity::exits

@@ -1,0 +1,102 @@
+// What depth fields tell of presses that support planes do not answer.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "asperity/core/memory.hpp"
+#include "asperity/core/pose.hpp"
+#include "asperity/field/field_scene.hpp"
+#include "asperity/model/scene.hpp"
+#include "asperity/render/support_plane.hpp"
+#include "asperity/render/tick_flag.hpp"
+#include "planes/passage.hpp"
+
+namespace asperity {
+
+/// Watches probe and fixed bodies from tick to tick. For each fixed body it takes the two surface points, one of each
+/// body, that the deepest plane is between, and follows either through the other body's field: see passage. It asks the
+/// fields and not the planes, so a plane that is missing hides nothing. A tick that comes with another probe pose than
+/// a hand can have moved to (half of the smallest body's diagonal or half a radian away) begins anew, so unrelated
+/// poses tell no passage.
+class field_watch {
+ public:
+  explicit field_watch(const field_scene& bodies, const scene& of) : probe_(field_reach::of(bodies.probe->field)) {
+    double smallest_m = of.probe->box.diagonal();
+    for (std::size_t b = 0; b < bodies.fixed.size(); ++b) {
+      smallest_m = std::min(smallest_m, of.fixed[b]->box.diagonal());
+      fixed_.push_back({.reach = field_reach::of(bodies.fixed[b]->field)});
+    }
+    farthest_m_ = 0.5 * smallest_m;
+  }
+
+  /// @param planes of this tick, with gaps
+  /// @param c_a_w  centre of mass that their r_w are from
+  /// @pre as many bodies as it was made for   @rt safe
+  [[nodiscard]] tick_flag look(const field_scene& bodies, const scene_pose& at, std::span<const support_plane> planes,
+                               const vec3& c_a_w) noexcept {
+    tick_flag out = tick_flag::none;
+    for (std::size_t b = 0; b < fixed_.size(); ++b) out |= look_at(b, bodies, at, planes, c_a_w);
+    return out;
+  }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_); }
+
+ private:
+  struct watched {
+    field_reach reach{};
+    passage of_probe{}, of_fixed{};  // a point of the probe in the body's field, and the other way round
+    pose T_ba{};
+  };
+
+  [[nodiscard]] tick_flag look_at(std::size_t b, const field_scene& bodies, const scene_pose& at,
+                                  std::span<const support_plane> planes, const vec3& c_a_w) noexcept {
+    const body_field &in_a = bodies.probe->field, &in_b = bodies.fixed[b]->field;
+    const pose T_ba = inverse(at.T_wb[b]) * at.T_wa, T_ab = inverse(T_ba);
+    watched& w = fixed_[b];
+    tick_flag out = tick_flag::none;
+    constexpr double least_cosine = 0.97;  // of half the turn: half a radian
+    if (glm::distance(T_ba.position, w.T_ba.position) > farthest_m_ ||
+        std::fabs(glm::dot(T_ba.rotation, w.T_ba.rotation)) < least_cosine) {
+      w.of_probe.forget();
+      w.of_fixed.forget();
+    }
+    w.T_ba = T_ba;
+    if (w.of_probe.go(T_ba, in_b, w.reach) || w.of_fixed.go(T_ab, in_a, probe_)) out |= tick_flag::passed;
+
+    const support_plane* deepest = nullptr;
+    for (const support_plane& p : planes) {
+      if (p.body == b && (deepest == nullptr || p.depth_m > deepest->depth_m)) deepest = &p;
+    }
+    if (deepest != nullptr) {
+      if (deepest->depth_m > deepest_held_m) out |= tick_flag::not_held;
+      // The sample lies on one of the surfaces, and the other surface is beside it by the depth.
+      const pose to_a = inverse(at.T_wa), to_b = inverse(at.T_wb[b]);
+      const vec3 p_w = c_a_w + deepest->r_w, across_w = deepest->depth_m * deepest->n_ab_w;
+      const bool on_a = std::fabs(in_a.coarse(to_a * p_w).value_m) < std::fabs(in_b.coarse(to_b * p_w).value_m);
+      const vec3 on_a_w = on_a ? p_w : p_w + across_w, on_b_w = on_a ? p_w - across_w : p_w;
+      begin_anew(w.of_probe, to_a * on_a_w, to_b * on_a_w, in_b, w.reach);
+      begin_anew(w.of_fixed, to_b * on_b_w, to_a * on_b_w, in_a, probe_);
+    }
+    if ((w.of_probe.active() && w.reach.ends_before(w.of_probe.last())) ||
+        (w.of_fixed.active() && probe_.ends_before(w.of_fixed.last()))) {
+      out |= tick_flag::beyond_field;
+    }
+    return out;
+  }
+
+  // A point that is deep is followed to its end; a shallow one gives way to what is the deepest now.
+  static void begin_anew(passage& p, const vec3& point_x, const vec3& point_y, const body_field& in_y,
+                         const field_reach& reach) noexcept {
+    if (!p.active() || p.last().value_m < reach.shallow_m()) p.begin(point_x, point_y, in_y);
+  }
+
+  field_reach probe_;
+  std::vector<watched> fixed_;
+  double farthest_m_ = 0.0;
+};
+
+}  // namespace asperity
