@@ -64,7 +64,7 @@ class broken_session : public testing::TestWithParam<session_clock> {
     any_device device{witnessed(seen_)};
     EXPECT_TRUE(device.open());
     progress_line quiet(true);
-    return run_session({.feel = chosen_renderer(std::in_place_type<wall>, wall{}),
+    return run_session({.feel = any_renderer(wall{}),
                         .placement = {{pose{}}, vec3(0.0)},
                         .device = std::move(device),
                         .clock = GetParam(),

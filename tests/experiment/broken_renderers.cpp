@@ -7,11 +7,11 @@
 
 namespace broken {
 
-result<command::chosen_renderer> make_renderer(scene bodies, const experiment::variant& kind, mutation how) {
+result<any_renderer> make_renderer(scene bodies, const experiment::variant& kind, mutation how) {
   if (const result<void> ok = command::check(kind.options); !ok) return ok.error();
   result<broken_paper_renderer> made = make_paper(std::move(bodies), command::grid_settings(kind.options), how);
   if (!made) return made.error();
-  return command::chosen_renderer(std::move(made).value());
+  return any_renderer(std::move(made).value());
 }
 
 }  // namespace broken

@@ -7,7 +7,8 @@
 namespace broken {
 
 /// What a variant of the paper's asks for, on the CPU, with the mutation; none is whole.
-[[nodiscard]] asperity::result<asperity::command::chosen_renderer> make_renderer(
-    asperity::scene bodies, const asperity::experiment::variant& kind, mutation how);
+[[nodiscard]] asperity::result<asperity::any_renderer> make_renderer(asperity::scene bodies,
+                                                                     const asperity::experiment::variant& kind,
+                                                                     mutation how);
 
 }  // namespace broken

@@ -3,9 +3,11 @@
 #include <utility>
 
 #include "cli.hpp"
+#include "exact/exact_renderer.hpp"
 #include "gpu_report.hpp"
 #include "model_report.hpp"
 #include "poses.hpp"
+#include "render_kinds.hpp"
 #include "render_options.hpp"
 #include "scene_loading.hpp"
 #include "text.hpp"
@@ -69,12 +71,22 @@ std::string contact_text(std::size_t i, const contact& c, const penetration& p) 
                                                      std::to_string(p.samples) + " samples" + flags);
 }
 
-answer report(const query_command& options, chosen_renderer& feel, const tick& found, status answered) {
+// What a contact of the last tick is deep at most; nothing where the depth backend does not know.
+std::optional<double> depth_at_most_m(any_renderer& feel, std::size_t contact) {
+  exact_renderer* const exact = feel.target<exact_renderer>();
+  if (exact == nullptr) return std::nullopt;
+  const auto brackets = exact->depth().brackets();
+  if (contact >= brackets.size() || !brackets[contact].bounded) return std::nullopt;
+  return brackets[contact].upper_m;
+}
+
+answer report(const query_command& options, any_renderer& feel, const tick& found, status answered) {
   answer out;
+  const std::shared_ptr<gpu_use> gpu = gpu_use_of(feel);
   json contacts = json::array();
   for (std::size_t i = 0; i < found.contacts.size(); ++i) {
     contacts.push_back(contact_json(found.contacts[i], found.depths[i]));
-    if (const auto most_m = feel.depth_at_most_m(i)) contacts.back()["depth_at_most"] = *most_m;
+    if (const auto most_m = depth_at_most_m(feel, i)) contacts.back()["depth_at_most"] = *most_m;
     out.text += contact_text(i, found.contacts[i], found.depths[i]);
   }
   const wrench& w = found.force.on_probe_w;
@@ -90,12 +102,12 @@ answer report(const query_command& options, chosen_renderer& feel, const tick& f
                   {"status", to_string(answered)},
                   {"dropped_contacts", found.dropped_contacts},
                   {"units", "SI"}};
-  if (feel.gpu()) out.document["gpu"] = command::to_json(*feel.gpu());
+  if (gpu) out.document["gpu"] = command::to_json(*gpu);
   if (found.contacts.empty()) out.text += row("contacts", "none");
   out.text += row("force on the probe", brief(w.force.x) + ", " + brief(w.force.y) + ", " + brief(w.force.z) + " N");
   out.text += row("torque on the probe", brief(w.torque.x) + ", " + brief(w.torque.y) + ", " + brief(w.torque.z) +
                                              " N m, about its centre of mass");
-  if (feel.gpu()) out.text += to_text(*feel.gpu());
+  if (gpu) out.text += to_text(*gpu);
   if (found.dropped_contacts > 0) {
     out.text += "  warning: " + std::to_string(found.dropped_contacts) + " contacts did not fit and were left out\n";
   }
@@ -110,13 +122,14 @@ result<answer> query(const query_command& options, const common_options& common)
   if (const result<void> ok = check(options.render); !ok) return ok.error();
   result<scene> bodies = load_scene(options.probe, {options.fixed}, options.render.allow_scale_mismatch);
   if (!bodies) return bodies.error();
-  result<chosen_renderer> made = make_chosen_renderer(std::move(bodies).value(), options.render);
+  result<any_renderer> made = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!made) return made.error();
 
-  if (made->gpu() && !common.quiet) warn(*made->gpu());
+  const std::shared_ptr<gpu_use> gpu = gpu_use_of(*made);
+  if (gpu && !common.quiet) warn(*gpu);
   tick found;
   const status answered = made->step({*T_wa, {&*T_wb, 1}}, found);
-  if (answered == status::backend_failed && made->gpu()) return gpu_failed(*made->gpu());
+  if (answered == status::backend_failed && gpu) return gpu_failed(*gpu);
   if (answered != status::ok && answered != status::capacity_reached) {
     return error{error_code::unsupported, std::string("the contact could not be computed at these poses (") +
                                               to_string(answered) + "): inspect both models"};

@@ -17,6 +17,7 @@
 #include "known_devices.hpp"
 #include "options.hpp"
 #include "poses.hpp"
+#include "render_kinds.hpp"
 #include "run_abandon.hpp"
 #include "run_command.hpp"
 #include "run_files.hpp"
@@ -121,11 +122,11 @@ result<std::optional<pose>> start_of_handle(const run_command& options, const fe
 
 // The first tick on a GPU compiles; the session shall not wait for that. Afterwards the thread of the contact loop
 // takes the context.
-result<void> make_ready(chosen_renderer& feel, const given_poses& poses) {
+result<void> make_ready(any_renderer& feel, const gpu_use& gpu, const given_poses& poses) {
   tick unused;
   const status answered = feel.step({*poses.T_wa, poses.T_wb}, unused);
-  feel.gpu()->leave_thread();
-  if (answered == status::backend_failed) return gpu_failed(*feel.gpu());
+  gpu.leave_thread();
+  if (answered == status::backend_failed) return gpu_failed(gpu);
   return {};
 }
 
@@ -167,9 +168,9 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (const result<void> opened = open_device(options, *bodies, felt); !opened) return opened.error();
   render_options chosen = options.render;
   chosen.contact_rate_hz = options.contact_rate_hz;
-  result<chosen_renderer> feel = make_chosen_renderer(std::move(bodies).value(), chosen);
+  result<any_renderer> feel = make_chosen_renderer(std::move(bodies).value(), chosen);
   if (!feel) return feel.error();
-  const std::shared_ptr<gpu_use> gpu = feel->gpu();
+  const std::shared_ptr<gpu_use> gpu = gpu_use_of(*feel);
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   if (gpu && !common.quiet) warn(*gpu);
   if (!poses->T_wa) {
@@ -179,7 +180,7 @@ result<answer> run_session(const run_command& options, const common_options& com
     poses->T_wa = *start;
   }
   if (gpu) {
-    if (const result<void> ready = make_ready(*feel, *poses); !ready) return ready.error();
+    if (const result<void> ready = make_ready(*feel, *gpu, *poses); !ready) return ready.error();
   }
 
   found.poses = *poses;

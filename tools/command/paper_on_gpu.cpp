@@ -3,6 +3,8 @@
 #include <memory>
 #include <utility>
 
+#include "asperity/gl/compute_depth.hpp"
+#include "asperity/gl/occlusion_depth.hpp"
 #include "asperity/window/fallback_depth.hpp"
 #include "asperity/window/paper_renderer.hpp"
 
@@ -24,12 +26,18 @@ class counted_depth {
     if constexpr (requires { depth_.counted(); }) use_->fallbacks = depth_.counted().fallbacks;
     return s;
   }
+  [[nodiscard]] const std::shared_ptr<gpu_use>& use() const noexcept { return use_; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return depth_.heap_bytes(); }
 
  private:
   Depth depth_;
   std::shared_ptr<gpu_use> use_;
 };
+
+template <class Depth>
+using counted_renderer = basic_renderer<convex_piece_finder, counted_depth<Depth>, gradient_penalty>;
+using gpu_alone = counted_renderer<any_depth>;
+using gpu_then_cpu = counted_renderer<fallback_depth<any_depth, any_depth>>;
 
 /// Stands for a GPU that could not be opened.
 struct absent_depth {
@@ -58,7 +66,7 @@ bool is_the_gpu_s(error_code code) { return code == error_code::unsupported || c
 
 }  // namespace
 
-result<chosen_renderer> make_paper_on_gpu(scene bodies, const render_options& options, gpu_depth_maker* make_depth) {
+result<any_renderer> make_paper_on_gpu(scene bodies, const render_options& options, gpu_depth_maker* make_depth) {
   if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
   const paper_settings settings{.depth = grid_settings(options)};
   result<cpu_depth> cpu = make_cpu_depth(bodies, settings.depth);  // refuses what no backend can use
@@ -73,16 +81,45 @@ result<chosen_renderer> make_paper_on_gpu(scene bodies, const render_options& op
   }
   if (!gpu) use->problem = gpu.error().message;
   any_depth first = gpu ? std::move(gpu).value() : any_depth(absent_depth{});
-  any_depth depth =
-      options.fallback
-          ? any_depth(counted_depth(
-                fallback_depth<any_depth, any_depth>(std::move(first), any_depth(std::move(cpu).value())), use))
-          : any_depth(counted_depth(std::move(first), use));
   convex_piece_finder finder(bodies, settings.finder);
-  using gpu_renderer = basic_renderer<convex_piece_finder, any_depth, gradient_penalty>;
-  return chosen_renderer(gpu_renderer(std::move(bodies), std::move(finder), std::move(depth),
-                                      gradient_penalty(settings.force), settings.limits),
-                         use);
+  const gradient_penalty force(settings.force);
+  if (!options.fallback) {
+    return any_renderer(
+        gpu_alone(std::move(bodies), std::move(finder), {std::move(first), use}, force, settings.limits));
+  }
+  fallback_depth<any_depth, any_depth> both(std::move(first), any_depth(std::move(cpu).value()));
+  return any_renderer(
+      gpu_then_cpu(std::move(bodies), std::move(finder), {std::move(both), use}, force, settings.limits));
+}
+
+std::shared_ptr<gpu_use> gpu_use_of(any_renderer& feel) {
+  if (gpu_alone* const r = feel.target<gpu_alone>()) return r->depth().use();
+  if (gpu_then_cpu* const r = feel.target<gpu_then_cpu>()) return r->depth().use();
+  return nullptr;
+}
+
+result<any_depth> make_gl_compute_depth(const gl::context_ptr& context, const scene& bodies,
+                                        const depth_settings& settings, const contact_limits& limits) {
+  result<gl::compute_depth> made =
+      gl::compute_depth::make(context, bodies, settings, {.contacts = limits.contacts, .triangles = limits.triangles});
+  if (!made) return made.error();
+  return any_depth(std::move(made).value());
+}
+
+result<any_depth> make_gl_occlusion_depth(const gl::context_ptr& context, const scene& bodies,
+                                          const depth_settings& settings, const contact_limits& limits) {
+  result<gl::occlusion_depth> made = gl::occlusion_depth::make(
+      context, bodies, settings, {.contacts = limits.contacts, .triangles = limits.triangles});
+  if (!made) return made.error();
+  return any_depth(std::move(made).value());
+}
+
+result<any_renderer> make_paper_with_gl_compute(scene bodies, const render_options& options) {
+  return make_paper_on_gpu(std::move(bodies), options, make_gl_compute_depth);
+}
+
+result<any_renderer> make_paper_with_gl_occlusion(scene bodies, const render_options& options) {
+  return make_paper_on_gpu(std::move(bodies), options, make_gl_occlusion_depth);
 }
 
 }  // namespace asperity::command

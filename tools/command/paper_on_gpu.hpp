@@ -2,6 +2,7 @@
 #pragma once
 
 #include "asperity/gl/context.hpp"
+#include "asperity/render/any_renderer.hpp"
 #include "asperity/window/any_depth.hpp"
 #include "asperity/window/depth_settings.hpp"
 #include "render_kinds.hpp"
@@ -11,14 +12,13 @@ namespace asperity::command {
 using gpu_depth_maker = result<any_depth>(const gl::context_ptr& context, const scene& bodies,
                                           const depth_settings& settings, const contact_limits& limits);
 
-gpu_depth_maker make_gl_compute_depth;    // paper_with_gl_compute.cpp
-gpu_depth_maker make_gl_occlusion_depth;  // paper_with_gl_occlusion.cpp
+gpu_depth_maker make_gl_compute_depth;
+gpu_depth_maker make_gl_occlusion_depth;
 
-/// The paper's renderer with a depth backend that `make_depth` makes on the GPU that the options ask for. Its ticks are
-/// compiled here, once for all such backends.
+/// The paper's renderer with a depth backend that `make_depth` makes on the GPU that the options ask for.
 /// With --fallback a GPU that cannot be used from the start is a GPU that fails in every tick.
 /// @return invalid_argument | bad_mesh | bad_texture | without --fallback also unsupported, limit_exceeded
-[[nodiscard]] result<chosen_renderer> make_paper_on_gpu(scene bodies, const render_options& options,
-                                                        gpu_depth_maker* make_depth);
+[[nodiscard]] result<any_renderer> make_paper_on_gpu(scene bodies, const render_options& options,
+                                                     gpu_depth_maker* make_depth);
 
 }  // namespace asperity::command

@@ -147,7 +147,7 @@ result<void> check(const render_options& options) {
   return backend.depth == depth_kind::as_printed ? check_as_printed(options) : result<void>();
 }
 
-result<chosen_renderer> make_chosen_renderer(scene bodies, const render_options& options) {
+result<any_renderer> make_chosen_renderer(scene bodies, const render_options& options) {
   if (const result<void> ok = check(options); !ok) return ok.error();
   const backend_choice& backend = backend_of(options);
   const std::string formulation = formulation_name(options);

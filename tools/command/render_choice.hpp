@@ -8,8 +8,8 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/render/any_renderer.hpp"
 #include "asperity/window/depth_settings.hpp"
-#include "chosen_renderer.hpp"
 
 namespace asperity::command {
 
@@ -55,6 +55,6 @@ struct render_options {
 
 /// The renderer that the options ask for.
 /// @return what check() says, or the renderer's maker
-[[nodiscard]] result<chosen_renderer> make_chosen_renderer(scene bodies, const render_options& options);
+[[nodiscard]] result<any_renderer> make_chosen_renderer(scene bodies, const render_options& options);
 
 }  // namespace asperity::command

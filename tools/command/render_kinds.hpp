@@ -1,21 +1,27 @@
-// The renderers that the command offers. Each is made in a file of its own, which compiles its ticks.
+// The renderers that the command offers.
 #pragma once
+
+#include <memory>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
-#include "chosen_renderer.hpp"
+#include "asperity/render/any_renderer.hpp"
+#include "gpu_use.hpp"
 #include "render_choice.hpp"
 
 namespace asperity::command {
 
-using renderer_maker = result<chosen_renderer>(scene bodies, const render_options& options);
+using renderer_maker = result<any_renderer>(scene bodies, const render_options& options);
 
-renderer_maker make_shared_on_cpu;     // shared_on_cpu.cpp
-renderer_maker make_field_on_cpu;      // field_on_cpu.cpp
-renderer_maker make_paper_on_cpu;      // paper_on_cpu.cpp
-renderer_maker make_paper_with_exact;  // paper_with_exact.cpp
+renderer_maker make_shared_on_cpu;     ///< --contacts shared: the library's default
+renderer_maker make_field_on_cpu;      ///< --contacts field: support planes, for control loops
+renderer_maker make_paper_on_cpu;      ///< --contacts paper
+renderer_maker make_paper_with_exact;  ///< --backend exact: the paper's contacts with the maximum itself
 // In builds with OpenGL, where ASPERITY_HAS_GL is defined:
-renderer_maker make_paper_with_gl_compute;    // paper_with_gl_compute.cpp
-renderer_maker make_paper_with_gl_occlusion;  // paper_with_gl_occlusion.cpp
+renderer_maker make_paper_with_gl_compute;    ///< --backend gl-compute
+renderer_maker make_paper_with_gl_occlusion;  ///< --backend gl-occlusion
+
+/// What a renderer of these does with a GPU; null where it uses none.
+[[nodiscard]] std::shared_ptr<gpu_use> gpu_use_of(any_renderer& feel);
 
 }  // namespace asperity::command

@@ -39,7 +39,7 @@ result<given_poses> read_poses(const run_command& options) {
   return out;
 }
 
-result<pose> start_above(const run_command& options, chosen_renderer& feel, const std::vector<pose>& T_wb) {
+result<pose> start_above(const run_command& options, any_renderer& feel, const std::vector<pose>& T_wb) {
   const step_function step = [&](const scene_pose& at, tick& out) { return feel.step(at, out); };
   result<pose> touch = find_touch(feel.scene(), step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
   if (touch && options.motion != "free") touch->position.z += clearance_m;

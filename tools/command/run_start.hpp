@@ -7,7 +7,7 @@
 #include "asperity/control/workspace_map.hpp"
 #include "asperity/device/any_device.hpp"
 #include "asperity/device/simulated/motion_script.hpp"
-#include "chosen_renderer.hpp"
+#include "asperity/render/any_renderer.hpp"
 #include "run_command.hpp"
 
 namespace asperity::command {
@@ -22,8 +22,7 @@ struct given_poses {
 [[nodiscard]] result<given_poses> read_poses(const run_command& options);
 
 /// The probe's pose just above the first touch, or at the touch for a motion that has no approach.
-[[nodiscard]] result<pose> start_above(const run_command& options, chosen_renderer& feel,
-                                       const std::vector<pose>& T_wb);
+[[nodiscard]] result<pose> start_above(const run_command& options, any_renderer& feel, const std::vector<pose>& T_wb);
 
 /// The simulated hand's: the handle sits at the probe's centre of mass, and its torque is then the one that turns the
 /// probe in the hand.

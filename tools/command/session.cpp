@@ -23,7 +23,7 @@ namespace {
 // A renderer with a stopwatch around it, so that no tick has to read a clock itself.
 class timed_renderer {
  public:
-  timed_renderer(chosen_renderer feel, std::vector<double>& seconds) : feel_(std::move(feel)), seconds_(&seconds) {}
+  timed_renderer(any_renderer feel, std::vector<double>& seconds) : feel_(std::move(feel)), seconds_(&seconds) {}
 
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     const double begin = cpu_seconds();
@@ -38,7 +38,7 @@ class timed_renderer {
   [[nodiscard]] double take_taken() noexcept { return std::exchange(taken_, 0.0); }
 
  private:
-  chosen_renderer feel_;
+  any_renderer feel_;
   std::vector<double>* seconds_;
   double taken_ = 0.0;
 };

@@ -11,7 +11,7 @@
 #include "asperity/control/device_loop.hpp"
 #include "asperity/control/real_time_thread.hpp"
 #include "asperity/device/any_device.hpp"
-#include "chosen_renderer.hpp"
+#include "asperity/render/any_renderer.hpp"
 #include "driver_guard.hpp"
 #include "progress.hpp"
 
@@ -46,7 +46,7 @@ struct session_rescue {
 };
 
 struct session_setup {
-  chosen_renderer feel;
+  any_renderer feel;
   scene_placement placement{};
   any_device device;  ///< open and not armed; a simulated or recorded one where the clock is virtual
   control_config control{};

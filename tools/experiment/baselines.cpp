@@ -45,7 +45,7 @@ struct loop_work {
   [[nodiscard]] double ratio() const { return std::abs(work_j.back()) / turnover_j; }
 };
 
-result<loop_work> go_round(command::chosen_renderer feel, int steps) {
+result<loop_work> go_round(any_renderer feel, int steps) {
   loop_work out;
   const std::vector<pose> T_wb{pose{}};
   vec3 before_m(0.0), before_n(0.0);
@@ -217,7 +217,7 @@ result<findings> run(workbench& bench) {
     if (const result<void> on = bench.go_on(); !on) return on.error();
     bench.progress("baselines, " + kind.says, 0.0);
     std::vector<std::string> row{kind.says, "-", "-", "-"};
-    result<command::chosen_renderer> feel = bench.make_renderer(*bodies, kind);
+    result<any_renderer> feel = bench.make_renderer(*bodies, kind);
     if (!feel) return feel.error();
     const result<loop_work> work = go_round(std::move(feel).value(), bench.brief() ? 300 : 600);
     if (!work) return work.error();

@@ -11,16 +11,15 @@ namespace asperity::experiment {
 namespace {
 
 template <class Model>
-command::chosen_renderer make(const scene& bodies, const std::optional<vec3>& point_a, Model model) {
+any_renderer make(const scene& bodies, const std::optional<vec3>& point_a, Model model) {
   using namespace baselines;
-  return command::chosen_renderer(basic_renderer<point_finder, point_depth, Model>(
-      bodies, point_finder(bodies), point_depth(bodies, point_a), std::move(model)));
+  return any_renderer(basic_renderer<point_finder, point_depth, Model>(bodies, point_finder(bodies),
+                                                                       point_depth(bodies, point_a), std::move(model)));
 }
 
 }  // namespace
 
-command::chosen_renderer make_point_renderer(const scene& bodies, point_force model,
-                                             const std::optional<vec3>& point_a) {
+any_renderer make_point_renderer(const scene& bodies, point_force model, const std::optional<vec3>& point_a) {
   switch (model) {
     case point_force::minsky:
       return make(bodies, point_a, baselines::minsky());

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "asperity/model/scene.hpp"
-#include "chosen_renderer.hpp"
+#include "asperity/render/any_renderer.hpp"
 
 namespace asperity::experiment {
 
@@ -18,7 +18,7 @@ enum class point_force : std::uint8_t {
 
 /// The paper's finder, a texture read at one point, and one of the models.
 /// @param point_a  see baselines::point_depth   @pre the scene's models are valid
-[[nodiscard]] command::chosen_renderer make_point_renderer(const scene& bodies, point_force model,
-                                                           const std::optional<vec3>& point_a);
+[[nodiscard]] any_renderer make_point_renderer(const scene& bodies, point_force model,
+                                               const std::optional<vec3>& point_a);
 
 }  // namespace asperity::experiment

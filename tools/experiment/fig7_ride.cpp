@@ -46,7 +46,7 @@ result<ride> draw_over_gear(workbench& bench, const variant& kind, const ride_se
   if (!block) return block.error();
   result<model_ptr> gear = bench.models().benchmark(benchmark::gear);
   if (!gear) return gear.error();
-  result<command::chosen_renderer> feel = bench.make_renderer({*block, {*gear}}, kind);
+  result<any_renderer> feel = bench.make_renderer({*block, {*gear}}, kind);
   if (!feel) return feel.error();
 
   // The gear turns with the plane: a crest always points at the block.

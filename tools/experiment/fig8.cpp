@@ -231,7 +231,7 @@ result<findings> run(workbench& bench) {
   over_time motion;
   over_angle law;
   const auto turn_with = [&](const variant& kind) -> result<void> {
-    result<command::chosen_renderer> feel = bench.make_renderer(*bodies, kind);
+    result<any_renderer> feel = bench.make_renderer(*bodies, kind);
     if (!feel) return feel.error();
     const result<samples> turned = turn_block(std::move(feel).value(), how);
     if (!turned) return turned.error();

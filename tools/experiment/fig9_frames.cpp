@@ -95,7 +95,7 @@ result<scrubbed> scrub(workbench& bench) {
   if (!part) return part.error();
   scrubbed path;
   path.bodies = {*file, {*part}};
-  result<command::chosen_renderer> feel = bench.make_renderer(path.bodies, paper_soft());
+  result<any_renderer> feel = bench.make_renderer(path.bodies, paper_soft());
   if (!feel) return feel.error();
   const std::size_t wanted = bench.brief() ? frames_brief : frames;
   bench.progress("fig9, scrubbing", 0.0);
@@ -108,7 +108,7 @@ result<scrubbed> scrub(workbench& bench) {
 }
 
 result<timed_frames> time_frames(workbench& bench, const variant& kind, const scrubbed& path) {
-  result<command::chosen_renderer> feel = bench.make_renderer(path.bodies, kind);
+  result<any_renderer> feel = bench.make_renderer(path.bodies, kind);
   if (!feel) return feel.error();
   const bool on_gpu = kind.may_be_missing;
   const std::size_t stride = on_gpu ? 25 : 1;

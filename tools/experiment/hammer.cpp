@@ -88,7 +88,7 @@ result<touch> touch_ring(workbench& bench, const variant& kind, const originals&
   if (!hammer) return hammer.error();
   result<model_ptr> torus = bench.models().benchmark(benchmark::torus);
   if (!torus) return torus.error();
-  result<command::chosen_renderer> feel = bench.make_renderer({*hammer, {*torus}}, kind);
+  result<any_renderer> feel = bench.make_renderer({*hammer, {*torus}}, kind);
   if (!feel) return feel.error();
 
   const schedule s = times(bench.brief());

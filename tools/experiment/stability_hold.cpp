@@ -20,7 +20,7 @@ static_assert(usual_stiffness_n_per_m == least_motion_settings{}.stiffness_n_per
 /// Renders with another renderer and changes what it finds.
 class changed_renderer {
  public:
-  changed_renderer(std::shared_ptr<command::chosen_renderer> inner, double factor, contact_line line,
+  changed_renderer(std::shared_ptr<any_renderer> inner, double factor, contact_line line,
                    std::shared_ptr<bool> one_contact)
       : inner_(std::move(inner)), one_contact_(std::move(one_contact)), factor_(factor), line_(line) {}
 
@@ -46,7 +46,7 @@ class changed_renderer {
     }
   }
 
-  std::shared_ptr<command::chosen_renderer> inner_;
+  std::shared_ptr<any_renderer> inner_;
   std::shared_ptr<bool> one_contact_;
   double factor_;
   contact_line line_;
@@ -140,23 +140,22 @@ result<notch> notch::make(workbench& bench, const variant& kind, bool flat) {
   if (!pad) return pad.error();
   variant on_pad = kind;
   if (kind.options.contacts == "paper") on_pad.options.grid = pad_grid;
-  result<command::chosen_renderer> feel = bench.make_renderer({*pad, {*pad}}, on_pad);
+  result<any_renderer> feel = bench.make_renderer({*pad, {*pad}}, on_pad);
   if (!feel) return feel.error();
   notch out;
   out.flat_ = flat;
-  out.inner_ = std::make_shared<command::chosen_renderer>(std::move(feel).value());
+  out.inner_ = std::make_shared<any_renderer>(std::move(feel).value());
   out.one_contact_ = std::make_shared<bool>(true);
   return out;
 }
 
-command::chosen_renderer notch::with(double stiffness_n_per_m, contact_line line) const {
+any_renderer notch::with(double stiffness_n_per_m, contact_line line) const {
   // Far away every contact of the last session is forgotten.
   tick found;
   const pose nowhere{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, 1.0)};
   const std::vector<pose> T_wb(1);
   static_cast<void>(inner_->step({nowhere, T_wb}, found));
-  return {std::in_place_type<changed_renderer>,
-          changed_renderer(inner_, stiffness_n_per_m / usual_stiffness_n_per_m, line, one_contact_)};
+  return any_renderer(changed_renderer(inner_, stiffness_n_per_m / usual_stiffness_n_per_m, line, one_contact_));
 }
 
 double guard_bound_j(double speed_m_per_s, double speed_rad_per_s) noexcept {

@@ -28,7 +28,7 @@ class notch {
 
   /// A renderer with this contact stiffness, which hands over that much of each contact. Wrench and stiffness matrix
   /// are proportional to the contact stiffness, so scaling both is the same as setting it.
-  [[nodiscard]] command::chosen_renderer with(double stiffness_n_per_m, contact_line line) const;
+  [[nodiscard]] any_renderer with(double stiffness_n_per_m, contact_line line) const;
   /// Whether every tick so far that was linearised without curvature had one contact only, as that needs.
   [[nodiscard]] bool was_one_contact() const noexcept { return *one_contact_; }
 
@@ -36,7 +36,7 @@ class notch {
 
  private:
   bool flat_ = false;
-  std::shared_ptr<command::chosen_renderer> inner_;
+  std::shared_ptr<any_renderer> inner_;
   std::shared_ptr<bool> one_contact_;
 };
 

@@ -129,7 +129,7 @@ result<model_ptr> bake_plate(workbench& bench, const std::string& name, const ve
 
 result<std::vector<felt_stroke>> stroke_plate(workbench& bench, const variant& kind, const model_ptr& stylus,
                                               const model_ptr& plate, const stroking& how) {
-  result<command::chosen_renderer> feel = bench.make_renderer({stylus, {plate}}, kind);
+  result<any_renderer> feel = bench.make_renderer({stylus, {plate}}, kind);
   if (!feel) return feel.error();
   const hand_way planned(how);
   trial t;

@@ -10,7 +10,7 @@ namespace {
 /// Another renderer's wrench without its stiffness.
 class held_wrench {
  public:
-  explicit held_wrench(command::chosen_renderer inner) : inner_(std::move(inner)) {}
+  explicit held_wrench(any_renderer inner) : inner_(std::move(inner)) {}
 
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     const status s = inner_.step(at, out);
@@ -21,14 +21,14 @@ class held_wrench {
   [[nodiscard]] std::size_t memory_bytes() const noexcept { return inner_.memory_bytes(); }
 
  private:
-  command::chosen_renderer inner_;
+  any_renderer inner_;
 };
 
 }  // namespace
 
-result<trial_log> run_trial(command::chosen_renderer feel, trial wanted) {
+result<trial_log> run_trial(any_renderer feel, trial wanted) {
   if (wanted.hold_wrench) {
-    feel = command::chosen_renderer(std::in_place_type<held_wrench>, held_wrench(std::move(feel)));
+    feel = any_renderer(held_wrench(std::move(feel)));
   }
   const vec3 centre_a = feel.scene().probe->mass.centre_of_mass;
   const quat& r = wanted.T_wa_start.rotation;

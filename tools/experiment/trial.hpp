@@ -35,6 +35,6 @@ struct trial_log {
 };
 
 /// @return the session's error, or that the output gate shut and why: in an experiment it never should
-[[nodiscard]] result<trial_log> run_trial(command::chosen_renderer feel, trial wanted);
+[[nodiscard]] result<trial_log> run_trial(any_renderer feel, trial wanted);
 
 }  // namespace asperity::experiment

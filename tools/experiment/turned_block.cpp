@@ -57,7 +57,7 @@ result<scene> block_on_block(workbench& bench) {
   return scene{*block, {*block}};
 }
 
-result<std::vector<turned_sample>> turn_block(command::chosen_renderer feel, const turning& how) {
+result<std::vector<turned_sample>> turn_block(any_renderer feel, const turning& how) {
   trial t;
   t.T_wa_start = upper_block();
   t.T_wa_start.position.z += 0.1e-3;

@@ -32,7 +32,7 @@ struct turned_sample {
 };
 
 /// Turns the striped block on its twin with this renderer. @param bodies  scene: block on block
-[[nodiscard]] result<std::vector<turned_sample>> turn_block(command::chosen_renderer feel, const turning& how);
+[[nodiscard]] result<std::vector<turned_sample>> turn_block(any_renderer feel, const turning& how);
 
 /// The scene: the block on a second one.
 [[nodiscard]] result<scene> block_on_block(workbench& bench);

@@ -68,7 +68,7 @@ result<void> workbench::with_each(std::string_view name, std::span<const variant
   return {};
 }
 
-result<command::chosen_renderer> workbench::make_renderer(scene bodies, const variant& kind) const {
+result<any_renderer> workbench::make_renderer(scene bodies, const variant& kind) const {
   return settings_.make_renderer(std::move(bodies), kind);
 }
 

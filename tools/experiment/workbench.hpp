@@ -32,7 +32,7 @@ struct workbench_settings {
   std::vector<variant> variants;
   /// Makes every renderer; by default the one that the options of the variant ask for. A test that breaks the code on
   /// purpose gives its own.
-  std::function<result<command::chosen_renderer>(scene, const variant&)> make_renderer;
+  std::function<result<any_renderer>(scene, const variant&)> make_renderer;
   std::function<void(std::string_view what, double done)> progress;  ///< told of every stage and its share, 0 to 1
   std::function<bool()> cancelled;                                   ///< asked between trials
 };
@@ -45,7 +45,7 @@ class workbench {
   [[nodiscard]] model_shelf& models() noexcept { return models_; }
 
   /// The renderer of a variant. @return what its maker says
-  [[nodiscard]] result<command::chosen_renderer> make_renderer(scene bodies, const variant& kind) const;
+  [[nodiscard]] result<any_renderer> make_renderer(scene bodies, const variant& kind) const;
 
   /// The renderers that an experiment on forces is run with: contacts as one potential, the paper's with either
   /// gradient and, where the run is not brief, those on a GPU.
