@@ -15,16 +15,16 @@ class gentle_spring {
 
   // Force f(d) = limit tanh(k d / limit) along the gradient of the depth d: stiffness k at first touch, never more than
   // the limit along the normal. Its derivative f' is positive, so J = -f' g g^T pulls nothing and an implicit step may
-  // use it.
-  [[nodiscard]] asperity::status accumulate(const asperity::contact_set& contacts,
+  // use it. What it reports as contacts is what was found.
+  [[nodiscard]] asperity::status accumulate(const asperity::scene_pose&, const asperity::contact_set& contacts,
                                             std::span<const asperity::penetration> depths,
-                                            asperity::contact_force& out) const noexcept {
-    out = {};
-    for (const asperity::penetration& p : depths.first(contacts.size())) {
+                                            asperity::force_report& out) const noexcept {
+    out = {{}, contacts.contacts(), depths.first(contacts.size())};
+    for (const asperity::penetration& p : out.depths) {
       if (!(p.soft_depth_m > 0.0) || has(p.flags, asperity::depth_flag::no_overlap)) continue;
       const double t = std::tanh(stiffness_n_per_m_ * p.soft_depth_m / limit_n_);
-      out.on_probe_w += to_wrench(-limit_n_ * t * p.gradient);
-      add_outer(out.stiffness, -stiffness_n_per_m_ * (1.0 - t * t), p.gradient);
+      out.force.on_probe_w += to_wrench(-limit_n_ * t * p.gradient);
+      add_outer(out.force.stiffness, -stiffness_n_per_m_ * (1.0 - t * t), p.gradient);
     }
     return asperity::status::ok;
   }

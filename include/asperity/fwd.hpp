@@ -1,14 +1,14 @@
-// The names of the types that a program hands around, without what they are: for headers that only mention them.
+// Names of the types that a program hands around, without what they are: for headers that only mention them.
 #pragma once
 
 namespace asperity {
 
 struct pose;
 struct wrench;
-struct mat6;
-struct textured_model;
 struct scene;
 struct scene_pose;
+struct textured_model;
+
 struct tick;
 struct contact;
 class contact_set;
@@ -18,11 +18,11 @@ struct support_plane;
 struct renderer_settings;
 struct field_renderer_settings;
 struct paper_settings;
+class any_renderer;
 class any_depth;
 
 struct control_config;
+struct device_capabilities;
 class any_device;
-struct device_state;
-struct capabilities;
 
 }  // namespace asperity

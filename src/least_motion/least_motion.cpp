@@ -51,46 +51,46 @@ least_motion& least_motion::operator=(least_motion&&) noexcept = default;
 least_motion::~least_motion() = default;
 
 status least_motion::accumulate(const scene_pose& at, const near_samples&, std::span<const near_plane>,
-                                contact_force& out) const noexcept {
+                                force_report& out) noexcept {
   solver_->solve(at);
-  out.on_probe_w = solver_->on_probe_w();
-  out.stiffness = solver_->stiffness();
+  report_ways();
+  out = {{solver_->on_probe_w(), solver_->stiffness()}, reported_.contacts(), reported_.depths()};
   return solver_->hit().any() ? status::capacity_reached : status::ok;
 }
 
 double least_motion::energy_j() const noexcept { return solver_->energy_j(); }
 const exits::exit_limits_hit& least_motion::hit() const noexcept { return solver_->hit(); }
 std::size_t least_motion::readings() const noexcept { return solver_->readings(); }
-std::size_t least_motion::heap_bytes() const noexcept { return sizeof(exits::exit_solver) + solver_->heap_bytes(); }
+std::size_t least_motion::heap_bytes() const noexcept {
+  return sizeof(exits::exit_solver) + solver_->heap_bytes() + asperity::heap_bytes(reported_);
+}
 
-void least_motion::describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
-  contacts.clear();
+void least_motion::report_ways() noexcept {
+  reported_.clear();
   for (const exits::way_out& w : solver_->ways()) {
     const double pushed_n = glm::length(w.bed.gradient.linear);
     if (!(w.weight > 0.0 && pushed_n > 0.0) || w.touching.empty()) continue;
-    if (contacts.size() == depths.size()) return;
     const exits::mark* deepest = w.touching.begin();
     for (const exits::mark& m : w.touching) {
       if (m.depth_m > deepest->depth_m) deepest = &m;
     }
     const exits::posed_samples& samples = solver_->samples();
     const vec3 n_ab_w = w.bed.gradient.linear / pushed_n, point_w = samples.centre_w() + samples.lever_w(*deepest);
-    penetration& d = depths[contacts.size()];
-    d = {};
+    penetration d;
     d.depth_m = d.soft_depth_m = w.weight * glm::length(w.z_w + glm::cross(w.turn_w, samples.arm_w(*deepest)));
     d.gradient = {n_ab_w, glm::cross(samples.lever_w(*deepest), n_ab_w)};
     d.samples = static_cast<std::uint32_t>(w.touching.size());
     d.witness_w = point_w;
     if (solver_->hit().any()) d.flags |= depth_flag::unresolved;
     contact c;
-    c.id = static_cast<std::uint32_t>(contacts.size());
+    c.id = static_cast<std::uint32_t>(reported_.size());
     c.body = samples.meeting_of(*deepest).body;
     c.separation_m = -d.depth_m;
     c.p_a_w = c.p_b_w = c.window.centre_w = point_w;
     c.window.n_ab_w = n_ab_w;
     c.window.u_w = any_orthogonal(n_ab_w);
     c.window.v_w = glm::cross(n_ab_w, c.window.u_w);
-    if (!contacts.add(c, {}, {})) return;
+    if (!reported_.add(c, d)) return;
   }
 }
 

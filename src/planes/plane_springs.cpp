@@ -5,9 +5,32 @@
 #include <cstdint>
 #include <string>
 
+#include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/math.hpp"
 
 namespace asperity {
+namespace {
+
+constexpr std::size_t most_directions = 16;
+using directions = fixed_vector<near_plane, most_directions>;
+
+// The deepest plane of each direction, the deepest of all first.
+directions deepest_of_each(std::span<const near_plane> planes, double same_direction) noexcept {
+  directions out;
+  for (;;) {
+    const near_plane* best = nullptr;
+    for (const near_plane& p : planes) {
+      if (!std::isfinite(p.plane.depth_m) || (best != nullptr && !(p.plane.depth_m > best->plane.depth_m))) continue;
+      const bool known = std::any_of(out.begin(), out.end(), [&](const near_plane& g) {
+        return g.plane.body == p.plane.body && glm::dot(g.plane.n_ab_w, p.plane.n_ab_w) >= same_direction;
+      });
+      if (!known) best = &p;
+    }
+    if (best == nullptr || !out.push_back(*best)) return out;
+  }
+}
+
+}  // namespace
 
 result<void> check(const plane_spring_settings& s) {
   const auto bad = [](std::string what) { return error{error_code::invalid_argument, "plane springs: " + what}; };
@@ -20,55 +43,33 @@ result<void> check(const plane_spring_settings& s) {
   return {};
 }
 
-status plane_springs::accumulate(const near_samples&, std::span<const near_plane> planes,
-                                 contact_force& out) const noexcept {
+status plane_springs::accumulate(const scene_pose&, const near_samples&, std::span<const near_plane> planes,
+                                 force_report& out) noexcept {
   out = {};
-  group(planes);
-  for (const near_plane& deepest : deepest_) {
+  reported_.clear();
+  for (const near_plane& deepest : deepest_of_each(planes, settings_.same_direction)) {
     const support_plane& p = deepest.plane;
-    if (!(p.depth_m > 0.0)) continue;
-    out.on_probe_w += to_wrench((-settings_.stiffness_n_per_m * p.depth_m) * p.gradient);
-    add_outer(out.stiffness, -settings_.stiffness_n_per_m, p.gradient);
-  }
-  return status::ok;
-}
-
-void plane_springs::describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
-  contacts.clear();
-  for (const near_plane& deepest : deepest_) {
-    const support_plane& p = deepest.plane;
-    if (contacts.size() == depths.size()) return;
-    penetration& d = depths[contacts.size()];
-    d = {};
+    penetration d;
     d.depth_m = d.soft_depth_m = p.depth_m;
     d.gradient = p.gradient;
     d.samples = 1;
     d.witness_w = deepest.point_w;
     contact c;
-    c.id = static_cast<std::uint32_t>(contacts.size());
+    c.id = static_cast<std::uint32_t>(reported_.size());
     c.body = p.body;
     c.separation_m = -p.depth_m;
     c.p_a_w = c.p_b_w = c.window.centre_w = deepest.point_w;
     c.window.n_ab_w = p.n_ab_w;
     c.window.u_w = any_orthogonal(p.n_ab_w);
     c.window.v_w = glm::cross(p.n_ab_w, c.window.u_w);
-    if (!contacts.add(c, {}, {})) return;
+    reported_.add(c, d);
+    if (!(p.depth_m > 0.0)) continue;
+    out.force.on_probe_w += to_wrench((-settings_.stiffness_n_per_m * p.depth_m) * p.gradient);
+    add_outer(out.force.stiffness, -settings_.stiffness_n_per_m, p.gradient);
   }
-}
-
-void plane_springs::group(std::span<const near_plane> planes) const noexcept {
-  deepest_.clear();
-  for (;;) {
-    const near_plane* best = nullptr;
-    for (const near_plane& p : planes) {
-      if (!std::isfinite(p.plane.depth_m) || (best != nullptr && !(p.plane.depth_m > best->plane.depth_m))) continue;
-      const bool known = std::any_of(deepest_.begin(), deepest_.end(), [&](const near_plane& g) {
-        return g.plane.body == p.plane.body && glm::dot(g.plane.n_ab_w, p.plane.n_ab_w) >= settings_.same_direction;
-      });
-      if (!known) best = &p;
-    }
-    if (best == nullptr || !deepest_.push_back(*best)) return;
-  }
+  out.contacts = reported_.contacts();
+  out.depths = reported_.depths();
+  return status::ok;
 }
 
 }  // namespace asperity

@@ -16,8 +16,8 @@ double pressed_m(const penetration& p, depth_value value) noexcept {
 
 }  // namespace
 
-status gradient_penalty::accumulate(const contact_set& contacts, std::span<const penetration> depths,
-                                    contact_force& out) const noexcept {
+status gradient_penalty::accumulate(const scene_pose&, const contact_set& contacts, std::span<const penetration> depths,
+                                    force_report& out) const noexcept {
   out = {};
   const detail::direction_sameness sameness(settings_.same_direction_rad, settings_.other_direction_rad);
   const auto depth = [this](const penetration& p) noexcept { return pressed_m(p, settings_.value); };
@@ -45,7 +45,7 @@ status gradient_penalty::accumulate(const contact_set& contacts, std::span<const
   for (const double x : sum.stiffness.m) {
     if (!std::isfinite(x)) return status::not_finite;
   }
-  out = sum;
+  out = {sum, list, depths.first(list.size())};
   return status::ok;
 }
 

@@ -57,6 +57,16 @@ class ForceModelContract : public ::testing::Test {
     in.add(contact_along({1, 0, 0}, 1), depth_along({1, 0, 0}, 1e-4));
     return in;
   }
+  /// One call, whose report has to fit together.
+  static status feel(typename Factory::model& model, const contact_set& contacts, std::span<const penetration> depths,
+                     contact_force& out) {
+    force_report report;
+    const status s = model.accumulate({}, contacts, depths, report);
+    EXPECT_EQ(report.contacts.size(), report.depths.size());
+    EXPECT_LE(report.contacts.size(), contacts.size());
+    out = report.force;
+    return s;
+  }
   static void expect_zero(const contact_force& f) {
     EXPECT_EQ(f.on_probe_w.force, vec3(0.0));
     EXPECT_EQ(f.on_probe_w.torque, vec3(0.0));
@@ -67,9 +77,9 @@ class ForceModelContract : public ::testing::Test {
 TYPED_TEST_SUITE_P(ForceModelContract);
 
 TYPED_TEST_P(ForceModelContract, NothingToFeelIsExactlyZero) {
-  const auto model = TypeParam::make(2000.0);
+  auto model = TypeParam::make(2000.0);
   contact_force out{{vec3(1.0), vec3(1.0)}, {}};
-  EXPECT_EQ(model.accumulate(contact_set{}, {}, out), status::ok);
+  EXPECT_EQ(this->feel(model, contact_set{}, {}, out), status::ok);
   this->expect_zero(out);
 
   typename TestFixture::input in;
@@ -78,28 +88,28 @@ TYPED_TEST_P(ForceModelContract, NothingToFeelIsExactlyZero) {
   penetration nothing = this->depth_along({0, 0, -1}, 1e-4);
   nothing.flags = depth_flag::no_overlap;
   in.add(this->contact_along({0, 0, -1}), nothing);
-  EXPECT_EQ(model.accumulate(in.contacts, in.depths, out), status::ok);
+  EXPECT_EQ(this->feel(model, in.contacts, in.depths, out), status::ok);
   this->expect_zero(out);
 }
 
 TYPED_TEST_P(ForceModelContract, PushesTheProbeAwayAndHarderTheDeeperItIs) {
-  const auto model = TypeParam::make(2000.0);
+  auto model = TypeParam::make(2000.0);
   double last = 0.0;
   for (const double depth : {1e-5, 1e-4, 5e-4, 1e-3}) {
     typename TestFixture::input in;
     in.add(this->contact_along({0, 0, -1}), this->depth_along({0, 0, -1}, depth));
     contact_force out;
-    ASSERT_EQ(model.accumulate(in.contacts, in.depths, out), status::ok);
+    ASSERT_EQ(this->feel(model, in.contacts, in.depths, out), status::ok);
     EXPECT_GT(out.on_probe_w.force.z, last);
     last = out.on_probe_w.force.z;
   }
 }
 
 TYPED_TEST_P(ForceModelContract, StiffnessIsSymmetricAndNegativeSemidefinite) {
-  const auto model = TypeParam::make(2000.0);
+  auto model = TypeParam::make(2000.0);
   auto in = this->three_contacts();
   contact_force out;
-  ASSERT_EQ(model.accumulate(in.contacts, in.depths, out), status::ok);
+  ASSERT_EQ(this->feel(model, in.contacts, in.depths, out), status::ok);
   const std::uint64_t seed = test_support::fresh_seed("force model contract", "100 directions");
   std::mt19937_64 bits(test_support::seed_of(seed, "stiffness"));
   const auto uniform = [&] { return static_cast<double>(bits() >> 11) * 0x1p-52 - 1.0; };
@@ -116,29 +126,41 @@ TYPED_TEST_P(ForceModelContract, StiffnessIsSymmetricAndNegativeSemidefinite) {
 }
 
 TYPED_TEST_P(ForceModelContract, TheOrderOfTheContactsDoesNotMatter) {
-  const auto model = TypeParam::make(2000.0);
+  auto model = TypeParam::make(2000.0);
   auto in = this->three_contacts();
   typename TestFixture::input back;
   for (std::size_t i = in.depths.size(); i-- > 0;) back.add(in.contacts.contacts()[i], in.depths[i]);
   contact_force a, b;
-  ASSERT_EQ(model.accumulate(in.contacts, in.depths, a), status::ok);
-  ASSERT_EQ(model.accumulate(back.contacts, back.depths, b), status::ok);
+  ASSERT_EQ(this->feel(model, in.contacts, in.depths, a), status::ok);
+  ASSERT_EQ(this->feel(model, back.contacts, back.depths, b), status::ok);
   EXPECT_LT(glm::length(a.on_probe_w.force - b.on_probe_w.force), 1e-12);
   EXPECT_LT(glm::length(a.on_probe_w.torque - b.on_probe_w.torque), 1e-12);
 }
 
+TYPED_TEST_P(ForceModelContract, KeepsNothingFromCallToCall) {
+  auto model = TypeParam::make(2000.0);
+  auto in = this->three_contacts();
+  contact_force first, other, again;
+  ASSERT_EQ(this->feel(model, in.contacts, in.depths, first), status::ok);
+  ASSERT_EQ(this->feel(model, contact_set{}, {}, other), status::ok);
+  ASSERT_EQ(this->feel(model, in.contacts, in.depths, again), status::ok);
+  EXPECT_EQ(first.on_probe_w.force, again.on_probe_w.force);
+  EXPECT_EQ(first.on_probe_w.torque, again.on_probe_w.torque);
+  EXPECT_EQ(first.stiffness.m, again.stiffness.m);
+}
+
 TYPED_TEST_P(ForceModelContract, AContactAppearsWithoutAJump) {
-  const auto model = TypeParam::make(2000.0);
+  auto model = TypeParam::make(2000.0);
   auto in = this->three_contacts();
   contact_force without, with;
-  ASSERT_EQ(model.accumulate(in.contacts, in.depths, without), status::ok);
+  ASSERT_EQ(this->feel(model, in.contacts, in.depths, without), status::ok);
   in.add(this->contact_along({0, 0.2, -0.9797958971132712}), this->depth_along({0, 0.2, -0.9797958971132712}, 1e-10));
-  ASSERT_EQ(model.accumulate(in.contacts, in.depths, with), status::ok);
+  ASSERT_EQ(this->feel(model, in.contacts, in.depths, with), status::ok);
   EXPECT_LT(glm::length(with.on_probe_w.force - without.on_probe_w.force), 1e-6);
 }
 
 TYPED_TEST_P(ForceModelContract, NotANumberInIsZeroOut) {
-  const auto model = TypeParam::make(2000.0);
+  auto model = TypeParam::make(2000.0);
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int where = 0; where < 5; ++where) {
       auto in = this->three_contacts();
@@ -149,22 +171,23 @@ TYPED_TEST_P(ForceModelContract, NotANumberInIsZeroOut) {
       if (where == 3) p.curvature(2, 3) = bad;
       if (where == 4) p.area_m2 = bad;
       contact_force out;
-      EXPECT_EQ(model.accumulate(in.contacts, in.depths, out), status::not_finite) << where << ' ' << bad;
+      EXPECT_EQ(this->feel(model, in.contacts, in.depths, out), status::not_finite) << where << ' ' << bad;
       this->expect_zero(out);
     }
   }
 }
 
 TYPED_TEST_P(ForceModelContract, MissingDepthsAreRefused) {
-  const auto model = TypeParam::make(2000.0);
+  auto model = TypeParam::make(2000.0);
   auto in = this->three_contacts();
   contact_force out;
-  EXPECT_NE(model.accumulate(in.contacts, std::span(in.depths).first(2), out), status::ok);
+  EXPECT_NE(this->feel(model, in.contacts, std::span(in.depths).first(2), out), status::ok);
   this->expect_zero(out);
 }
 
 REGISTER_TYPED_TEST_SUITE_P(ForceModelContract, NothingToFeelIsExactlyZero, PushesTheProbeAwayAndHarderTheDeeperItIs,
                             StiffnessIsSymmetricAndNegativeSemidefinite, TheOrderOfTheContactsDoesNotMatter,
-                            AContactAppearsWithoutAJump, NotANumberInIsZeroOut, MissingDepthsAreRefused);
+                            KeepsNothingFromCallToCall, AContactAppearsWithoutAJump, NotANumberInIsZeroOut,
+                            MissingDepthsAreRefused);
 
 }  // namespace asperity

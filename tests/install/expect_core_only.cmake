@@ -1,4 +1,4 @@
-# A subproject adds nothing to its host's build but what the host links: no test, no example, no tool.
+# A subproject adds the core to its host's build and nothing else: no test, no example, no tool.
 get_property(_folders DIRECTORY ${asperity_SOURCE_DIR} PROPERTY SUBDIRECTORIES)
 set(_compiled "")
 while(_folders)
@@ -13,6 +13,7 @@ while(_folders)
   get_property(_inner DIRECTORY ${_folder} PROPERTY SUBDIRECTORIES)
   list(APPEND _folders ${_inner})
 endwhile()
+list(REMOVE_ITEM _compiled asperity)
 if(_compiled)
   message(FATAL_ERROR "as a subproject asperity builds: ${_compiled}")
 endif()

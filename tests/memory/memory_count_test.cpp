@@ -99,7 +99,7 @@ TEST_F(RendererMemory, StaysTheSameInTicks) {
 TEST_F(RendererMemory, AForgottenPartWouldShow) {
   const collision_body body(model_);
   for (const std::size_t part : {body.piece_tree.heap_bytes(), body.triangle_tree.heap_bytes(),
-                                 body.shapes.front().heap_bytes(), feel_->contacts().heap_bytes()}) {
+                                 body.shapes.front().heap_bytes(), feel_->found().heap_bytes()}) {
     EXPECT_GT(part, 0U);
     EXPECT_NE(feel_->memory_bytes() - part, sizeof(paper_renderer) + asked_);
   }
@@ -211,7 +211,7 @@ TEST_F(DefaultRendererMemory, StaysTheSameInTicks) {
 TEST_F(DefaultRendererMemory, AForgottenPartWouldShow) {
   const field_body& body = *fields().probe;
   for (const std::size_t part : {body.field.heap_bytes(), body.samples.heap_bytes(), heap_bytes(fields().fixed),
-                                 feel_->force().heap_bytes(), feel_->contacts().heap_bytes()}) {
+                                 feel_->force().heap_bytes(), feel_->found().heap_bytes()}) {
     EXPECT_GT(part, 0U);
   }
 }

@@ -44,7 +44,7 @@ std::vector<compared_contact> compare_contacts(paper_renderer& feel, const origi
   for (std::size_t i = 0; i < t.contacts.size(); ++i) {
     const contact& c = t.contacts[i];
     const penetration& p = t.depths[i];
-    const auto patch_a = feel.contacts().patch_a(c), patch_b = feel.contacts().patch_b(c);
+    const auto patch_a = feel.found().patch_a(c), patch_b = feel.found().patch_b(c);
     const auto truth = measure_brute_force({&a.full, &a.model->mesh, patch_a, T_wa, reach(a)},
                                            {&b.full, &b.model->mesh, patch_b, {}, reach(b)}, c.window, comparison_grid,
                                            comparison_refinement);

@@ -62,13 +62,13 @@ tally undersampling(const std::string& probe_name, const std::string& fixed_name
     if (poses == 1) {  // in a renderer of its own: what the backend alone says of the contacts it was given
       tick whole;
       EXPECT_EQ(searched->step({T_wa, fixed}, whole), status::ok);
-      EXPECT_EQ(exact.measure({T_wa, fixed}, searched->contacts(), exactly), status::ok);
-      EXPECT_EQ(whole.depths.size(), searched->contacts().size());
+      EXPECT_EQ(exact.measure({T_wa, fixed}, searched->found(), exactly), status::ok);
+      EXPECT_EQ(whole.depths.size(), searched->found().size());
       for (std::size_t i = 0; i < whole.depths.size(); ++i) {
         EXPECT_NEAR(whole.depths[i].depth_m, exactly[i].depth_m, 1e-12);
       }
     }
-    const contact_set& contacts = made->contacts();
+    const contact_set& contacts = made->found();
     const auto start = clock::now();
     EXPECT_EQ(sampled.measure({T_wa, fixed}, contacts, coarsely), status::ok);
     const auto between = clock::now();

@@ -72,37 +72,37 @@ static_assert(!depth_backend<finder>);
 
 struct force {
   using policy_tag = force_tag;
-  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) const noexcept {
+  status accumulate(const scene_pose&, const contact_set&, std::span<const penetration>, force_report&) noexcept {
     return status::ok;
   }
 };
 struct force_may_throw {
   using policy_tag = force_tag;
-  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) const { return status::ok; }
-};
-struct force_without_tag {
-  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) const noexcept {
+  status accumulate(const scene_pose&, const contact_set&, std::span<const penetration>, force_report&) {
     return status::ok;
   }
 };
-// A model that changes itself from call to call cannot promise to keep nothing between them.
-struct force_with_memory {
-  using policy_tag = force_tag;
-  status accumulate(const contact_set&, std::span<const penetration>, contact_force&) noexcept { return status::ok; }
+struct force_without_tag {
+  status accumulate(const scene_pose&, const contact_set&, std::span<const penetration>, force_report&) noexcept {
+    return status::ok;
+  }
 };
-struct force_without_stiffness {
+struct force_without_report {
   using policy_tag = force_tag;
-  status accumulate(const contact_set&, std::span<const penetration>, wrench&) const noexcept { return status::ok; }
+  status accumulate(const scene_pose&, const contact_set&, std::span<const penetration>, contact_force&) noexcept {
+    return status::ok;
+  }
 };
 struct force_changes_depths {
   using policy_tag = force_tag;
-  status accumulate(const contact_set&, std::span<penetration>, contact_force&) const noexcept { return status::ok; }
+  status accumulate(const scene_pose&, const contact_set&, std::span<penetration>, force_report&) noexcept {
+    return status::ok;
+  }
 };
 static_assert(force_model<force>);
 static_assert(!force_model<force_may_throw>);
 static_assert(!force_model<force_without_tag>);
-static_assert(!force_model<force_with_memory>);
-static_assert(!force_model<force_without_stiffness>);
+static_assert(!force_model<force_without_report>);
 static_assert(!force_model<force_changes_depths>);
 static_assert(!force_model<depth>);
 
@@ -152,10 +152,9 @@ struct sample_force_like {
   using policy_tag = force_tag;
   using found_type = near_samples;
   using reading_type = near_plane;
-  status accumulate(const near_samples&, std::span<const near_plane>, contact_force&) const noexcept {
+  status accumulate(const scene_pose&, const near_samples&, std::span<const near_plane>, force_report&) noexcept {
     return status::ok;
   }
-  void describe(contact_set&, std::span<penetration>) const noexcept {}
 };
 static_assert(collision_finder<sample_finder_like> && depth_backend<sample_depth_like> &&
               force_model<sample_force_like>);
@@ -185,27 +184,11 @@ struct force_of_two_minds {
   using policy_tag = force_tag;
   using found_type = near_samples;
   using reading_type = near_plane;
-  status accumulate(const near_samples&, std::span<const penetration>, contact_force&) const noexcept {
+  status accumulate(const scene_pose&, const near_samples&, std::span<const penetration>, force_report&) noexcept {
     return status::ok;
   }
 };
 static_assert(!collision_finder<finder_of_two_minds>);
 static_assert(!force_model<force_of_two_minds>);
-
-// Contacts that no finder knows are told by the force model, in a tick.
-struct silent_force {
-  using policy_tag = force_tag;
-  using found_type = near_samples;
-  using reading_type = near_plane;
-  status accumulate(const near_samples&, std::span<const near_plane>, contact_force&) const noexcept {
-    return status::ok;
-  }
-};
-struct force_tells_and_may_throw : silent_force {
-  void describe(contact_set&, std::span<penetration>) const {}
-};
-static_assert(describes_contacts<sample_force_like>);
-static_assert(!describes_contacts<silent_force>);
-static_assert(!describes_contacts<force_tells_and_may_throw>);
 
 }  // namespace

@@ -1,4 +1,4 @@
-# The package: find_package(asperity [COMPONENTS ...]), pkg-config for the header-only core, the command.
+# The package: find_package(asperity [COMPONENTS ...]), pkg-config for the core, the command.
 include(CMakePackageConfigHelpers)
 
 set(ASPERITY_TOOLS_COMPONENTS io bake)
@@ -8,7 +8,10 @@ set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} $
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 
 # Core. Each component below has an export file of its own, so that find_package(asperity) asks for GLM and nothing else.
-install(TARGETS asperity asperity_reproducible EXPORT asperity-core FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(TARGETS asperity asperity_reproducible EXPORT asperity-core
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT asperity-core NAMESPACE asperity:: FILE asperity-core.cmake DESTINATION ${_config_dir})
 
 foreach(_component ${ASPERITY_COMPONENTS})

@@ -13,7 +13,7 @@ if(ASPERITY_SANITIZE)
 endif()
 
 # Same inputs, same bits between build types and compilers: no fused multiply-add that the source does not ask for.
-# A consumer who wants our golden digests links asperity::reproducible; nobody gets the flag without asking.
+# The core is compiled with it; a consumer whose own templates shall give the same bits too links asperity::reproducible.
 add_library(asperity_reproducible INTERFACE)
 add_library(asperity::reproducible ALIAS asperity_reproducible)
 set_target_properties(asperity_reproducible PROPERTIES EXPORT_NAME reproducible)

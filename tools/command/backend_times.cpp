@@ -72,7 +72,7 @@ result<workload> make_workload(const scene& bodies, std::uint64_t seed) {
   const auto shallower = [](const penetration& a, const penetration& b) { return a.depth_m < b.depth_m; };
   const auto deepest = std::max_element(found.depths.begin(), found.depths.end(), shallower) - found.depths.begin();
   out.what = found.contacts[static_cast<std::size_t>(deepest)];
-  const auto a = feel->contacts().patch_a(out.what), b = feel->contacts().patch_b(out.what);
+  const auto a = feel->found().patch_a(out.what), b = feel->found().patch_b(out.what);
   out.patch_a.assign(a.begin(), a.end());
   out.patch_b.assign(b.begin(), b.end());
 

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <unistd.h>
 
+#include "asperity/version.hpp"
 #include "interrupt.hpp"
 #include "text.hpp"
 
@@ -71,7 +72,7 @@ command_line::command_line() : app_("Haptic rendering of contact between texture
 }
 
 void command_line::add_common_switches(CLI::App& to) {
-  to.set_version_flag("--version", "asperity " ASPERITY_VERSION, "Print the version and exit");
+  to.set_version_flag("--version", "asperity " ASPERITY_VERSION_STRING, "Print the version and exit");
   to.add_flag("--json", common_.json, "Print one JSON document on stdout and nothing else there");
   to.add_flag("--quiet", common_.quiet, "Print no report and no progress");
 }

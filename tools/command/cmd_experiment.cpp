@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "asperity/version.hpp"
 #include "cli.hpp"
 #include "experiment.hpp"
 #include "file_names.hpp"
@@ -102,7 +103,7 @@ result<answer> run_experiments(const experiment_command& options, const common_o
                                .make_renderer = {},
                                .progress = [&](std::string_view what, double done) { progress.show(what, done); },
                                .cancelled = [] { return interrupted(); }});
-  experiment::page_facts facts{ASPERITY_VERSION, experiment::machine_text(), options.brief, {}};
+  experiment::page_facts facts{ASPERITY_VERSION_STRING, experiment::machine_text(), options.brief, {}};
   const std::vector<const experiment::experiment*> wanted = chosen(options.names);
   const bool with_page = wanted.size() > 1;
   answer out;

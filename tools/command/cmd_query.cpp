@@ -25,10 +25,11 @@ struct query_command {
 
 json flag_names(depth_flag flags) {
   json names = json::array();
-  const std::pair<depth_flag, const char*> all[] = {
-      {depth_flag::no_overlap, "no_overlap"}, {depth_flag::window_too_small, "window_too_small"},
-      {depth_flag::saturated, "saturated"},   {depth_flag::bad_texel, "bad_texel"},
-      {depth_flag::unresolved, "unresolved"}, {depth_flag::held_direction, "held_direction"}};
+  const std::pair<depth_flag, const char*> all[] = {{depth_flag::no_overlap, "no_overlap"},
+                                                    {depth_flag::window_too_small, "window_too_small"},
+                                                    {depth_flag::saturated, "saturated"},
+                                                    {depth_flag::bad_texel, "bad_texel"},
+                                                    {depth_flag::unresolved, "unresolved"}};
   for (const auto& [flag, name] : all) {
     if (has(flags, flag)) names.push_back(name);
   }

@@ -52,15 +52,26 @@ check_format() {
   git ls-files '*.hpp' '*.h' '*.cpp' | xargs clang-format --dry-run -Werror
 }
 
-# Without exceptions: every header of the core in one translation unit, and a program that presses a box onto another.
-check_no_exceptions() {
-  local compiler flags=(-std=c++20 -fno-exceptions -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
+# Consumers of every kind: each header of the core, and a program that presses a box onto another, without exceptions and
+# without type information, as C++20 and C++23, by both compilers, with the warnings that careful people use.
+check_consumers() {
+  local compiler standard
+  local flags=(-fno-exceptions -fno-rtti -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
     -Wold-style-cast -Werror -Iinclude)
+  configure release
+  build release asperity
   all_core_headers > build/check/core.cpp
   for compiler in g++ clang++; do
-    "$compiler" "${flags[@]}" -c build/check/core.cpp -o "build/check/core-$compiler.o"
-    "$compiler" "${flags[@]}" -Itests tests/static/no_exceptions.cpp -o "build/check/no-exceptions-$compiler"
-    "build/check/no-exceptions-$compiler"
+    for standard in c++20 c++2b; do
+      "$compiler" "-std=$standard" "${flags[@]}" -fsyntax-only build/check/core.cpp
+      "$compiler" "-std=$standard" "${flags[@]}" tests/install/core_consumer.cpp build/release/src/libasperity.a \
+        -o "build/check/consumer-$compiler-$standard"
+      "build/check/consumer-$compiler-$standard"
+    done
+  done
+  # The core itself throws nothing either.
+  for source in src/*/*.cpp; do
+    g++ -std=c++20 "${flags[@]}" -O0 -Isrc -fsyntax-only "$source"
   done
 }
 
@@ -186,7 +197,7 @@ begin_check() {
 
 check_matrix() {
   check_step format check_format
-  check_step no-exceptions check_no_exceptions
+  check_step consumers check_consumers
   check_step at-length check_at_length
   check_step gcc-debug check_gcc_debug
   check_step header-sets check_header_sets

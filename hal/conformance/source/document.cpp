@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "asperity/version.hpp"
+
 namespace asperity::conformance {
 namespace {
 
@@ -42,7 +44,7 @@ std::string line(const char* what, const std::string& value) {
 
 std::string to_text(const report& r) {
   const totals t = count(r);
-  std::string out = "asperity conformance report, kit " ASPERITY_VERSION "\n";
+  std::string out = "asperity conformance report, kit " ASPERITY_VERSION_STRING "\n";
   out += line("date      ", r.date);
   out += line("file      ", r.file);
   if (!r.driver.empty()) {
@@ -77,7 +79,7 @@ std::string to_json(const report& r) {
   const totals t = count(r);
   json d;
   d["schema"] = "asperity.conformance/1";
-  d["kit"] = ASPERITY_VERSION;
+  d["kit"] = ASPERITY_VERSION_STRING;
   d["date"] = r.date;
   d["file"] = r.file;
   d["driver"] = {{"name", r.driver},     {"version", r.version},          {"vendor", r.vendor},

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "asperity/core/printable.hpp"
+#include "asperity/version.hpp"
 #include "document.hpp"
 #include "kit.hpp"
 #include "own_process.hpp"
@@ -43,7 +44,7 @@ int main(int argc, char** argv) {
   app.add_flag("--hand-held", options.hand_held,
                "A person holds the device: up to the peak limits may be put out. Without it, a device that is not "
                "simulated is never given a command other than zero");
-  app.set_version_flag("--version", std::string("asperity-conformance " ASPERITY_VERSION));
+  app.set_version_flag("--version", std::string("asperity-conformance " ASPERITY_VERSION_STRING));
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -12,9 +12,8 @@
 #include "asperity/least_motion/least_motion_settings.hpp"
 #include "asperity/planes/near_plane.hpp"
 #include "asperity/planes/near_samples.hpp"
-#include "asperity/render/contact.hpp"
 #include "asperity/render/force_model.hpp"
-#include "asperity/render/penetration.hpp"
+#include "asperity/render/reported_contacts.hpp"
 
 namespace asperity {
 
@@ -43,10 +42,12 @@ class ASPERITY_API least_motion {
   least_motion& operator=(least_motion&&) noexcept;
   ~least_motion();
 
+  /// Reports the ways out that have weight as contacts: depth_m is how far the motion takes the deepest sample, times
+  /// the weight; n_ab points against the push. A way out past several walls is one contact.
   /// @return ok | capacity_reached (a limit of the settings was hit; hit() says which)
   /// @rt safe
   [[nodiscard]] status accumulate(const scene_pose& at, const near_samples&, std::span<const near_plane>,
-                                  contact_force& out) const noexcept;
+                                  force_report& out) noexcept;
 
   /// Of the last call, J.
   [[nodiscard]] double energy_j() const noexcept;
@@ -55,21 +56,18 @@ class ASPERITY_API least_motion {
   /// Readings that the last call spent.
   [[nodiscard]] std::size_t readings() const noexcept;
 
-  /// The ways out of the last call that have weight, as contacts: depth_m is how far the motion takes the
-  /// deepest sample, times the weight; n_ab points against the push. A way out past several walls is one contact.
-  /// @rt safe
-  void describe(contact_set& contacts, std::span<penetration> depths) const noexcept;
-
   /// With what was automatic filled in.
   [[nodiscard]] const least_motion_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept;
 
  private:
+  void report_ways() noexcept;
+
   least_motion_settings settings_;
   std::unique_ptr<exits::exit_solver> solver_;
+  reported_contacts reported_;
 };
 
 static_assert(force_model<least_motion>);
-static_assert(describes_contacts<least_motion>);
 
 }  // namespace asperity

@@ -5,14 +5,12 @@
 #include <span>
 
 #include "asperity/core/export.hpp"
-#include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/planes/near_plane.hpp"
 #include "asperity/planes/near_samples.hpp"
-#include "asperity/render/contact.hpp"
 #include "asperity/render/force_model.hpp"
-#include "asperity/render/penetration.hpp"
+#include "asperity/render/reported_contacts.hpp"
 
 namespace asperity {
 
@@ -36,29 +34,22 @@ class ASPERITY_API plane_springs {
   using found_type = near_samples;
   using reading_type = near_plane;
 
-  explicit plane_springs(const plane_spring_settings& settings = {}) noexcept : settings_(settings) {}
+  explicit plane_springs(const plane_spring_settings& settings = {}) : settings_(settings) {}
 
+  /// Reports the directions as contacts, the deepest first; gaps within reach are among them.
   /// @return ok
   /// @rt safe
-  [[nodiscard]] status accumulate(const near_samples&, std::span<const near_plane> planes,
-                                  contact_force& out) const noexcept;
-
-  /// The directions of the last accumulate() as contacts, the deepest first; gaps within reach are among them.
-  /// @rt safe
-  void describe(contact_set& contacts, std::span<penetration> depths) const noexcept;
+  [[nodiscard]] status accumulate(const scene_pose&, const near_samples&, std::span<const near_plane> planes,
+                                  force_report& out) noexcept;
 
   [[nodiscard]] const plane_spring_settings& settings() const noexcept { return settings_; }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(reported_); }
 
  private:
-  static constexpr std::size_t most_directions = 16;
-
-  void group(std::span<const near_plane> planes) const noexcept;
-
   plane_spring_settings settings_;
-  mutable fixed_vector<near_plane, most_directions> deepest_;  // of the last accumulate(), for describe()
+  reported_contacts reported_;
 };
 
 static_assert(force_model<plane_springs>);
-static_assert(describes_contacts<plane_springs>);
 
 }  // namespace asperity

@@ -34,8 +34,8 @@ class any_renderer {
  public:
   template <class R>
   requires(!std::same_as<std::remove_cvref_t<R>, any_renderer> &&
-           ticks_contacts<std::remove_cvref_t<R>>) explicit any_renderer(R&& renderer)
-      : self_(std::make_unique<held<std::remove_cvref_t<R>>>(std::forward<R>(renderer))) {}
+           ticks_contacts<std::remove_cvref_t<R>>) explicit any_renderer(R&& inside)
+      : self_(std::make_unique<held<std::remove_cvref_t<R>>>(std::forward<R>(inside))) {}
 
   /// As the renderer inside answers; see basic_renderer::step().
   /// @rt as the renderer inside
@@ -47,7 +47,7 @@ class any_renderer {
   /// The renderer inside where it is an R; otherwise null.
   template <ticks_contacts R>
   [[nodiscard]] R* target() noexcept {
-    return self_->kind() == &kind_of<R> ? &static_cast<held<R>&>(*self_).renderer : nullptr;
+    return self_->kind() == &kind_of<R> ? &static_cast<held<R>&>(*self_).inside : nullptr;
   }
 
  private:
@@ -64,12 +64,12 @@ class any_renderer {
   };
   template <class R>
   struct held final : any_kind {
-    explicit held(R r) : renderer(std::move(r)) {}
-    [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept override { return renderer.step(at, out); }
-    [[nodiscard]] const asperity::scene& scene() const noexcept override { return renderer.scene(); }
-    [[nodiscard]] std::size_t memory_bytes() const noexcept override { return renderer.memory_bytes(); }
+    explicit held(R r) : inside(std::move(r)) {}
+    [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept override { return inside.step(at, out); }
+    [[nodiscard]] const asperity::scene& scene() const noexcept override { return inside.scene(); }
+    [[nodiscard]] std::size_t memory_bytes() const noexcept override { return inside.memory_bytes(); }
     [[nodiscard]] const char* kind() const noexcept override { return &kind_of<R>; }
-    R renderer;
+    R inside;
   };
 
   std::unique_ptr<any_kind> self_;

@@ -15,7 +15,6 @@ enum class depth_flag : std::uint8_t {
   saturated = 4,         ///< the depth left the range that the backend can express
   bad_texel = 8,         ///< a NaN texel was met and its samples were left out
   unresolved = 16,       ///< a search stopped at its limit: the largest depth may be larger than what it found
-  held_direction = 32,   ///< deeper than the finder's limit: measured along the last valid direction (contact::held)
 };
 
 [[nodiscard]] constexpr depth_flag operator|(depth_flag a, depth_flag b) noexcept {

@@ -21,10 +21,10 @@ namespace asperity {
 struct tick {
   contact_force force{};                  ///< on the probe; zero where the status is not ok or capacity_reached
   vec3 centre_of_mass_w{0.0};             ///< c_A, the point the torque is about
-  std::span<const contact> contacts;      ///< what the finder reported
+  std::span<const contact> contacts;      ///< what the force model reports
   std::span<const penetration> depths;    ///< one per contact
   std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
-  std::span<const support_plane> planes;  ///< gaps included; empty where depth backend and force model know none
+  std::span<const support_plane> planes;  ///< gaps included; empty where the depth backend knows none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
   tick_flag flags = tick_flag::none;      ///< what the planes do not answer
 };
@@ -36,8 +36,8 @@ struct tick {
 ///     if (made && made->step({T_wa, T_wb}, tick) == asperity::status::ok) send(tick.force.on_probe_w);
 ///
 /// Data goes forward only; no stage knows the next. All memory is taken by the constructor.
-/// The policies agree on what is handed on: contacts and penetrations, or near cells and their readings. In the second
-/// case the contacts of a tick are told by the force model afterwards; they are a description of the force.
+/// The policies agree on what is handed on: contacts and penetrations, or near samples and their planes. What a tick
+/// calls its contacts is the force model's report, in both cases.
 /// @tparam Finder  who touches whom          (asperity/render/collision_finder.hpp)
 /// @tparam Depth   how deep, and which way   (asperity/render/depth_backend.hpp)
 /// @tparam Force   what that feels like      (asperity/render/force_model.hpp)
@@ -68,7 +68,6 @@ class basic_renderer {
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     out = {};
     found_.clear();
-    if constexpr (!finds_contacts) told_.contacts.clear();
     if (at.T_wb.size() != scene_.fixed.size()) return status::not_ready;
     if (!is_valid(at.T_wa)) return status::invalid_pose;
     for (const pose& T : at.T_wb) {
@@ -79,41 +78,22 @@ class basic_renderer {
 
     const std::span<reading_type> readings = std::span(readings_).first(found_.size());
     if (const status s = depth_.measure(at, found_, readings); s != status::ok) return s;
-    if constexpr (finds_contacts && std::same_as<reading_type, penetration>) {
-      for (std::size_t i = 0; i < readings.size(); ++i) {
-        if (found_.contacts()[i].held) readings[i].flags |= depth_flag::held_direction;
-      }
-    }
-    const status felt = feel(at, readings, out.force);
-    if (felt != status::ok && felt != status::capacity_reached) {
-      out.force = {};
-      return felt;
-    }
-    if (!is_finite(out.force.on_probe_w)) {
-      out.force = {};
-      return status::not_finite;
-    }
+    force_report report;
+    const status felt = force_.accumulate(at, found_, readings, report);
+    if (felt != status::ok && felt != status::capacity_reached) return felt;
+    if (!is_finite(report.force.on_probe_w)) return status::not_finite;
+    out.force = report.force;
+    out.contacts = report.contacts;
+    out.depths = report.depths;
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
     out.dropped_contacts = found_.dropped();
     if constexpr (tells_tick_flags<Depth>) out.flags = depth_.flags();
-    if constexpr (finds_contacts) {
-      out.contacts = found_.contacts();
-      out.depths = readings;
-    } else {
-      force_.describe(told_.contacts, told_.depths);
-      out.contacts = told_.contacts.contacts();
-      out.depths = std::span(told_.depths).first(told_.contacts.size());
-    }
     if constexpr (tells_planes_nearby<Depth>) {
       at_.T_wa = at.T_wa;
       std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
       out.planes_near = plane_source(*this);
     }
-    if constexpr (tells_support_planes<Depth>) {
-      out.planes = depth_.support_planes();
-    } else if constexpr (tells_support_planes<Force>) {
-      out.planes = force_.support_planes();
-    }
+    if constexpr (tells_support_planes<Depth>) out.planes = depth_.support_planes();
     return found == status::ok ? felt : found;
   }
 
@@ -132,14 +112,8 @@ class basic_renderer {
   }
 
   [[nodiscard]] const asperity::scene& scene() const noexcept { return scene_; }
-  /// The contacts of the last tick; their patches, where the finder knows patches.
-  [[nodiscard]] const contact_set& contacts() const noexcept {
-    if constexpr (finds_contacts) {
-      return found_;
-    } else {
-      return told_.contacts;
-    }
-  }
+  /// What the finder found in the last tick: contacts with their patches, or near samples.
+  [[nodiscard]] const found_type& found() const noexcept { return found_; }
   /// Memory that the renderer takes, bytes: itself, its policies and all that they hold, whether a tick has used it or
   /// not. Its models belong to whoever else shares them: memory_bytes(scene()) counts them.
   /// A policy that has no heap_bytes() counts with its size alone.
@@ -151,7 +125,7 @@ class basic_renderer {
         return 0;
       }
     };
-    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, told_, at_) + held(finder_) + held(depth_) +
+    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, at_) + held(finder_) + held(depth_) +
            held(force_);
   }
 
@@ -160,15 +134,6 @@ class basic_renderer {
   [[nodiscard]] Force& force() noexcept { return force_; }
 
  private:
-  static constexpr bool finds_contacts = std::same_as<found_type, contact_set>;
-  static_assert(finds_contacts || describes_contacts<Force>, "a force model that is given no contacts must tell them");
-
-  /// The contacts of a tick whose finder knows none.
-  struct told_contacts {
-    contact_set contacts{contact_limits{.contacts = 64, .triangles = 0}};
-    std::vector<penetration> depths{64};
-    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(contacts, depths); }
-  };
   /// The poses of the last tick.
   struct kept_poses {
     pose T_wa{};
@@ -179,21 +144,12 @@ class basic_renderer {
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return 0; }
   };
 
-  [[nodiscard]] status feel(const scene_pose& at, std::span<const reading_type> readings, contact_force& to) noexcept {
-    if constexpr (takes_poses<Force>) {
-      return std::as_const(force_).accumulate(at, found_, readings, to);
-    } else {
-      return force_.accumulate(found_, readings, to);
-    }
-  }
-
   asperity::scene scene_;
   [[no_unique_address]] Finder finder_;
   [[no_unique_address]] Depth depth_;
   [[no_unique_address]] Force force_;
   found_type found_;
   std::vector<reading_type> readings_;
-  [[no_unique_address]] std::conditional_t<finds_contacts, nothing, told_contacts> told_;
   [[no_unique_address]] std::conditional_t<tells_planes_nearby<Depth>, kept_poses, nothing> at_;
 };
 

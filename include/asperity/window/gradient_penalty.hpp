@@ -44,8 +44,8 @@ class ASPERITY_API gradient_penalty {
 
   /// Adds up the contacts. @pre depths.size() >= contacts.size()
   /// @return ok | not_ready (sizes do not fit) | not_finite (NaN or infinity in a depth); the last two leave zeros
-  [[nodiscard]] status accumulate(const contact_set& contacts, std::span<const penetration> depths,
-                                  contact_force& out) const noexcept;
+  [[nodiscard]] status accumulate(const scene_pose&, const contact_set& contacts, std::span<const penetration> depths,
+                                  force_report& out) const noexcept;
 
   [[nodiscard]] const gradient_penalty_settings& settings() const noexcept { return settings_; }
 

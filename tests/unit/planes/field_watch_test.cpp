@@ -95,7 +95,7 @@ told press(field_renderer& feel, drawn_pose& draw, std::size_t b, double depth_m
   leave(feel, T_wb);
   double d = -5e-4 * draw.between(0.1, 1.0);
   for (; d < depth_m; d += step_m) look(d);
-  for (; d > -1e-3; d -= step_m) look(d);
+  for (d = depth_m; d > -1e-3; d -= step_m) look(d);
   return out;
 }
 

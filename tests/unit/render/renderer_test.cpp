@@ -9,6 +9,7 @@
 
 #include "asperity/planes/near_plane.hpp"
 #include "asperity/planes/near_samples.hpp"
+#include "asperity/render/reported_contacts.hpp"
 
 namespace {
 
@@ -44,9 +45,10 @@ struct scripted_depth {
 struct scripted_force {
   using policy_tag = force_tag;
   script* s;
-  status accumulate(const contact_set&, std::span<const penetration>, contact_force& out) const noexcept {
+  status accumulate(const scene_pose&, const contact_set& found, std::span<const penetration> depths,
+                    force_report& out) noexcept {
     ++s->sums;
-    out.on_probe_w.force = s->force;
+    out = {{{s->force, {}}, {}}, found.contacts(), depths};
     return s->summed;
   }
 };
@@ -81,22 +83,21 @@ struct telling_force {
   using reading_type = near_plane;
   script* s;
   std::size_t tells = 2;
-  mutable std::vector<double> read{};
-  status accumulate(const near_samples&, std::span<const near_plane> readings, contact_force& out) const noexcept {
+  std::vector<double> read{};
+  reported_contacts reported{};
+  status accumulate(const scene_pose&, const near_samples&, std::span<const near_plane> readings,
+                    force_report& out) noexcept {
     ++s->sums;
     read.clear();
     for (const near_plane& r : readings) read.push_back(r.plane.depth_m);
-    out.on_probe_w.force = s->force;
-    return s->summed;
-  }
-  void describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
-    contacts.clear();
-    for (std::size_t i = 0; i < std::min(tells, depths.size()); ++i) {
+    reported.clear();
+    for (std::size_t i = 0; i < tells; ++i) {
       contact c;
       c.id = static_cast<std::uint32_t>(i);
-      depths[i].depth_m = 0.5 * static_cast<double>(i);
-      if (!contacts.add(c, {}, {})) return;
+      if (!reported.add(c, {.depth_m = 0.5 * static_cast<double>(i)})) break;
     }
+    out = {{{s->force, {}}, {}}, reported.contacts(), reported.depths()};
+    return s->summed;
   }
 };
 
@@ -181,31 +182,26 @@ TEST_F(renderer_of_samples, reads_every_leaf_and_hands_out_the_contacts_that_are
   ASSERT_EQ(out.depths.size(), 2U);
   EXPECT_EQ(out.contacts[1].id, 1U);
   EXPECT_EQ(out.depths[1].depth_m, 0.5);
-  EXPECT_EQ(renderer.contacts().size(), 2U);
+  EXPECT_EQ(renderer.found().size(), 3U);
   EXPECT_EQ(out.force.on_probe_w.force.z, 1.0);
   EXPECT_EQ(out.dropped_contacts, 0U);
 }
 
-/// A depth backend, or a force model, that knows planes.
-template <class Stage>
-struct knowing_planes : Stage {
+/// A depth backend that knows planes.
+struct knowing_planes : scripted_depth {
   std::array<support_plane, 2> planes{support_plane{.depth_m = -1e-3}, support_plane{.depth_m = 2e-3}};
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return planes; }
 };
 
-TEST_F(renderer_test, hands_out_the_planes_that_a_stage_knows) {
+TEST_F(renderer_test, hands_out_the_planes_that_a_depth_backend_knows) {
   ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
   EXPECT_TRUE(out.planes.empty());
-  basic_renderer<scripted_finder, knowing_planes<scripted_depth>, scripted_force> by_depth{
+  basic_renderer<scripted_finder, knowing_planes, scripted_force> by_depth{
       one_fixed_body(), scripted_finder{&s}, {{&s}}, scripted_force{&s}};
   ASSERT_EQ(by_depth.step({{}, fixed}, out), status::ok);
   ASSERT_EQ(out.planes.size(), 2U);
   EXPECT_EQ(out.planes[0].depth_m, -1e-3);
   EXPECT_EQ(out.planes.data(), by_depth.depth().planes.data());
-  basic_renderer<scripted_finder, scripted_depth, knowing_planes<scripted_force>> by_force{
-      one_fixed_body(), scripted_finder{&s}, scripted_depth{&s}, {{&s}}};
-  ASSERT_EQ(by_force.step({{}, fixed}, out), status::ok);
-  EXPECT_EQ(out.planes.data(), by_force.force().planes.data());
   // What failed has none, whatever its stages still hold.
   s.measured = status::backend_failed;
   EXPECT_EQ(by_depth.step({{}, fixed}, out), status::backend_failed);
@@ -234,7 +230,6 @@ TEST_F(renderer_of_samples, a_failing_stage_leaves_a_zero_wrench_and_no_contacts
   EXPECT_EQ(renderer.step({{}, fixed}, out), status::not_finite);
   EXPECT_EQ(out.force.on_probe_w.force, vec3(0));
   EXPECT_TRUE(out.contacts.empty());
-  EXPECT_EQ(renderer.contacts().size(), 0U);  // nor those of the tick before
   s.measured = status::backend_failed;
   EXPECT_EQ(renderer.step({{}, fixed}, out), status::backend_failed);
   EXPECT_TRUE(out.contacts.empty());

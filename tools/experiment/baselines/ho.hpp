@@ -30,6 +30,6 @@ class ho : public point_model<ho> {
   ho_settings settings_;
 };
 
-static_assert(force_model<ho> && describes_contacts<ho>);
+static_assert(force_model<ho>);
 
 }  // namespace asperity::baselines

@@ -32,6 +32,6 @@ class minsky : public point_model<minsky> {
   minsky_settings settings_;
 };
 
-static_assert(force_model<minsky> && describes_contacts<minsky>);
+static_assert(force_model<minsky>);
 
 }  // namespace asperity::baselines

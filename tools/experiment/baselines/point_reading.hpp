@@ -9,6 +9,7 @@
 
 #include "asperity/render/collision_finder.hpp"
 #include "asperity/render/force_model.hpp"
+#include "asperity/render/reported_contacts.hpp"
 #include "asperity/window/convex_piece_finder.hpp"
 
 namespace asperity::baselines {
@@ -58,10 +59,10 @@ class point_model {
   /// Adds the forces up. J is the spring's along the coarse normal alone, for all three models: how their texture
   /// forces change with the pose is no derivative of anything.
   /// @return ok | not_ready (too few readings) | not_finite; the last two leave zeros   @rt safe
-  [[nodiscard]] status accumulate(const point_contacts& contacts, std::span<const point_reading> readings,
-                                  contact_force& out) const noexcept {
+  [[nodiscard]] status accumulate(const scene_pose&, const point_contacts& contacts,
+                                  std::span<const point_reading> readings, force_report& out) noexcept {
     out = {};
-    told_ = 0;
+    reported_.clear();
     if (readings.size() < contacts.size()) return status::not_ready;
     contact_force sum;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
@@ -73,34 +74,19 @@ class point_model {
       const vec3 n = -r.outward_w;
       const vec6 normal{n, glm::cross(r.arm_w, n)};
       add_outer(sum.stiffness, -static_cast<const Model&>(*this).stiffness_n_per_m(), normal);
-      if (told_ == tellings_.size()) continue;
-      tellings_[told_++] = {
-          contacts.contacts()[i],
-          {.depth_m = glm::dot(force, r.outward_w) / static_cast<const Model&>(*this).stiffness_n_per_m(),
-           .gradient = normal,
-           .witness_w = r.point_w}};
+      reported_.add(contacts.contacts()[i],
+                    {.depth_m = glm::dot(force, r.outward_w) / static_cast<const Model&>(*this).stiffness_n_per_m(),
+                     .gradient = normal,
+                     .witness_w = r.point_w});
     }
-    if (!is_finite(sum.on_probe_w)) {
-      told_ = 0;
-      return status::not_finite;
-    }
-    out = sum;
+    if (!is_finite(sum.on_probe_w)) return status::not_finite;
+    out = {sum, reported_.contacts(), reported_.depths()};
     return status::ok;
   }
-
-  /// The contacts of the last call that push. For reports.   @rt safe
-  void describe(contact_set& contacts, std::span<penetration> depths) const noexcept {
-    contacts.clear();
-    for (std::size_t i = 0; i < told_ && contacts.size() < depths.size(); ++i) {
-      depths[contacts.size()] = tellings_[i].second;
-      if (!contacts.add(tellings_[i].first, {}, {})) return;
-    }
-  }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(reported_); }
 
  private:
-  // What the last call can still be asked about. No call reads what another one left.
-  mutable std::array<std::pair<contact, penetration>, 16> tellings_{};
-  mutable std::size_t told_ = 0;
+  reported_contacts reported_;  // those that push
 };
 
 static_assert(collision_finder<point_finder>);

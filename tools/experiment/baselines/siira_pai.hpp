@@ -54,6 +54,6 @@ class siira_pai : public point_model<siira_pai> {
   siira_pai_settings settings_;
 };
 
-static_assert(force_model<siira_pai> && describes_contacts<siira_pai>);
+static_assert(force_model<siira_pai>);
 
 }  // namespace asperity::baselines
