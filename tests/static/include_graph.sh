@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# include_graph.sh ROOT: which room includes which, by the sources, against the table in docs/explanation/architecture.md.
+# Fails for an include that the table does not allow, for a room that it does not list, and for a cycle.
+set -euo pipefail
+cd "$1"
+
+# edges: "ROOM INCLUDED-ROOM FILE" for every include of another room.
+edges() {
+  local folder=$1 room=$2
+  grep -rnoE '#include "(asperity/)?[a-z_]+/[a-z_/0-9]+\.hp*"' "$folder" --include='*.hpp' --include='*.h' --include='*.cpp' |
+    sed -E 's|^([^:]+):[0-9]+:#include "(asperity/)?([a-z_]+)/.*|\3 \1|' |
+    awk -v room="$room" '$1 != room { print room, $1, $2 }'
+}
+
+all_edges() {
+  local folder
+  for folder in include/asperity/*/ src/*/; do edges "$folder" "$(basename "$folder")"; done
+  for folder in hal/{transport,drivers,can,serial,usb,hid,urdf,plugin} tools/{io,bake}; do
+    edges "$folder/include" "$(basename "$folder")"
+  done
+  for folder in backends/*/include; do edges "$folder" gl; done
+}
+
+allowed=$(sed -n '/^## Rooms and who may include whom/,/^## /p' docs/explanation/architecture.md |
+  sed -nE 's/^\| `([a-z_]+)` \| (.*) \|$/\1 \2/p' | tr -d '`,')
+[[ -n $allowed ]] || { echo "the table of rooms was not found"; exit 1; }
+
+found=$(all_edges)
+[[ $(wc -l <<< "$found") -gt 100 ]] || { echo "only $(wc -l <<< "$found") includes between rooms were found: the search is broken"; exit 1; }
+bad=$(awk 'NR == FNR { room[$1] = 1; for (i = 2; i <= NF; ++i) may[$1, $i] = 1; next }
+           !($1 in room) { print "the room " $1 " is not in the table (" $3 ")"; next }
+           !(($1, $2) in may) { print $3 " includes " $2 ", which the table does not allow to " $1 }' \
+      <(echo "$allowed") <(echo "$found"))
+if [[ -n $bad ]]; then
+  echo "$bad"
+  exit 1
+fi
+if ! cycle=$(awk '{ print $1, $2 }' <<< "$found" | sort -u | tsort 2>&1 > /dev/null); then
+  echo "rooms include each other in a cycle: $cycle"
+  exit 1
+fi
+echo "$(wc -l <<< "$found") includes between $(awk '{ print $1 }' <<< "$found" | sort -u | wc -l) rooms, no cycle"

@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# include_graph_faults.sh ROOT WORK: include_graph.sh on copies with a fault planted; each has to be found.
+set -euo pipefail
+root=$1 work=$2/include_graph
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+# plant NAME EXPECTED FILE LINE [SED-SCRIPT FOR THE TABLE]
+plant() {
+  rm -rf "$work"
+  mkdir -p "$work/docs/explanation" "$work/tools"
+  cp -r "$root/include" "$root/src" "$root/hal" "$root/backends" "$work"
+  cp -r "$root/tools/io" "$root/tools/bake" "$work/tools"
+  sed "${5:-}" "$root/docs/explanation/architecture.md" > "$work/docs/explanation/architecture.md"
+  [[ -z $4 ]] || echo "$4" >> "$work/$3"
+  if said=$("$here/include_graph.sh" "$work"); then
+    [[ -z $2 ]] || { echo "$1 was not found: $said"; exit 1; }
+  elif [[ -z $2 || $said != *"$2"* ]]; then
+    echo "$1 was told as: $said"
+    exit 1
+  fi
+}
+plant "nothing" "" include/asperity/core/math.hpp ""
+plant "an include that is not allowed" "does not allow to render" include/asperity/render/contact.hpp '#include "asperity/window/cpu_depth.hpp"'
+plant "an include of an inside" "does not allow to core" include/asperity/core/math.hpp '#include "field/lanes.hpp"'
+plant "a cycle that the table allows" "in a cycle" include/asperity/core/math.hpp '#include "asperity/model/scene.hpp"' \
+  's/^| `core` | .* |$/| `core` | `model` |/'
+plant "a room that is not listed" "is not in the table" src/field/lanes.hpp "" '/^| `window` |/d'
+echo "four planted faults were found"
