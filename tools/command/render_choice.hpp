@@ -16,8 +16,8 @@ namespace asperity::command {
 /// What the options of the command line choose; render_options.hpp has their help.
 struct render_options {
   std::optional<std::string> contacts;  ///< what the backend implies where it is not given
-  std::string usual_contacts{
-      "shared"};  ///< what the backend cpu implies: a pose alone has no loop that planes could use
+  /// What the backend cpu implies: a pose alone has no loop that planes could use.
+  std::string usual_contacts = "shared";
   std::string backend = "cpu";
   std::optional<std::string> gradient;  ///< of the paper's contacts on grids only
   std::optional<std::uint32_t> grid;    ///< of the paper's contacts on grids only

@@ -18,7 +18,7 @@ namespace asperity {
 /// haptic texture gives the fine height of either body; their difference has its maximum, hard and soft, over the grid.
 /// - depth_m is the hard maximum, whatever the gradient scheme.
 /// - soft_depth_m is the potential that gradient is the exact derivative of (soft_max), or depth_m
-/// (central_difference).
+///   (central_difference).
 /// @source paper sections 4.3, 5.1; spec sections 2, 3
 class ASPERITY_API cpu_depth {
  public:

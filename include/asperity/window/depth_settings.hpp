@@ -53,8 +53,8 @@ struct depth_settings {
   /// 0: a tenth of the window's half size.
   double taper_m = 0.0;
   bool taper_silhouettes = true;  ///< without it a silhouette inside the window makes loops gain or lose energy
-  bool taper_window =
-      true;  ///< fade at the window's border too, so that a window that moves with the contact is smooth
+  /// Fade at the window's border too, so that a window that moves with the contact is smooth.
+  bool taper_window = true;
   bool taper_gradient = true;  ///< false leaves out the gradient of the fade, for experiments: energy is not conserved
 
   /// A triangle takes part where |cosine| between its normal and n is above this and its normal faces the right way.

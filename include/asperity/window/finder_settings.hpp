@@ -25,8 +25,8 @@ struct finder_statistics {
   std::size_t candidate_pairs = 0;  ///< pairs of pieces whose boxes and spheres came within the tolerance
   std::size_t close_pairs = 0;      ///< pairs within the tolerance (active and passive)
   std::size_t passive_pairs = 0;    ///< close pairs whose direction is a ghost: see pair_kind
-  std::size_t deep_pairs =
-      0;  ///< of these, found by the deep pass: the surfaces passed each other by more than the tolerance
+  /// Of these, found by the deep pass: the surfaces passed each other by more than the tolerance.
+  std::size_t deep_pairs = 0;
   std::size_t penetrating_pairs = 0;  ///< pairs whose hulls overlap
   std::size_t dropped_pairs = 0;      ///< close pairs that did not fit: raise finder_settings::close_pairs
   std::size_t dropped_clusters = 0;   ///< clusters that did not fit: raise finder_settings::clusters
