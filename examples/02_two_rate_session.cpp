@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include <asperity/asperity.hpp>
+#include <asperity/device/simulated/simulated_device.hpp>
 #include <asperity/io/textured_model_file.hpp>
 
 // Sees every device tick. It runs inside the tick, so it only compares and adds.

@@ -1,12 +1,11 @@
 // The CPU stack in one include. Start reading at render/renderer.hpp.
 #pragma once
 
-#include "asperity/control/coupling_for.hpp"
 #include "asperity/control/real_session.hpp"
+#include "asperity/control/virtual_coupling.hpp"
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/control/virtual_tool.hpp"
 #include "asperity/device/any_device.hpp"
-#include "asperity/device/simulated/simulated_device.hpp"
 #include "asperity/least_motion/default_renderer.hpp"
 #include "asperity/planes/field_renderer.hpp"
 #include "asperity/window/paper_renderer.hpp"

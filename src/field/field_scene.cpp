@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "asperity/field/field_body.hpp"
 #include "field/make_body_field.hpp"
 #include "field/surface_samples.hpp"
 #include "model/surface_index.hpp"

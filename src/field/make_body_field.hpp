@@ -3,7 +3,8 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/field/body_field.hpp"
-#include "asperity/field/field_settings.hpp"
+#include "asperity/field/field_body.hpp"
+#include "asperity/field/field_scene.hpp"
 #include "asperity/model/textured_model.hpp"
 
 namespace asperity {

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "asperity/core/memory.hpp"
-#include "asperity/core/reserve_resident.hpp"
 #include "asperity/core/spatial.hpp"
 #include "least_motion/motion.hpp"
 #include "least_motion/posed_samples.hpp"

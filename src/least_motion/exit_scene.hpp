@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "asperity/core/memory.hpp"
+#include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "least_motion/field_bounds.hpp"
 #include "least_motion/kept_relief.hpp"

@@ -7,7 +7,7 @@
 
 #include "asperity/core/memory.hpp"
 #include "asperity/core/spatial.hpp"
-#include "asperity/least_motion/exit_limits.hpp"
+#include "asperity/least_motion/least_motion_settings.hpp"
 #include "least_motion/bed.hpp"
 #include "least_motion/exit_rule.hpp"
 #include "least_motion/mix.hpp"

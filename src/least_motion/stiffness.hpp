@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
-#include "asperity/core/cholesky.hpp"
 #include "asperity/core/math.hpp"
 #include "asperity/core/spatial.hpp"
+#include "core/cholesky.hpp"
 #include "least_motion/bed.hpp"
 #include "least_motion/eigen6.hpp"
 #include "least_motion/pivot.hpp"

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/core/cholesky.hpp"
 #include "asperity/core/memory.hpp"
 #include "asperity/core/spatial.hpp"
-#include "asperity/least_motion/exit_limits.hpp"
+#include "asperity/least_motion/least_motion_settings.hpp"
+#include "core/cholesky.hpp"
 #include "least_motion/bed.hpp"
 #include "least_motion/descent.hpp"
 #include "least_motion/directions.hpp"

@@ -6,10 +6,10 @@
 #include <cstddef>
 #include <limits>
 
-#include "asperity/core/cholesky.hpp"
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/math.hpp"
 #include "asperity/core/spatial.hpp"
+#include "core/cholesky.hpp"
 #include "least_motion/bed.hpp"
 #include "least_motion/motion.hpp"
 #include "least_motion/posed_samples.hpp"

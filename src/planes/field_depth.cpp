@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "asperity/core/memory.hpp"
-#include "asperity/core/reserve_resident.hpp"
 #include "planes/field_watch.hpp"
 
 namespace asperity {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "asperity/core/pose.hpp"
+#include "asperity/field/field_body.hpp"
 
 namespace asperity {
 namespace {

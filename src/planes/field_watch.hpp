@@ -9,6 +9,7 @@
 
 #include "asperity/core/memory.hpp"
 #include "asperity/core/pose.hpp"
+#include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/model/scene.hpp"
 #include "asperity/render/support_plane.hpp"

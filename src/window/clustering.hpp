@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "asperity/core/reserve_resident.hpp"
+#include "asperity/core/memory.hpp"
 #include "window/aabb_tree.hpp"
 #include "window/close_pair.hpp"
 

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
+#include "asperity/core/memory.hpp"
 #include "asperity/core/pose.hpp"
-#include "asperity/core/reserve_resident.hpp"
 #include "asperity/render/contact.hpp"
-#include "asperity/window/finder_settings.hpp"
+#include "asperity/window/convex_piece_finder.hpp"
 #include "window/clustering.hpp"
 #include "window/collision_body.hpp"
 #include "window/held_contact.hpp"

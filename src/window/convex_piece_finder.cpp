@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/core/reserve_resident.hpp"
+#include "asperity/core/memory.hpp"
 #include "window/close_pair.hpp"
 #include "window/clustering.hpp"
 #include "window/collision_body.hpp"

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "asperity/core/reserve_resident.hpp"
+#include "asperity/core/memory.hpp"
 #include "asperity/core/spatial.hpp"
 #include "model/surface_index.hpp"
 #include "window/height_field.hpp"

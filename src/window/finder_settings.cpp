@@ -1,6 +1,6 @@
-#include "asperity/window/finder_settings.hpp"
-
 #include <algorithm>
+
+#include "asperity/window/convex_piece_finder.hpp"
 
 namespace asperity {
 

@@ -6,7 +6,7 @@
 
 #include "asperity/core/pose.hpp"
 #include "asperity/render/contact.hpp"
-#include "asperity/window/finder_settings.hpp"
+#include "asperity/window/convex_piece_finder.hpp"
 #include "window/clustering.hpp"
 #include "window/patch_window.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "asperity/core/reserve_resident.hpp"
+#include "asperity/core/memory.hpp"
 #include "model/surface_index.hpp"
 #include "window/window_map.hpp"
 

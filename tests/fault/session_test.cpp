@@ -30,6 +30,19 @@ class session : public command_test {
     rows.pop_back();
     return rows;
   }
+
+  /// Runs a session and sends SIGINT once it has recorded some ticks, however long it took to start.
+  [[nodiscard]] outcome interrupted(const arguments& args) const {
+    running_command command(args);
+    const auto has_recorded = [this] {
+      const std::set<std::string> names = files();
+      return std::any_of(names.begin(), names.end(),
+                         [this](const std::string& name) { return read(name).size() > 4096; });
+    };
+    EXPECT_TRUE(command.wait_until(has_recorded));
+    command.send(SIGINT);
+    return command.finish();
+  }
 };
 
 TEST_F(session, twice_gives_the_same_bytes) {
@@ -82,9 +95,7 @@ TEST_F(session, recording_is_a_table_that_ends_with_no_wrench) {
 }
 
 TEST_F(session, interrupted_on_the_real_clock) {
-  process_options options;
-  options.interrupt_after_s = 1.0;
-  const outcome stopped = run(session_to("session.csv", {"--seconds", "600", "--clock", "real", "--json"}), options);
+  const outcome stopped = interrupted(session_to("session.csv", {"--seconds", "600", "--clock", "real", "--json"}));
   EXPECT_EQ(stopped.exit_status, 130);
   EXPECT_NE(stopped.err.find("\nasperity: interrupted by SIGINT after "), std::string::npos) << stopped.err;
   const json document = json::parse(stopped.out, nullptr, false);
@@ -98,9 +109,7 @@ TEST_F(session, interrupted_on_the_real_clock) {
 }
 
 TEST_F(session, interrupted_on_the_virtual_clock) {
-  process_options options;
-  options.interrupt_after_s = 0.5;
-  const outcome stopped = run(session_to("session.csv", {"--seconds", "80000", "--contacts", "paper"}), options);
+  const outcome stopped = interrupted(session_to("session.csv", {"--seconds", "80000", "--contacts", "paper"}));
   EXPECT_EQ(stopped.exit_status, 130);
   EXPECT_EQ(files(), std::set<std::string>{"session.csv"});
   EXPECT_GT(table("session.csv").size(), 1U);

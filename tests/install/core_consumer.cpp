@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include <asperity/asperity.hpp>
+#include <asperity/device/simulated/simulated_device.hpp>
 
 #include "../support/small_models.hpp"
 

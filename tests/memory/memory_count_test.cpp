@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "asperity/field/field_body.hpp"
 #include "asperity/least_motion/default_renderer.hpp"
 #include "asperity/window/paper_renderer.hpp"
 #include "counted_heap.hpp"

@@ -9,7 +9,7 @@
 #include <memory>
 #include <string>
 
-#include "asperity/control/coupling_for.hpp"
+#include "asperity/control/virtual_coupling.hpp"
 #include "asperity/planes/field_renderer.hpp"
 #include "passivity/felt_session.hpp"
 #include "support/extent.hpp"

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # include_graph.sh ROOT: which room includes which, by the sources, against the table in docs/explanation/architecture.md.
-# Fails for an include that the table does not allow, for a room that it does not list, and for a cycle.
+# Fails for an include that the table does not allow, for a room that it does not list, for a cycle, and where
+# asperity/asperity.hpp brings more than 70 headers.
 set -euo pipefail
 cd "$1"
 
@@ -39,4 +40,18 @@ if ! cycle=$(awk '{ print $1, $2 }' <<< "$found" | sort -u | tsort 2>&1 > /dev/n
   echo "rooms include each other in a cycle: $cycle"
   exit 1
 fi
+
+# What one header brings a consumer: itself not counted.
+brought() {
+  local header=$1 next
+  [[ -z ${seen[$header]:-} ]] || return 0
+  seen[$header]=1
+  while read -r next; do brought "$next"; done < <(sed -nE 's|^#include "(asperity/[^"]+)"|\1|p' "include/$header")
+}
+declare -A seen=()
+brought asperity/asperity.hpp
+count=$((${#seen[@]} - 1))
+[[ $count -gt 30 ]] || { echo "asperity.hpp seems to bring only $count headers: the search is broken"; exit 1; }
+[[ $count -le 70 ]] || { echo "asperity.hpp brings $count headers of ours, more than 70"; exit 1; }
+echo "asperity.hpp brings $count headers of ours"
 echo "$(wc -l <<< "$found") includes between $(awk '{ print $1 }' <<< "$found" | sort -u | wc -l) rooms, no cycle"

@@ -22,6 +22,7 @@ plant() {
 plant "nothing" "" include/asperity/core/math.hpp ""
 plant "an include that is not allowed" "does not allow to render" include/asperity/render/contact.hpp '#include "asperity/window/cpu_depth.hpp"'
 plant "an include of an inside" "does not allow to core" include/asperity/core/math.hpp '#include "field/lanes.hpp"'
+plant "a header that brings many" "more than 70" include/asperity/asperity.hpp '#include "asperity/device/simulated/simulated_device.hpp"'
 plant "a cycle that the table allows" "in a cycle" include/asperity/core/math.hpp '#include "asperity/model/scene.hpp"' \
   's/^| `core` | .* |$/| `core` | `model` |/'
 plant "a room that is not listed" "is not in the table" src/field/lanes.hpp "" '/^| `window` |/d'

@@ -1,6 +1,5 @@
 // Each policy concept accepts the least that keeps its contract, and rejects what only looks like it.
 
-#include <asperity/planes/near_plane.hpp>
 #include <asperity/planes/near_samples.hpp>
 #include <asperity/render/renderer.hpp>
 

@@ -8,6 +8,7 @@
 
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
+#include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/model/scene.hpp"
 

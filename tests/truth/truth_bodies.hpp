@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/model/textured_model.hpp"
 #include "asperity/model/triangle_mesh.hpp"

@@ -1,6 +1,6 @@
 #include "run_coupling.hpp"
 
-#include "asperity/control/coupling_for.hpp"
+#include "asperity/control/virtual_coupling.hpp"
 #include "session.hpp"
 #include "text.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "asperity/core/reserve_resident.hpp"
+#include "asperity/core/memory.hpp"
 #include "exact/pair_bound.hpp"
 
 namespace asperity::detail {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "asperity/control/exchange.hpp"
-#include "asperity/control/held_flags.hpp"
 #include "asperity/control/linearise.hpp"
 #include "asperity/render/renderer.hpp"
+#include "asperity/render/tick_flag.hpp"
 
 namespace asperity {
 

@@ -6,12 +6,22 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "asperity/control/support_planes.hpp"
+#include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/render/support_plane.hpp"
 
 namespace asperity {
+
+/// Most support planes that a contact carries: those that press where the probe will rest, one for each sample, and
+/// those that it meets next when it tilts or slides.
+inline constexpr std::size_t most_support_planes = 64;
+/// Of these, how many are chosen for test motions; the rest is for where the probe will come to rest.
+inline constexpr std::size_t most_selected_planes = 20;
+
+/// Support planes of one contact; dropped() tells how many more were wanted than it could keep.
+using support_planes = fixed_vector<support_plane, most_support_planes>;
 
 /// Contact wrench on the probe, linear in the probe's pose: W(q) = W0 + J (q - q0). World axes, torque about c_A.
 /// The probe's frame c here has its origin in the centre of mass c_A and the body's axes.

@@ -7,7 +7,6 @@
 
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
-#include "asperity/control/support_planes.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"

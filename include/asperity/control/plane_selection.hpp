@@ -10,7 +10,7 @@
 #include <span>
 #include <string>
 
-#include "asperity/control/support_planes.hpp"
+#include "asperity/control/linear_contact.hpp"
 #include "asperity/core/math.hpp"
 #include "asperity/core/status.hpp"
 

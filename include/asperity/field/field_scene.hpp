@@ -6,30 +6,36 @@
 #include <vector>
 
 #include "asperity/core/export.hpp"
-#include "asperity/core/memory.hpp"
 #include "asperity/core/status.hpp"
-#include "asperity/field/body_field.hpp"
-#include "asperity/field/field_settings.hpp"
-#include "asperity/field/sample_tree.hpp"
 #include "asperity/model/scene.hpp"
 
 namespace asperity {
 
-/// One body. Immutable once made.
-struct field_body {
-  body_field field;
-  sample_tree samples;
+/// How finely a depth field is made. Lengths in metres, 0 for automatic. A pitch is raised where it would go beyond the
+/// limits.
+struct field_settings {
+  double pitch_m = 0.0;                   ///< of the smooth part; automatic: extent / 96, at most a third of thin parts
+  double relief_pitch_m = 0.0;            ///< of the relief; automatic: a texel, at most a third of the pitch above
+  double margin_m = 0.0;                  ///< of the grid around the body; automatic: 4 % of its diagonal
+  std::size_t most_nodes = 4'000'000;     ///< of the smooth part; 4 bytes each
+  std::size_t relief_bytes = 40'000'000;  ///< about what the relief may take
 
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(field, samples); }
+  friend bool operator==(const field_settings&, const field_settings&) = default;
 };
 
-/// Shared and never changed, like the model it was made of.
-using field_body_ptr = std::shared_ptr<const field_body>;
+/// Settings of make_field_body().
+struct field_body_settings {
+  field_settings field{};
+  double sample_pitch_m = 0.0;  ///< distance between samples; 0: 0.3 % of the body's diagonal
 
-/// Makes a body's field and lays out its samples. Allocates; for fractions of a second, not for a tick.
-/// @return invalid_argument (a setting out of range) | bad_mesh | bad_texture
-[[nodiscard]] ASPERITY_API result<field_body> make_field_body(const textured_model& model,
-                                                              const field_body_settings& settings = {});
+  friend bool operator==(const field_body_settings&, const field_body_settings&) = default;
+};
+
+struct body_field;
+struct field_body;
+
+/// A body, see field/field_body.hpp: shared and never changed, like the model it was made of.
+using field_body_ptr = std::shared_ptr<const field_body>;
 
 /// One per body, in the order of the scene.
 struct field_scene {

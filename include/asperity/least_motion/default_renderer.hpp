@@ -4,14 +4,25 @@
 #include <memory>
 
 #include "asperity/core/export.hpp"
+#include "asperity/field/field_scene.hpp"
 #include "asperity/least_motion/least_motion.hpp"
-#include "asperity/least_motion/renderer_settings.hpp"
+#include "asperity/least_motion/least_motion_settings.hpp"
 #include "asperity/planes/field_depth.hpp"
 #include "asperity/planes/field_finder.hpp"
 #include "asperity/planes/field_renderer.hpp"
+#include "asperity/planes/near_samples.hpp"
 #include "asperity/render/renderer.hpp"
 
 namespace asperity {
+
+/// Settings of make_renderer(). Each default is explained where its struct is.
+struct renderer_settings {
+  field_body_settings bodies{};
+  /// Gaps up to this are told as support planes, m. 0: no planes, which cost more than the wrench of a light touch.
+  double reach_m = 0.0;
+  least_motion_settings force{};
+  near_sample_limits limits{};
+};
 
 /// The default: the least motion of the probe that clears the bodies, on a spring. Its wrench is a function of the pose
 /// alone, conservative, and held at any depth. Asked for, it tells the support planes of the field_renderer as well.

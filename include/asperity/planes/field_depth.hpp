@@ -10,7 +10,6 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/model/scene.hpp"
-#include "asperity/planes/near_plane.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/render/plane_source.hpp"

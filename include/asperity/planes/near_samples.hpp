@@ -3,15 +3,22 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
-#include "asperity/core/reserve_resident.hpp"
 #include "asperity/field/sample_tree.hpp"
+#include "asperity/render/support_plane.hpp"
 
 namespace asperity {
+
+/// The support plane of the deepest of a few neighbouring samples, and where that sample is.
+struct near_plane {
+  support_plane plane{.depth_m = -std::numeric_limits<double>::infinity()};  ///< -infinity: there is none
+  vec3 point_w{0.0};                                                         ///< the sample, world
+};
 
 /// A few neighbouring samples of one body that may touch the other.
 struct near_leaf {

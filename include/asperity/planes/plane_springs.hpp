@@ -7,7 +7,6 @@
 #include "asperity/core/export.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
-#include "asperity/planes/near_plane.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/force_model.hpp"
 #include "asperity/render/reported_contacts.hpp"

@@ -9,7 +9,6 @@
 
 #include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
-#include "asperity/core/reserve_resident.hpp"
 
 namespace asperity {
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "asperity/core/memory.hpp"
-#include "asperity/core/reserve_resident.hpp"
 #include "asperity/render/contact.hpp"
 #include "asperity/render/penetration.hpp"
 

@@ -1,6 +1,8 @@
-// What a tick or a session says of a press that its planes do not answer.
+// What a tick or a session says of a press that its planes do not answer, and how long it stays said.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace asperity {
@@ -31,5 +33,29 @@ constexpr tick_flag& operator|=(tick_flag& a, tick_flag b) noexcept { return a =
 [[nodiscard]] constexpr bool has(tick_flag set, tick_flag bit) noexcept {
   return (static_cast<std::uint8_t>(set) & static_cast<std::uint8_t>(bit)) != 0;
 }
+
+/// Holds each flag for a while after the tick that told it. The device thread takes the newest contact and may leave
+/// out others; what those told must not be lost.
+class held_flags {
+ public:
+  static constexpr std::int64_t hold_ns = 50'000'000;
+
+  /// @param told of a tick at now_ns   @rt safe
+  [[nodiscard]] tick_flag held(tick_flag told, std::int64_t now_ns) noexcept {
+    tick_flag out = told;
+    for (std::size_t i = 0; i < until_ns_.size(); ++i) {
+      const auto flag = static_cast<tick_flag>(1U << i);
+      if (has(told, flag)) {
+        until_ns_[i] = now_ns + hold_ns;
+      } else if (now_ns < until_ns_[i]) {
+        out |= flag;
+      }
+    }
+    return out;
+  }
+
+ private:
+  std::array<std::int64_t, 8> until_ns_{};
+};
 
 }  // namespace asperity

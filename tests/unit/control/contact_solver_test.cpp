@@ -7,6 +7,7 @@
 
 #include <asperity/control/probe.hpp>
 
+#include "core/cholesky.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 #include "unit/control/drawn.hpp"

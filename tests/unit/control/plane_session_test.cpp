@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 
-#include <asperity/control/coupling_for.hpp>
+#include <asperity/control/virtual_coupling.hpp>
 
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"

@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include <asperity/control/coupling_for.hpp>
-#include <asperity/control/held_flags.hpp>
 #include <asperity/control/linearise.hpp>
+#include <asperity/control/virtual_coupling.hpp>
 #include <asperity/control/virtual_session.hpp>
+#include <asperity/render/tick_flag.hpp>
 
 #include "support/fresh_seed.hpp"
 #include "unit/control/drawn.hpp"

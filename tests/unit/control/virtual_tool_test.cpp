@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include <asperity/control/coupling_for.hpp>
+#include <asperity/control/virtual_coupling.hpp>
 #include <asperity/control/virtual_tool.hpp>
 
 #include "support/fresh_seed.hpp"

@@ -7,8 +7,9 @@
 #include <random>
 #include <vector>
 
+#include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
-#include "asperity/least_motion/exit_limits.hpp"
+#include "asperity/least_motion/least_motion_settings.hpp"
 #include "least_motion/exit_solver.hpp"
 
 namespace asperity::test_support {

@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "asperity/field/field_body.hpp"
 #include "asperity/least_motion/default_renderer.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"

@@ -7,7 +7,6 @@
 #include <limits>
 #include <vector>
 
-#include "asperity/planes/near_plane.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/reported_contacts.hpp"
 

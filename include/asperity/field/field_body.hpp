@@ -1,0 +1,28 @@
+// One body as the field formulation sees it: its depth field and its samples.
+#pragma once
+
+#include <cstddef>
+
+#include "asperity/core/export.hpp"
+#include "asperity/core/memory.hpp"
+#include "asperity/core/status.hpp"
+#include "asperity/field/body_field.hpp"
+#include "asperity/field/field_scene.hpp"
+#include "asperity/field/sample_tree.hpp"
+
+namespace asperity {
+
+/// One body. Immutable once made.
+struct field_body {
+  body_field field;
+  sample_tree samples;
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(field, samples); }
+};
+
+/// Makes a body's field and lays out its samples. Allocates; for fractions of a second, not for a tick.
+/// @return invalid_argument (a setting out of range) | bad_mesh | bad_texture
+[[nodiscard]] ASPERITY_API result<field_body> make_field_body(const textured_model& model,
+                                                              const field_body_settings& settings = {});
+
+}  // namespace asperity
