@@ -44,7 +44,7 @@ using moved_depths = std::array<std::optional<double>, probe_motions>;
 
 /// Gradient of a depth by differences of signed depths, about c_A. The component along n is 1 and is not differenced.
 /// Turns were about `origin_w` and are transported to c_A: T_c = T_o + (o - c) x F.
-/// @rt safe   @source paper Eqs. 5 and 7; spec section 3.1 for the point of rotation
+/// @rt safe   @source paper Eqs. 5 and 7; science, section 3.1 for the point of rotation
 [[nodiscard]] inline vec6 gradient_of(const moved_depths& moved, const contact_window& window,
                                       const vec3& centre_of_mass_w, const vec3& origin_w, double here_m, double step_m,
                                       double step_rad) noexcept {

@@ -75,7 +75,7 @@ class contact_builder {
   [[nodiscard]] const plane_box& near() const noexcept { return near_; }
 
  private:
-  static constexpr double facing_limit = 0.1;  // spec section 2
+  static constexpr double facing_limit = 0.1;  // science, section 2
   static constexpr double least_share = 0.05;  // of the tolerance: thinnest slab that still has an extent
 
   static void place_window(const pose& T_wa, const pair_cluster& cluster, contact_window& w) noexcept {

@@ -71,7 +71,7 @@ struct convex_shape {
   /// True where d, unit, points into the body behind every covered triangle.
   /// @rt safe
   [[nodiscard]] bool looks_away(const vec3& d) const noexcept {
-    constexpr double grazing = 0.1;  // the sine that spec section 2 puts between facing and not
+    constexpr double grazing = 0.1;  // the sine that science, section 2, puts between facing and not
     return std::all_of(faces.begin(), faces.end(),
                        [&](const shape_face& f) { return glm::dot(f.normal, d) < -grazing; });
   }

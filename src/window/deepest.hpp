@@ -47,7 +47,7 @@ struct deepest_sample {
 
 /// Maximum of the parabola through the deepest sample and its eight neighbours, within half a pitch; the sample's own
 /// depth where a neighbour is missing or the fit has no maximum there.
-/// @rt safe   @source spec section 7 (sub-sample maximum)
+/// @rt safe   @source science, section 7 (sub-sample maximum)
 [[nodiscard]] inline double refined_depth(const height_field& a, const height_field& b, const sample_grid& grid,
                                           const deepest_sample& at) noexcept {
   const std::size_t column = at.index % grid.side, row = at.index / grid.side;

@@ -9,7 +9,7 @@ namespace asperity::detail {
 
 /// K of two unit directions: 1 up to one angle between them, 0 from another on, smooth between. Contacts whose K is 1
 /// share a spring, those whose K is 0 have one each.
-/// @rt safe   @source spec section 3.4
+/// @rt safe   @source science, section 3.4
 class direction_sameness {
  public:
   /// @pre same_rad < other_rad

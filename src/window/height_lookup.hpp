@@ -38,7 +38,7 @@ struct fine_hit {
 /// The search starts at the coarse hit. It may run into a chart's gutter by one texel; beyond that it goes on in the
 /// triangle on the other side of the edge that it is farthest outside of. Where the surface folds over or its patch
 /// ends first, the paper's lookup stands in.
-/// @source spec section 2 (parallax)
+/// @source science, section 2 (parallax)
 [[nodiscard]] inline fine_hit look_above(const body_view& body, const projected_triangle& start, const vec2& uv,
                                          double tolerance_m) noexcept {
   constexpr int max_steps = 12;
@@ -126,7 +126,7 @@ template <class Wanted>
 /// n).
 /// - beside: X is carried along, and the coarse hit Y moves over the coarse triangle by what keeps it on the line; with
 ///   s the slope of h over the window through the texture, dh = n . (velocity of X) - s . (velocity of Y).
-/// @rt safe   @source spec section 3 (Danskin); the second form is the chain rule through Eq. 8
+/// @rt safe   @source science, section 3 (Danskin); the second form is the chain rule through Eq. 8
 [[nodiscard]] inline vec6 height_gradient(const body_view& body, const contact_window& window,
                                           const height_field& field, std::size_t i, const vec2& uv,
                                           const vec3& centre_w) noexcept {

@@ -32,7 +32,7 @@ struct pair_scale {
 
 /// Step of the central differences for a sample pitch p: large enough not to see the grid, small enough not to smear
 /// the texture.
-/// @source spec sections 3.2 and 8
+/// @source science, sections 3.2 and 8
 [[nodiscard]] inline double difference_step(const depth_settings& s, const pair_scale& pair, double pitch_m) noexcept {
   if (s.difference_step_m > 0.0) return s.difference_step_m;
   const double wanted = pair.wavelength_m > 0.0 ? std::min(pitch_m, pair.wavelength_m / 20.0) : pitch_m;

@@ -24,7 +24,7 @@ struct soft_maximum {
 /// Soft maximum of effective depths d_i + tau ln mu_i, m; minus infinity leaves a sample out.
 /// @param area_ratio  p^2 / A0
 /// @param gradient    gradient(i) of effective depth i; only asked for where it counts
-/// @rt safe   @source spec section 3.2 (LSE)
+/// @rt safe   @source science, section 3.2 (LSE)
 template <class Gradient>
 [[nodiscard]] soft_maximum soft_max(std::span<const double> effective_m, double tau_m, double area_ratio,
                                     Gradient gradient) noexcept {

@@ -42,7 +42,7 @@ struct window_map {
 
 /// N x N samples at the centres of the cells that tile the window. Fixed in the world while the probe moves through it,
 /// which is what makes every depth here a function of the pose alone.
-/// @source spec section 2
+/// @source science, section 2
 struct sample_grid {
   std::uint32_t side;  ///< samples per side
   double half_m;       ///< half size of the window

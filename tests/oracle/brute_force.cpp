@@ -8,7 +8,7 @@ namespace asperity::oracle {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr double facing = 0.1;  // spec section 2: a coarse triangle counts where |N . n| exceeds this
+constexpr double facing = 0.1;  // science, section 2: a coarse triangle counts where |N . n| exceeds this
 
 struct sample_grid {
   contact_window window;

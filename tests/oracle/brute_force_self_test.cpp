@@ -1,4 +1,4 @@
-// The oracle itself against closed forms (spec section 9, O1 and O5): an oracle that errs would prove nothing.
+// The oracle itself against closed forms (O1 and O5): an oracle that errs would prove nothing.
 #include <functional>
 #include <gtest/gtest.h>
 #include <numbers>

@@ -147,7 +147,7 @@ height_function bumps_b() {
 // A coarse grid is as conservative as a fine one and pays for them.
 constexpr std::uint32_t soft_grid = 32;
 constexpr int soft_steps = 4800;
-// Central differences of 0.1 mm ask for samples at most 0.2 mm apart (spec section 3.2).
+// Central differences of 0.1 mm ask for samples at most 0.2 mm apart (science, section 3.2).
 constexpr std::uint32_t difference_grid = 96;
 constexpr int difference_steps = 150;
 constexpr int control_steps = 60;

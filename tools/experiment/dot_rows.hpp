@@ -9,7 +9,7 @@
 namespace asperity::experiment {
 
 /// A plate with 18 rows of truncated cones along x, 2.4 mm apart; their spacing grows by a factor from row to row.
-/// @source dimensions of the stimuli of Klatzky and Lederman, spec section 9
+/// @source dimensions of the stimuli of Klatzky and Lederman, science, section 9
 struct dot_rows {
   static constexpr std::size_t count = 18;
   static constexpr double height_m = 0.46e-3, top_diameter_m = 0.5e-3, base_diameter_m = 1.06e-3;

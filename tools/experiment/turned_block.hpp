@@ -43,7 +43,7 @@ struct turned_sample {
 [[nodiscard]] double saturation_angle_rad() noexcept;
 /// Torque per newton of normal force about n that geometry asks for, m: minus the slope of the rise. Closed form
 /// a K w cos(K w theta / 2) up to saturation, then none; negative for a positive angle.
-/// @source spec section 9, A6
+/// @source paper, Fig. 8; the bounds are ours
 [[nodiscard]] double torque_arm_m(double angle_rad) noexcept;
 
 /// Which depth of two surfaces a spring is compressed by.

@@ -15,7 +15,7 @@
 
 namespace asperity {
 
-/// Everything that the device loop can be told. The defaults are those of spec section 8.
+/// Everything that the device loop can be told. The defaults are those of science, section 8.
 struct control_config {
   probe_config probe{};
   coupling_config coupling{};

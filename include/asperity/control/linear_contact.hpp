@@ -27,7 +27,7 @@ using support_planes = fixed_vector<support_plane, most_support_planes>;
 /// The probe's frame c here has its origin in the centre of mass c_A and the body's axes.
 /// Held instead of linearised, a wrench one period late is unstable above 70 N/m at 100 Hz; with J no limit was found.
 /// Where the renderer knows support planes they are the contact, gaps included, and W0 and J are for reports.
-/// @source spec section 4
+/// @source science, section 4
 struct linear_contact {
   wrench on_probe_w{};  ///< W0, N and N m
   mat6 stiffness{};     ///< J = dW/dq, symmetric negative semidefinite

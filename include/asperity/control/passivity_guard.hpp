@@ -47,7 +47,7 @@ struct guard_action {
 /// credit_j, and plus what errors of the measured poses hide: at most the way of the wrench times the error.
 /// It holds for motions slower than a quarter of the sample rate, in which damping takes energy out of every swing.
 /// It is a net: a loop that needs it all the time is badly tuned. It does not replace the contact's stiffness J.
-/// @source spec section 5; floor and scaling are ours
+/// @source science, section 5; floor and scaling are ours
 class passivity_guard {
  public:
   explicit passivity_guard(const guard_config& config = {}) noexcept : config_(config) {}

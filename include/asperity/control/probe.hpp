@@ -49,7 +49,7 @@ struct probe_energy {
 /// the push of the planes at the end of the step (solve_contact), which is stable for any stiffness as well.
 /// The gyroscopic torque, which would break the symmetry, is left out: for a 10 g tool at a hand's 10 rad/s it is about
 /// 1 mN m.
-/// @source spec section 4
+/// @source science, section 4
 class probe {
  public:
   explicit probe(const probe_config& config = {}) noexcept : config_(config) {}

@@ -28,7 +28,7 @@ struct coupling_pull {
 };
 
 /// Isotropic six-dimensional spring and damper.
-/// @source spec section 4
+/// @source science, section 4
 class virtual_coupling {
  public:
   /// @param inertia_kg_m2 a typical moment of inertia of the probe

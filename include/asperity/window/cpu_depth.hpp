@@ -19,7 +19,7 @@ namespace asperity {
 /// - depth_m is the hard maximum, whatever the gradient scheme.
 /// - soft_depth_m is the potential that gradient is the exact derivative of (soft_max), or depth_m
 ///   (central_difference).
-/// @source paper sections 4.3, 5.1; spec sections 2, 3
+/// @source paper sections 4.3, 5.1; science, sections 2, 3
 class ASPERITY_API cpu_depth {
  public:
   using policy_tag = depth_tag;

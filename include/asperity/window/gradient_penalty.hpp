@@ -35,7 +35,7 @@ struct gradient_penalty_settings {
 /// bodies. M_i goes to zero with the square of the depth, so a contact that appears or vanishes at zero depth, or at
 /// zero area, does so without a jump. One contact alone has share 1, which is the paper's model. J leaves out how the
 /// shares change with the pose: that term has no definite sign, and is zero for one contact.
-/// @rt safe   @source paper Eqs. 3 to 6; spec sections 3.3 and 3.4 (the shares are ours, the paper adds springs up)
+/// @rt safe   @source paper Eqs. 3 to 6; science, sections 3.3 and 3.4 (the shares are ours, the paper adds springs up)
 class ASPERITY_API gradient_penalty {
  public:
   using policy_tag = force_tag;
