@@ -1,18 +1,17 @@
 asperity_add_test_library(oracle_originals
   SOURCES against_originals.cpp approach.cpp brute_force.cpp fresh_poses.cpp originals_agree.cpp placed_mesh.cpp
   LIBS asperity_test_parts)
-asperity_optimise(oracle_originals)
-asperity_add_test(oracle_brute_force_self WARM
+asperity_add_test(oracle_brute_force_self
   SOURCES brute_force_self_test.cpp APART placed_mesh_test.cpp LIBS oracle_originals)
 
 if(TARGET asperity_command)
-  asperity_add_test(oracle_brute_force_models WARM
+  asperity_add_test(oracle_brute_force_models
     SOURCES brute_force_models_test.cpp texel_holes_models_test.cpp
     APART fresh_poses_test.cpp undersampling_models_test.cpp
     LIBS oracle_originals asperity::io)
   target_compile_definitions(oracle_brute_force_models PRIVATE ASPERITY_TEST_MODELS_DIR="${ASPERITY_TEST_MODELS_DIR}")
   set_tests_properties(oracle_brute_force_models PROPERTIES FIXTURES_REQUIRED benchmark_models)
-  asperity_long_test(oracle_brute_force_models oracle_brute_force_models)
+  asperity_nightly(oracle_brute_force_models law oracle_brute_force_models)
 
   # Skips where there are no real meshes.
   asperity_add_test(oracle_real_models
@@ -23,5 +22,5 @@ if(TARGET asperity_command)
     ASPERITY_TEST_MODELS_DIR="${ASPERITY_TEST_MODELS_DIR}")
   add_dependencies(oracle_real_models asperity_command)
   set_tests_properties(oracle_real_models PROPERTIES FIXTURES_REQUIRED real_models)
-  asperity_long_test(oracle_real_models oracle_real_models)
+  asperity_nightly(oracle_real_models law oracle_real_models)
 endif()

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -98,6 +99,15 @@ std::vector<held_law> held_laws() {
           {default_renderer_law(), round_pairs(), press_bake::simplified, 1, 6, 0.3 * mm}};
 }
 
+/// The pairs of a law in this run: all at length, otherwise some of the day.
+std::vector<press_pair> drawn_pairs(const held_law& held, std::uint64_t seed) {
+  std::vector<press_pair> out = held.pairs;
+  if (test_support::at_length()) return out;
+  std::shuffle(out.begin(), out.end(), std::mt19937_64(test_support::seed_of(seed, "pairs")));
+  out.resize(std::min<std::size_t>(out.size(), 6));
+  return out;
+}
+
 TEST(presses, no_law_is_weak_gives_way_or_pulls) {
   for (const held_law& held : held_laws()) {
     const int touches = extent(held.share, held.all);
@@ -105,7 +115,8 @@ TEST(presses, no_law_is_weak_gives_way_or_pulls) {
     press_shelf shelf(held.solids);
     print_heading(stdout);
     std::size_t pairs = 0;
-    for (const press_pair& pair : held.pairs) {
+    const std::vector<press_pair> of_this_run = drawn_pairs(held, seed);
+    for (const press_pair& pair : of_this_run) {
       if (const std::string why = why_without_body(pair.probe) + why_without_body(pair.fixed); !why.empty()) {
         std::printf("%s: skipped, %s\n", pair.name().c_str(), why.c_str());
         continue;
@@ -124,7 +135,7 @@ TEST(presses, no_law_is_weak_gives_way_or_pulls) {
       }
       ++pairs;
     }
-    EXPECT_GE(pairs, std::min<std::size_t>(16, held.pairs.size()));
+    EXPECT_GE(pairs, std::min<std::size_t>(test_support::at_length() ? 16 : 3, of_this_run.size()));
   }
 }
 

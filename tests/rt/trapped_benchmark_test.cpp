@@ -104,7 +104,7 @@ void trap_file_on_cad_part(std::uint64_t steady_ticks, Make&& make) {
 
 TEST(benchmark_ticks, file_on_cad_part_does_nothing_that_a_tick_must_not_do) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part(test_support::extent(19'000U, 99'000U),
+  trap_file_on_cad_part(test_support::extent(9'000U, 99'000U),
                         [](const scene& bodies) { return test_support::build_renderer(bodies); });
 }
 

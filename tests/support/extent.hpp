@@ -1,5 +1,5 @@
-// How far a test goes. The ordinary run takes a share of what is long and shows the same thing more often; the entries
-// labelled at_length, which ./dev check runs, take all of it.
+// How far a test goes. The ordinary run takes a share of what is long and shows the same thing more often; nightly entries
+// take all of it.
 #pragma once
 
 #include <cstdlib>

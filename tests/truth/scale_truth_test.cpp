@@ -107,7 +107,7 @@ void print(const char* name, double size, const differences& d) {
 }
 
 TEST(scale_truth, bodies_of_a_millimetre_to_ten_metres_are_felt_alike) {
-  const int presses = test_support::extent(20, 100);
+  const int presses = test_support::extent(10, 100);
   const std::uint64_t seed = test_support::fresh_seed("scale truth", "4 sizes, 20 presses each (100 at length)");
   ball_on_ball usual(0.03);
   for (const double size : {0.5e-3, 3e-3, 0.3, 5.0}) {
@@ -127,7 +127,7 @@ TEST(scale_truth, bodies_of_a_millimetre_to_ten_metres_are_felt_alike) {
 }
 
 TEST(scale_truth, a_hundred_metres_away_is_as_near) {
-  const int presses = test_support::extent(20, 100);
+  const int presses = test_support::extent(10, 100);
   const std::uint64_t seed = test_support::fresh_seed("far truth", "2 ways to be far, 20 presses each (100 at length)");
   const vec3 away(60.0, -50.0, 62.0);
   ball_on_ball usual(0.03);

@@ -104,11 +104,18 @@ check_gcc_debug() {
   fi
 }
 
-# All of what ./dev test takes a share of (tests/support/extent.hpp), and the programs that only that needs.
-check_at_length() {
-  configure release
-  build release all asperity_at_length_programs asperity_soak
-  test_preset release at-length -L '^at_length$'
+# The groups of nightly tests that a change has touched since they last passed.
+check_nightly() {
+  local group touched=()
+  while read -r group; do
+    if recorded "$group"; then
+      say "left out: nightly tests of the group '$group', whose files are those that passed on $(recorded_on "$group")"
+    else
+      touched+=("$group")
+    fi
+  done < <(nightly_groups)
+  rm -f build/check/nightly.results
+  [[ ${#touched[@]} -eq 0 ]] || run_nightly_groups nightly "${touched[@]}"
 }
 
 check_header_sets() { cmake --build build/debug --target all_verify_interface_header_sets; }
@@ -198,7 +205,7 @@ begin_check() {
 check_matrix() {
   check_step format check_format
   check_step consumers check_consumers
-  check_step at-length check_at_length
+  check_step nightly check_nightly
   check_step gcc-debug check_gcc_debug
   check_step header-sets check_header_sets
   check_step clang-release check_clang_release
