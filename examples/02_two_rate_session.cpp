@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
 
   // The hand begins 5 mm above the fixed body, wants to be 3 mm inside it, and rubs to and fro across it. Device and
   // world share their axes here; workspace_map is for devices that do not.
-  asperity::simulated_config hand;
+  asperity::simulated_settings hand;
   hand.motion.kind = asperity::motion_kind::scrub;
   hand.motion.T_dh.position.z = b->box.high.z - a->box.low.z + 0.005;
   hand.motion.depth_m = 0.008;
@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
   if (const auto opened = device.open(); !opened) return std::puts(opened.error().message.c_str()), 1;
   if (const auto armed = device.arm(); !armed) return std::puts(armed.error().message.c_str()), 1;
 
-  asperity::control_config control;
+  asperity::control_settings control;
   control.probe = asperity::solid_probe(a->mass);
   control.coupling = asperity::coupling_for(device.capabilities(), 1000.0);  // what a hand feels of a hard face
   asperity::virtual_schedule rates;

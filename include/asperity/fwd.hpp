@@ -21,7 +21,7 @@ struct paper_settings;
 class any_renderer;
 class any_depth;
 
-struct control_config;
+struct control_settings;
 struct device_capabilities;
 class any_device;
 

@@ -52,7 +52,7 @@ result<model_ptr> study_model(std::string_view name, const fs::path& baked, cons
   for (const fs::path& folder : {baked, kept}) {
     if (fs::exists(folder / file, ignored)) return load(folder / file);
   }
-  bake::bake_options options;
+  bake::bake_settings options;
   options.name = name;
   const std::optional<models::benchmark> known = models::parse_benchmark(name);
   if (known) options.triangles = models::coarse_triangle_count(*known);

@@ -77,14 +77,14 @@ restlessness rest(Renderer feel, const resting_place& place, const vec3& centre_
   pose start = place.scene.path(place.at);
   start.position -= lift_m * place.push_w;
 
-  simulated_config sim;
+  simulated_settings sim;
   sim.hand = firm_hand();
   sim.hand.tremor_m = 0.0;
   sim.motion.direction_d = place.push_w;
   sim.motion.depth_m = lift_m + press_m;
   simulated_device dev(sim);
   if (!dev.open() || !dev.arm()) throw std::runtime_error("the simulated device did not open");
-  control_config control;
+  control_settings control;
   control.map = {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), start * centre_a},
                  .T_ha = {start.rotation, -(start.rotation * centre_a)}};
   virtual_session session(std::move(feel), {{pose{}}, centre_a}, dev, control,

@@ -53,7 +53,7 @@ PASS_ON(EGLSurface, eglGetCurrentSurface, (EGLint which), (which))
 PASS_ON(EGLint, eglGetError, (), ())
 
 /// Every driver can lose a context here, those too that never tell: they are not asked for it.
-__attribute__((visibility("default"))) EGLContext EGLAPIENTRY eglCreateContext(EGLDisplay d, EGLConfig config,
+__attribute__((visibility("default"))) EGLContext EGLAPIENTRY eglCreateContext(EGLDisplay d, EGLConfig settings,
                                                                                EGLContext share,
                                                                                const EGLint* attributes) {
   static auto* const there =
@@ -64,7 +64,7 @@ __attribute__((visibility("default"))) EGLContext EGLAPIENTRY eglCreateContext(E
       asked.insert(asked.end(), attributes, attributes + 2);
   }
   asked.push_back(EGL_NONE);
-  return there(d, config, share, asked.data());
+  return there(d, settings, share, asked.data());
 }
 
 __attribute__((visibility("default"))) EGLBoolean EGLAPIENTRY eglMakeCurrent(EGLDisplay d, EGLSurface draw,

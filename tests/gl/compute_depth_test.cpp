@@ -21,7 +21,7 @@ using test_support::seeded_contacts;
 
 class GlComputeDepth : public test_support::gl_test {
  protected:
-  [[nodiscard]] compute_depth make(const scene& s, const depth_settings& settings, const compute_options& o = {}) {
+  [[nodiscard]] compute_depth make(const scene& s, const depth_settings& settings, const compute_settings& o = {}) {
     auto made = compute_depth::make(context, s, settings, o);
     EXPECT_TRUE(made) << made.error().message;
     return *std::move(made);
@@ -136,7 +136,7 @@ TEST_F(GlComputeDepth, TwoBackendsShareTheModels) {
 
 TEST_F(GlComputeDepth, BadOptionsAreRefused) {
   const seeded_contacts s = test_support::make_seeded_contacts(10, 1, 1, 64, 1);
-  const auto refused = [&](const scene& bodies, const depth_settings& settings, const compute_options& o) {
+  const auto refused = [&](const scene& bodies, const depth_settings& settings, const compute_settings& o) {
     const auto made = compute_depth::make(context, bodies, settings, o);
     return !made && made.error().code == error_code::invalid_argument;
   };

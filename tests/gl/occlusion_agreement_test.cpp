@@ -32,7 +32,7 @@ vec6 about_window(const vec6& g, const vec3& window_centre_w, const vec3& centre
 
 double largest(const vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
-worst_of run(const char* name, const context_ptr& context, const occlusion_options& options,
+worst_of run(const char* name, const context_ptr& context, const occlusion_settings& options,
              std::size_t contacts_each) {
   worst_of worst;
   const depth_settings settings = paper_depth_settings(32);

@@ -49,13 +49,13 @@ struct windows {
 
 class GlOcclusionDepth : public test_support::gl_test {
  protected:
-  [[nodiscard]] occlusion_depth make(const scene& s, const occlusion_options& o = {},
+  [[nodiscard]] occlusion_depth make(const scene& s, const occlusion_settings& o = {},
                                      const depth_settings& settings = paper_depth_settings(32)) {
     auto made = occlusion_depth::make(context, s, settings, o);
     EXPECT_TRUE(made) << made.error().message;
     return *std::move(made);
   }
-  void expect_refused(const scene& s, const depth_settings& settings, const occlusion_options& o, error_code code,
+  void expect_refused(const scene& s, const depth_settings& settings, const occlusion_settings& o, error_code code,
                       const std::string& words) {
     const auto made = occlusion_depth::make(context, s, settings, o);
     ASSERT_FALSE(made) << words;

@@ -53,7 +53,7 @@ bake_outcome bake_bytes(const mesh_format& format, const std::string& bytes, boo
       return out;
     }
   }
-  bake::bake_options options;
+  bake::bake_settings options;
   options.triangles = 80;
   options.coarse = coarse;
   options.texture_size = coarse ? 128 : 64;

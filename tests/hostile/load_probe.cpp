@@ -38,7 +38,7 @@ std::string load_mesh(const char* file) {
 std::string load_and_bake(const char* file) {
   auto mesh = asperity::io::load_mesh(file);
   if (!mesh) return mesh.error().message;
-  asperity::bake::bake_options options;
+  asperity::bake::bake_settings options;
   options.triangles = 200;
   options.texture_size = 128;
   options.threads = 1;

@@ -22,7 +22,7 @@ int main() {
   const auto mesh = asperity::io::load_mesh("solid.ply");
   if (!mesh) return fail(mesh.error());
 
-  asperity::bake::bake_options options;
+  asperity::bake::bake_settings options;
   options.coarse = *mesh;
   options.texture_size = 64;
   const auto model = asperity::bake::bake(*mesh, options);

@@ -13,7 +13,7 @@ int main() {
   auto renderer = asperity::make_renderer({box, {box}});
   if (!renderer) return std::puts(renderer.error().message.c_str()), 1;
 
-  asperity::simulated_config hand;
+  asperity::simulated_settings hand;
   hand.motion.T_dh.position = {0.0, 0.0, 0.022};
   hand.motion.depth_m = 0.004;
   hand.motion.approach_s = 0.2;

@@ -48,13 +48,13 @@ class monotonic_clock final : public io_clock {
 class world {
  public:
   explicit world(std::array<std::unique_ptr<can_bus>, arm_buses> ends) : ends_(std::move(ends)) {
-    fake_arm_config c = arm_mechanics();
+    fake_arm_settings c = arm_mechanics();
     c.motion = {.T_dh = forward(c.chain, arm_start_rad).T_dh, .depth_m = 0.016, .approach_s = 1.2};
     c.step_ns = 2'000'000;
     for (std::size_t b = 0; b < arm_buses; ++b) split_[b] = std::make_unique<shared_end>(*ends_[b]);
     for (std::size_t i = 0; i < arm_joints; ++i) {
       fakes_[i] = std::make_unique<fake_cia402>(
-          fake_cia402_config{.node = arm_node(i), .rated_torque_m_n_m = arm_rated_m_n_m(i)},
+          fake_cia402_settings{.node = arm_node(i), .rated_torque_m_n_m = arm_rated_m_n_m(i)},
           split_[i / 2]->ends[i % 2]);
     }
     plant_ = std::make_unique<fake_arm>(c);
@@ -154,14 +154,14 @@ class arm : public testing::Test {
       }
     }
     std::array<std::unique_ptr<can_bus>, arm_buses> far;
-    articulated_config c;
+    articulated_settings c;
     for (std::size_t b = 0; b < arm_buses; ++b) {
       far[b] = open(b);
       hosts_[b] = open(b);
       ASSERT_TRUE(far[b] && hosts_[b]);
       c.buses.push_back({hosts_[b].get(), &masters_[b]});
     }
-    cia402_config slow;
+    cia402_settings slow;
     slow.host_silence_ms = 1000;
     slow.drive_silence_ns = 3'000'000'000;
     slow.boot_limit_ns = 20'000'000'000;
@@ -236,7 +236,7 @@ TEST_F(arm, feels_a_wall_through_joint_torques_and_stays_passive) {
   }
   world_->begin();
   const pose start = forward(desk_arm(), arm_start_rad).T_dh;
-  control_config control;
+  control_settings control;
   control.map.T_wd.position = -(start.position + vec3(0.0, 0.0, surface_m));
   control.map.T_ha.rotation = glm::conjugate(start.rotation) * exp_rotation({0.08, 0.0, 0.0});
   control.samples.stale_after_ns = 5'000'000'000;  // the session's time lags behind where the machine stalls

@@ -30,7 +30,7 @@ class vcan : public testing::Test {
     return network::add_vcan(name) == 0 && network::set_mtu(name, 72) == 0 && network::set_up(name, true) == 0;
   }
 
-  [[nodiscard]] static std::unique_ptr<can_bus> open(const can::socketcan_options& options = {}) {
+  [[nodiscard]] static std::unique_ptr<can_bus> open(const can::socketcan_settings& options = {}) {
     auto bus = can::open_socketcan(name, options);
     EXPECT_TRUE(bus) << (bus ? "" : bus.error().message);
     return bus ? std::move(bus).value() : nullptr;

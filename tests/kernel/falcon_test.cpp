@@ -17,7 +17,7 @@ using namespace asperity::test_support;
 // The fake Falcon at the kernel's end of the cable, with the FTDI chip's packet in every millisecond.
 class falcon_function final : public usb_function {
  public:
-  explicit falcon_function(fake_falcon_config config) : peer(std::move(config)) {}
+  explicit falcon_function(fake_falcon_settings settings) : peer(std::move(settings)) {}
   io_status control(const usb_setup& setup, std::span<std::uint8_t> data, std::size_t& done) override {
     return peer.control(setup, data, done);
   }
@@ -48,14 +48,14 @@ TEST_F(kernel_usb, a_falcon_from_power_on_to_an_unplugged_cable_and_back) {
   plugged(cable, 0, id);
 
   // An emulated machine may stand still for a while; what a standstill does is tested on a clock that is a number.
-  falcon_config config;
-  config.firmware_path = image.path();
-  config.silent_after_ns = 5'000 * ms;
-  config.wake_ns = 2'000 * ms;
-  config.settle_reports = 10;
-  config.busy_limit = 5'000;
+  falcon_settings settings;
+  settings.firmware_path = image.path();
+  settings.silent_after_ns = 5'000 * ms;
+  settings.wake_ns = 2'000 * ms;
+  settings.settle_reports = 10;
+  settings.busy_limit = 5'000;
   usb::system_finder finder;
-  falcon_driver driver(finder, clock, config);
+  falcon_driver driver(finder, clock, settings);
   const auto listed = driver.list();
   ASSERT_TRUE(listed);
   ASSERT_EQ(listed->size(), 1U);

@@ -394,16 +394,16 @@ struct last_record {
 TEST_F(kernel_hid, moves_a_probe_against_a_wall) {
   plugged p(spacemouse_kind::combined);
   ASSERT_TRUE(p.listing);
-  spacemouse_config config;
-  config.motion.T_dh_start.position = {0, 0, 0.01};
-  config.shown_force_n = 5.0;
-  spacemouse_driver driver(config);
+  spacemouse_settings settings;
+  settings.motion.T_dh_start.position = {0, 0, 0.01};
+  settings.shown_force_n = 5.0;
+  spacemouse_driver driver(settings);
   const auto list = driver.list();
   ASSERT_TRUE(list && !list->empty());
   auto device = driver.make_spacemouse(list->front());
   ASSERT_TRUE(device && device->open() && device->arm());
   virtual_session<test_support::analytic_wall, spacemouse_device, last_record> session({}, {{pose{}}, vec3(0.0)},
-                                                                                       *device, control_config{});
+                                                                                       *device, control_settings{});
   const auto run_to = [&](std::int64_t until_ns) {
     status s = status::ok;
     while (session.now_ns() < until_ns) {

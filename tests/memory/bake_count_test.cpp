@@ -16,7 +16,7 @@ struct cost {
 };
 
 cost bake_torus(std::uint32_t around, std::uint32_t across, bool keep) {
-  bake_options options;
+  bake_settings options;
   options.triangles = 100;
   options.texture_size = 64;
   options.threads = 1;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mutation/catalogue.hpp"
@@ -138,15 +139,17 @@ TEST(catalogue, names_the_line_of_a_fault) {
 // The list fits the sources: every bug's function and element is there, and planting it changes the text.
 TEST(catalogue, can_be_planted_in_the_sources_as_they_are) {
   const std::string root = ASPERITY_SOURCE_DIR;
-  const result<std::vector<bug>> bugs = read_catalogues(root + "/tests/mutation/catalogue");
-  ASSERT_TRUE(bugs) << bugs.error().message;
-  EXPECT_GE(bugs->size(), 60U);
-  for (const bug& b : *bugs) {
-    const result<std::string> source = read_text(root + '/' + b.file);
-    ASSERT_TRUE(source) << source.error().message;
-    const result<std::string> broken = plant(*source, b);
-    ASSERT_TRUE(broken) << broken.error().message;
-    EXPECT_NE(*broken, *source) << b.name;
+  for (const auto& [folder, least] : {std::pair{"/tests/mutation/catalogue", 60U}, {"/tests/simulation/catalogue", 8U}}) {
+    const result<std::vector<bug>> bugs = read_catalogues(root + folder);
+    ASSERT_TRUE(bugs) << bugs.error().message;
+    EXPECT_GE(bugs->size(), least);
+    for (const bug& b : *bugs) {
+      const result<std::string> source = read_text(root + '/' + b.file);
+      ASSERT_TRUE(source) << source.error().message;
+      const result<std::string> broken = plant(*source, b);
+      ASSERT_TRUE(broken) << broken.error().message;
+      EXPECT_NE(*broken, *source) << b.name;
+    }
   }
 }
 

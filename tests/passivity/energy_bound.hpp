@@ -26,7 +26,7 @@ namespace asperity::test_support {
 /// Over any interval the hand receives at most the credit more than that.
 class energy_bound {
  public:
-  energy_bound(const guard_config& guard, const gate_limits& gate, double period_s) noexcept
+  energy_bound(const guard_settings& guard, const gate_limits& gate, double period_s) noexcept
       : guard_(guard), gate_(gate), period_s_(period_s) {}
 
   /// After each device tick: the true energy delivered since the beginning, the true pose and velocity, and the record
@@ -77,7 +77,7 @@ class energy_bound {
     return 0.5 * peak * speed * period_s_ * (samples + 1.0);
   }
 
-  guard_config guard_;
+  guard_settings guard_;
   gate_limits gate_;
   double period_s_;
   double least_j_ = 0.0;

@@ -25,7 +25,7 @@ enum class hand_model : std::uint8_t {
 
 /// One seeded case: everything but how the contact is handed over and whether the guard is on.
 struct felt_case {
-  simulated_config device{};
+  simulated_settings device{};
   virtual_schedule schedule{};
   double stiffness_n_per_m = 2000.0;
   bool textured = false;  ///< two ridged boxes under the real renderer; false: the analytic wall
@@ -51,7 +51,7 @@ struct felt_case {
 
   const double tilt = between(0.0, 0.5);
   const double heading = between(0.0, 6.283185307179586);
-  motion_config& m = c.device.motion;
+  motion_settings& m = c.device.motion;
   m.kind = (bits() & 1U) != 0 ? motion_kind::scrub : motion_kind::press;
   if (taps) m.kind = motion_kind::tap;
   m.direction_d = {std::sin(tilt) * std::cos(heading), std::sin(tilt) * std::sin(heading), -std::cos(tilt)};
@@ -98,7 +98,7 @@ struct felt_options {
 
 template <contact_renderer Renderer>
 [[nodiscard]] felt_result run_case(const felt_case& c, Renderer renderer, scene_placement placement,
-                                   const control_config& control) {
+                                   const control_settings& control) {
   struct watch {
     session_record last;
     std::uint64_t acted = 0;
@@ -135,7 +135,7 @@ template <contact_renderer Renderer>
 
 template <contact_renderer Renderer>
 [[nodiscard]] felt_result run_case(const felt_case& c, Renderer renderer, scene_placement placement, bool guard) {
-  control_config control;
+  control_settings control;
   control.guard.enabled = guard;
   return run_case(c, std::move(renderer), std::move(placement), control);
 }

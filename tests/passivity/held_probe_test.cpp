@@ -32,7 +32,7 @@ felt_result feel_held(const felt_case& c, const ridged_boxes& boxes, const std::
   if (!made) return {};
   felt_case raised = c;
   raised.device.motion.T_dh.position.z += 0.0065;
-  control_config control;
+  control_settings control;
   control.guard.enabled = false;
   control.probe = solid_probe(boxes.cube->mass);
   control.coupling = coupling_for(simulated_capabilities(), 1e9 / static_cast<double>(c.schedule.device_period_ns));

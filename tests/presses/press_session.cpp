@@ -25,16 +25,16 @@ struct keep_last {
 
 session_result press_session(render_function render, const press_touch& touch, const vec3& centre_of_mass_a,
                              const session_rules& rules, std::uint64_t seed, exit_search& originals) {
-  simulated_config made;
+  simulated_settings made;
   made.seed = seed;
   made.hand = firm_hand();
   made.capabilities.peak_force_n = 2.0 * rules.hand_n;
   made.capabilities.continuous_force_n = 2.0 * rules.hand_n;
   made.capabilities.workspace_low_d = vec3(-1.0);
   made.capabilities.workspace_high_d = vec3(1.0);
-  control_config control;
+  control_settings control;
   control.map.T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a};
-  motion_config& m = made.motion;
+  motion_settings& m = made.motion;
   m.kind = motion_kind::press;
   m.T_dh = touch.touching_T_wa * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a};
   m.T_dh.position -= rules.before_m * touch.way_w;

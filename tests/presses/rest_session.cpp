@@ -13,7 +13,7 @@
 namespace asperity::presses {
 namespace {
 
-hand_config hand_of(std::size_t grip) {
+hand_settings hand_of(std::size_t grip) {
   switch (grip) {
     case 0:
       return soft_hand();
@@ -50,18 +50,18 @@ struct listen {
 rest_result rest_session(render_function render, const press_touch& touch, const vec3& centre_of_mass_a,
                          const rest_rules& rules, std::uint64_t seed) {
   constexpr double before_m = 2e-4, strong_n = 40.0;
-  simulated_config made;
+  simulated_settings made;
   made.seed = seed;
   made.hand = hand_of(rules.grip);
   made.capabilities.peak_force_n = strong_n;
   made.capabilities.continuous_force_n = strong_n;
   made.capabilities.workspace_low_d = vec3(-1.0);
   made.capabilities.workspace_high_d = vec3(1.0);
-  control_config control;
+  control_settings control;
   control.map.T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a};
   control.guard.enabled = rules.guard;
   control.contact.stiffness_n_per_m = rules.plane_stiffness_n_per_m;
-  motion_config& m = made.motion;
+  motion_settings& m = made.motion;
   m.kind = motion_kind::press;
   m.T_dh = touch.touching_T_wa * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a};
   m.T_dh.position -= before_m * touch.way_w;

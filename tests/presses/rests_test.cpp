@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "asperity/control/virtual_coupling.hpp"
-#include "asperity/device/simulated/simulated_config.hpp"
+#include "asperity/device/simulated/simulated_settings.hpp"
 #include "presses/press_law.hpp"
 #include "presses/rest_session.hpp"
 #include "support/extent.hpp"
@@ -102,7 +102,7 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
       if (hz < 500.0 && !test_support::at_length()) continue;
       rest_rules rules;
       rules.grip = 2;
-      rules.way_m = 10.0 * (1.0 / firm_hand().stiffness_n_per_m + 1.0 / coupling_config{}.stiffness_n_per_m);
+      rules.way_m = 10.0 * (1.0 / firm_hand().stiffness_n_per_m + 1.0 / coupling_settings{}.stiffness_n_per_m);
       rules.contact_period_ns = static_cast<std::int64_t>(1e9 / hz);
       rules.guard = false;
       const vec3 c_a = (*probe)->model->mass.centre_of_mass;

@@ -72,7 +72,7 @@ void trap_file_on_cad_part(std::uint64_t steady_ticks, Make&& make) {
                                    .depth_m = 0.012 + height_m,
                                    .amplitude_m = 0.01}});
   ASSERT_TRUE(dev.open() && dev.arm());
-  control_config control;
+  control_settings control;
   control.map = held_above(*touch, placement.centre_of_mass_a, height_m);
   control.probe = solid_probe(file->mass);
   // The slowest contact loop that the ageing of contacts is made for, so that the test is over within half a minute.

@@ -36,8 +36,8 @@ std::uint64_t run(Session& session, std::int64_t until_ns) {
   return trap.ticks();
 }
 
-simulated_config hand(motion_kind kind) {
-  simulated_config c;
+simulated_settings hand(motion_kind kind) {
+  simulated_settings c;
   c.motion = {.kind = kind, .T_dh = {quat(1, 0, 0, 0), {0, 0, 0.004}}, .depth_m = 0.008, .approach_s = 0.2};
   c.measurement.jitter_ns = 500'000;
   return c;
@@ -49,7 +49,7 @@ TEST(trapped_session, every_motion_with_an_erased_device) {
   for (const motion_kind kind : {motion_kind::press, motion_kind::scrub, motion_kind::twist, motion_kind::free}) {
     any_device dev{simulated_device(hand(kind))};
     ASSERT_TRUE(dev.open() && dev.arm());
-    virtual_session<analytic_wall, any_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+    virtual_session<analytic_wall, any_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
     EXPECT_EQ(run(session, 1000 * ms), 1000U);
     EXPECT_EQ(session.device().gate().fault(), gate_fault::none);
   }
@@ -62,12 +62,12 @@ TEST(trapped_session, every_fault_of_a_device) {
       device_fault::drop,     device_fault::jump,          device_fault::refuse_write, device_fault::depart};
   for (const device_fault fault : faults) {
     SCOPED_TRACE(static_cast<int>(fault));
-    simulated_config c = hand(motion_kind::press);
+    simulated_settings c = hand(motion_kind::press);
     // Short enough to go by, then long enough to shut the gate.
     c.faults = {{device_fault::drop, 400 * ms, 402 * ms}, {fault, 600 * ms, 700 * ms}};
     simulated_device dev(c);
     ASSERT_TRUE(dev.open() && dev.arm());
-    virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+    virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
     EXPECT_EQ(run(session, 590 * ms), 590U);
     EXPECT_EQ(session.device().gate().fault(), gate_fault::none);
     run(session, 1000 * ms);
@@ -96,11 +96,11 @@ TEST_P(trapped_renderer, textured_boxes) {
   settings.depth.grid = 32;
   result<paper_renderer> feel = make_paper_renderer({probe, {plate}}, settings);
   ASSERT_TRUE(feel);
-  simulated_config c = hand(motion_kind::scrub);
+  simulated_settings c = hand(motion_kind::scrub);
   c.motion.T_dh.position.z = 0.022;
   simulated_device dev(c);
   ASSERT_TRUE(dev.open() && dev.arm());
-  control_config control;
+  control_settings control;
   control.probe = solid_probe(probe->mass);
   const auto records = std::make_unique<command::record_queue>();
   virtual_session session(std::move(*feel), {{pose{}}, probe->mass.centre_of_mass}, dev, control,

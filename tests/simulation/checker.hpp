@@ -130,7 +130,7 @@ class checker {
     rejected_in_a_row_ = 0;
     expect(device_->read_status() == status::ok, "samples: accepted without an answer");
     expect(is_valid(s.T_dh), "samples: an accepted pose is not a pose");
-    const sample_check_config& c = scenario_->control.samples;
+    const sample_check_settings& c = scenario_->control.samples;
     const double age_s = 1e-9 * (static_cast<double>(r.time_ns) - static_cast<double>(s.host_time_ns));
     expect(std::fabs(age_s) <= 1e-9 * static_cast<double>(c.stale_after_ns) + 1e-6,
            "samples: an accepted sample is old, or from the future");
@@ -149,7 +149,7 @@ class checker {
   void causes(const session_record& r, double slew_s, const device_command& told, Expect expect) noexcept {
     const bool given_up = rejected_in_a_row_ >= scenario_->control.samples.reject_limit;
     const bool refused = device_->write_status() != status::ok;
-    const guard_config& g = scenario_->control.guard;
+    const guard_settings& g = scenario_->control.guard;
     const bool spent = book_.surplus_j() > g.cut_off_j - book_.unknown_j() - 1e-9;
     const bool overspent = book_.surplus_j() > g.cut_off_j + book_.unknown_j() + 1e-9;
     const rate_limits& rates = scenario_->control.rates;

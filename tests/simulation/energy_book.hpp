@@ -38,7 +38,7 @@ struct booked_tick {
 class energy_book {
  public:
   /// @param slew_time_s peak / slew of the gate
-  energy_book(const guard_config& guard, double slew_time_s) noexcept
+  energy_book(const guard_settings& guard, double slew_time_s) noexcept
       : guard_(guard), hard_(guard.hard_limit_j, 3.0 * slew_time_s), cut_off_(guard.cut_off_j, slew_time_s) {}
 
   /// Begins anew: a person cleared the loop's fault.
@@ -138,7 +138,7 @@ class energy_book {
     }
   }
 
-  guard_config guard_;
+  guard_settings guard_;
   excess hard_;
   excess cut_off_;
   accelerations most_damping_{};

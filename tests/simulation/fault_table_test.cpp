@@ -24,8 +24,8 @@ constexpr int sessions_per_fault = 50;
 constexpr std::int64_t watchdog_ns = 40 * ms;
 
 struct setting {
-  simulated_config device{};
-  control_config control{};
+  simulated_settings device{};
+  control_settings control{};
   std::int64_t fault_ns = 0;
 };
 
@@ -229,7 +229,7 @@ TEST(fault_table, every_fault_at_a_random_tick_ends_in_zero_with_its_cause) {
   using D = device_fault;
   const std::vector<G> samples{G::bad_samples};
   // Where a low-pass is set, it takes its time over the zero that is wanted until the rejections make a fault.
-  const std::int64_t rejects = sample_check_config{}.reject_limit * ms;
+  const std::int64_t rejects = sample_check_settings{}.reject_limit * ms;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   const auto base = wrench_frame::device_base;

@@ -27,7 +27,7 @@ summary run_sessions(const seed_range& seeds) {
     sum.rejected += o.rejected;
     sum.faults += o.faults;
     sum.clears += o.clears;
-    sum.past_hard_limit += o.surplus_j > guard_config{}.hard_limit_j ? 1U : 0U;
+    sum.past_hard_limit += o.surplus_j > guard_settings{}.hard_limit_j ? 1U : 0U;
     sum.surplus_j = std::max(sum.surplus_j, o.surplus_j);
     sum.digest = std::rotl(sum.digest, 1) ^ o.digest;
     if (o.broken != nullptr) sum.broken.push_back(o);

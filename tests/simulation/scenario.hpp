@@ -46,8 +46,8 @@ struct clock_manners {
 
 struct scenario {
   std::uint64_t seed = 0;
-  simulated_config device{};
-  control_config control{};
+  simulated_settings device{};
+  control_settings control{};
   std::int64_t start_ns = 0;  ///< what the clock says at the beginning
   std::int64_t length_ns = 1'000'000'000;
   std::int64_t device_period_ns = 1'000'000;
@@ -76,7 +76,7 @@ inline void draw_contact(dice& d, scenario& s) {
 
 inline void draw_hand(dice& d, scenario& s) {
   constexpr std::array kinds{motion_kind::press, motion_kind::scrub, motion_kind::twist, motion_kind::free};
-  motion_config& m = s.device.motion;
+  motion_settings& m = s.device.motion;
   m.kind = kinds[d.below(kinds.size())];
   const double gap = d.between(-0.001, 0.004);
   m.T_dh.position = {d.between(-0.01, 0.01), d.between(-0.01, 0.01),
@@ -87,7 +87,7 @@ inline void draw_hand(dice& d, scenario& s) {
   m.amplitude_rad = d.between(0.0, 0.3);
   m.frequency_hz = d.log_between(0.5, 12.0);
 
-  hand_config& h = s.device.hand;
+  hand_settings& h = s.device.hand;
   const bool firm = d.chance(0.5);
   h.stiffness_n_per_m = firm ? d.log_between(500.0, 5000.0) : d.log_between(20.0, 500.0);
   h.damping_n_s_per_m = firm ? d.between(5.0, 40.0) : d.between(0.2, 8.0);
@@ -97,7 +97,7 @@ inline void draw_hand(dice& d, scenario& s) {
 }
 
 inline void draw_device(dice& d, scenario& s) {
-  plant_config& p = s.device.plant;
+  plant_settings& p = s.device.plant;
   p.mass_kg = d.log_between(0.05, 0.5);
   p.inertia_kg_m2 = d.log_between(5e-5, 1e-3);
   p.damping_n_s_per_m = d.log_between(0.1, 5.0);
@@ -112,7 +112,7 @@ inline void draw_device(dice& d, scenario& s) {
   c.continuous_torque_n_m = c.peak_torque_n_m * d.between(0.2, 1.0);
   c.torque_slew_n_m_per_s = d.log_between(20.0, 1000.0);
 
-  measurement_config& m = s.device.measurement;
+  measurement_settings& m = s.device.measurement;
   m.position_resolution_m = d.chance(0.8) ? d.log_between(1e-7, 5e-5) : 0.0;
   m.rotation_resolution_rad = d.chance(0.8) ? d.log_between(1e-6, 1e-3) : 0.0;
   if (d.chance(0.4)) {
@@ -133,7 +133,7 @@ inline void draw_loops(dice& d, scenario& s) {
   s.start_ns = d.chance(0.5) ? 0 : static_cast<std::int64_t>(d.below(std::size_t{1} << 60));
   s.length_ns = d.between_ns(600.0, 1400.0);
 
-  control_config& c = s.control;
+  control_settings& c = s.control;
   c.coupling.stiffness_n_per_m = d.log_between(100.0, 1500.0);
   c.coupling.stiffness_n_m_per_rad = d.log_between(0.3, 5.0);
   c.probe.mass_kg = d.log_between(0.004, 0.04);

@@ -14,7 +14,7 @@ class watched_device {
  public:
   using policy_tag = device_tag;
 
-  explicit watched_device(simulated_config config) : device_(std::move(config)) {}
+  explicit watched_device(simulated_settings settings) : device_(std::move(settings)) {}
 
   [[nodiscard]] const device_capabilities& capabilities() const noexcept { return device_.capabilities(); }
   [[nodiscard]] device_state state() const noexcept { return device_.state(); }

@@ -73,8 +73,8 @@ struct options {
 
 /// A hand that taps on a ridged plate with a ridged cube, at a slant, so that blows slip: contact comes and goes some
 /// four times a second, and energy goes through every part of the loop.
-[[nodiscard]] inline simulated_config tapping_hand() {
-  simulated_config c;
+[[nodiscard]] inline simulated_settings tapping_hand() {
+  simulated_settings c;
   c.seed = 24;
   c.motion = {.kind = motion_kind::tap,
               .T_dh = {exp_rotation({0.05, -0.03, 0.2}), {0.0, 0.0, 0.0095}},
@@ -145,7 +145,7 @@ template <class Device, class Progress>
   if (result<void> armed = dev.arm(); !armed) return armed.error();
   const pose T_wb{quat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, -0.0103}};
   virtual_session<paper_renderer, Device, watch> session(
-      std::move(*made), {{T_wb}, centre}, dev, control_config{},
+      std::move(*made), {{T_wb}, centre}, dev, control_settings{},
       {.device_period_ns = o.device_period_ns, .contact_period_ns = o.contact_period_ns});
 
   report out;

@@ -323,7 +323,7 @@ result<press_solid> bake_press_solid(std::string_view name, press_bake how, cons
       return press_solid{std::move(*full), std::make_shared<const textured_model>(std::move(read).value())};
     }
   }
-  bake::bake_options options;
+  bake::bake_settings options;
   options.name = name;
   options.texture_size = own ? 256 : 512;  // a simplified body's edges are as round as its texels are large
   if (own) options.triangles = full->triangles.size();

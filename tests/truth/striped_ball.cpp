@@ -88,7 +88,7 @@ model_ptr baked_ball(const striped_ball& ball, std::size_t triangles) {
   if (fs::exists(file, ignored) && fs::last_write_time(file, ignored) > fs::last_write_time(self, ignored)) {
     return std::make_shared<const textured_model>(made_or_thrown(io::load_textured_model(file)));
   }
-  bake::bake_options options;
+  bake::bake_settings options;
   options.name = "striped ball";
   options.triangles = triangles;
   auto made = std::make_shared<const textured_model>(made_or_thrown(bake::bake(ball.fine_mesh(), options)));

@@ -40,37 +40,37 @@ constexpr double fit_spacing_in_diagonals = 0.005;
 
 error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
 
-result<void> check_options(const bake_options& options) {
-  if (!options.coarse && options.triangles < fewest_triangles)
-    return error{error_code::invalid_argument, "a coarse mesh of " + std::to_string(options.triangles) +
+result<void> check_options(const bake_settings& settings) {
+  if (!settings.coarse && settings.triangles < fewest_triangles)
+    return error{error_code::invalid_argument, "a coarse mesh of " + std::to_string(settings.triangles) +
                                                    " triangles cannot enclose a volume; ask for 4 or more"};
-  if (options.texture_size < smallest_texture || options.texture_size > largest_texture)
-    return error{error_code::invalid_argument, "texture size " + std::to_string(options.texture_size) + " is outside " +
-                                                   std::to_string(smallest_texture) + " to " +
+  if (settings.texture_size < smallest_texture || settings.texture_size > largest_texture)
+    return error{error_code::invalid_argument, "texture size " + std::to_string(settings.texture_size) +
+                                                   " is outside " + std::to_string(smallest_texture) + " to " +
                                                    std::to_string(largest_texture) + " texels per side"};
-  if (options.pieces && *options.pieces == 0)
+  if (settings.pieces && *settings.pieces == 0)
     return error{error_code::invalid_argument, "a model of no convex pieces cannot be touched; ask for 1 or more"};
   return {};
 }
 
 // What can be told of texture coordinates that are to be kept before any work is done.
-result<void> check_kept_uvs(const triangle_mesh& full, const bake_options& options) {
-  if (!options.keep_uvs) return {};
-  if (options.coarse) return check_uvs(*options.coarse, options.texture_size);
-  if (full.triangles.size() > options.triangles)
+result<void> check_kept_uvs(const triangle_mesh& full, const bake_settings& settings) {
+  if (!settings.keep_uvs) return {};
+  if (settings.coarse) return check_uvs(*settings.coarse, settings.texture_size);
+  if (full.triangles.size() > settings.triangles)
     return error{error_code::invalid_argument,
                  "the mesh has " + std::to_string(full.triangles.size()) + " triangles, and simplifying it to " +
-                     std::to_string(options.triangles) +
+                     std::to_string(settings.triangles) +
                      " would lose its texture coordinates; to keep them give a coarse mesh that has some, or ask for "
                      "as many triangles as the mesh has"};
-  return check_uvs(full, options.texture_size);
+  return check_uvs(full, settings.texture_size);
 }
 
 // The coarse mesh that the user gives, checked, or one made by simplifying.
-result<simplified_mesh> coarse_of(const checked_mesh& full, const bake_options& options, unsigned threads,
+result<simplified_mesh> coarse_of(const checked_mesh& full, const bake_settings& settings, unsigned threads,
                                   stage_monitor& monitor) {
-  if (!options.coarse) return simplify(full, options.triangles, threads, monitor);
-  triangle_mesh rounded = *options.coarse;
+  if (!settings.coarse) return simplify(full, settings.triangles, threads, monitor);
+  triangle_mesh rounded = *settings.coarse;
   round_to_float32(rounded);
   auto given = check(rounded, "the coarse mesh");
   if (!given) return given.error();
@@ -83,8 +83,8 @@ result<simplified_mesh> coarse_of(const checked_mesh& full, const bake_options& 
   return out;
 }
 
-void remark(const bake_options& options, std::string_view sentence) {
-  if (options.remark && !sentence.empty()) options.remark(sentence);
+void remark(const bake_settings& settings, std::string_view sentence) {
+  if (settings.remark && !sentence.empty()) settings.remark(sentence);
 }
 
 coarse_mesh with_uvs(const triangle_mesh& mesh, const atlas& charts) {
@@ -118,75 +118,75 @@ bake_quality quality_of(const surface_error& errors, const atlas& charts, const 
 
 }  // namespace
 
-result<textured_model> bake(triangle_mesh full_mesh, const bake_options& options) {
-  stage_monitor monitor(options.progress);
-  const unsigned threads = resolve_threads(options.threads);
+result<textured_model> bake(triangle_mesh full_mesh, const bake_settings& settings) {
+  stage_monitor monitor(settings.progress);
+  const unsigned threads = resolve_threads(settings.threads);
 
   if (!monitor.begin("check")) return cancelled();
-  if (const auto sound = check_options(options); !sound) return sound.error();
-  if (const auto sound = check_kept_uvs(full_mesh, options); !sound) return sound.error();
+  if (const auto sound = check_options(settings); !sound) return sound.error();
+  if (const auto sound = check_kept_uvs(full_mesh, settings); !sound) return sound.error();
   auto full = check(std::move(full_mesh));
   if (!full) return full.error();
-  if (!options.relief.reads_uvs && !options.keep_uvs) full->mesh.uvs = {};
-  if (full->turned_triangles > 0) remark(options, winding_remark(full->turned_triangles));
-  if (full->flipped) remark(options, "the mesh was inside-out and has been turned");
+  if (!settings.relief.reads_uvs && !settings.keep_uvs) full->mesh.uvs = {};
+  if (full->turned_triangles > 0) remark(settings, winding_remark(full->turned_triangles));
+  if (full->flipped) remark(settings, "the mesh was inside-out and has been turned");
   const double diagonal = bounds_of(full->mesh.positions).diagonal();
 
   if (!monitor.begin("simplify")) return cancelled();
-  auto coarse = coarse_of(*full, options, threads, monitor);
+  auto coarse = coarse_of(*full, settings, threads, monitor);
   if (!coarse) return coarse.error();
   // Only now: simplifying is what takes the most memory.
   const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles, threads, &monitor);
   if (monitor.cancelled()) return cancelled();
-  if (!options.coarse && coarse->mesh.triangles.size() < full->mesh.triangles.size())
+  if (!settings.coarse && coarse->mesh.triangles.size() < full->mesh.triangles.size())
     fit_to_relief(coarse->mesh, full_tree, widest_cage_in_diagonals * diagonal, threads, &monitor);
   if (monitor.cancelled()) return cancelled();
   if (!monitor.begin("compare")) return cancelled();
   const auto crossings = find_self_crossings(full->mesh, full_tree, threads, monitor);
   if (!crossings) return cancelled();
-  if (crossings->pairs > 0) remark(options, crossing_remark(*crossings));
-  remark(options, coarse->note);
-  const added_relief added{options.relief, full->mesh};
+  if (crossings->pairs > 0) remark(settings, crossing_remark(*crossings));
+  remark(settings, coarse->note);
+  const added_relief added{settings.relief, full->mesh};
   if (const auto sound = check_relief(added, diagonal); !sound) return sound.error();
   const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
   if (!cage) return cage.error();
 
   if (!monitor.begin("atlas")) return cancelled();
-  const auto charts = options.keep_uvs ? atlas_from_uvs(coarse->mesh, options.texture_size)
-                                       : make_atlas(coarse->mesh, options.texture_size);
+  const auto charts = settings.keep_uvs ? atlas_from_uvs(coarse->mesh, settings.texture_size)
+                                        : make_atlas(coarse->mesh, settings.texture_size);
   if (!charts) return charts.error();
-  remark(options, distortion_remark(*charts));
-  remark(options, too_coarse_remark(options.relief, charts->wide_m, options.texture_size));
+  remark(settings, distortion_remark(*charts));
+  remark(settings, too_coarse_remark(settings.relief, charts->wide_m, settings.texture_size));
 
   if (!monitor.begin("project")) return cancelled();
   const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
   auto projected =
       project(coarse->mesh, *charts, crease_normals(coarse->mesh, full_tree, least_band_texels * charts->texel_m),
-              full_tree, range, options.texture_size, threads, monitor, options.relief ? &added : nullptr);
+              full_tree, range, settings.texture_size, threads, monitor, settings.relief ? &added : nullptr);
   if (!projected) return projected.error();
 
   if (!monitor.begin("pieces")) return cancelled();
-  auto pieces = options.pieces ? decompose_into(coarse->mesh, *options.pieces, monitor)
-                               : decompose(coarse->mesh, piece_limits{}, monitor);
+  auto pieces = settings.pieces ? decompose_into(coarse->mesh, *settings.pieces, monitor)
+                                : decompose(coarse->mesh, piece_limits{}, monitor);
   if (!pieces) return pieces.error();
 
-  if (options.pieces && pieces->size() != *options.pieces)
-    remark(options, "made " + std::to_string(pieces->size()) + " convex pieces, not the " +
-                        std::to_string(*options.pieces) + " asked for");
+  if (settings.pieces && pieces->size() != *settings.pieces)
+    remark(settings, "made " + std::to_string(pieces->size()) + " convex pieces, not the " +
+                         std::to_string(*settings.pieces) + " asked for");
   const auto fit = measure_fit(coarse->mesh, *pieces, fit_spacing_in_diagonals * diagonal, monitor, threads);
   if (!fit) return cancelled();
 
   // What the textured surface should be: the mesh, or the mesh with its relief.
-  const triangle_mesh raised = options.relief ? raise(added, charts->texel_m, monitor) : triangle_mesh{};
+  const triangle_mesh raised = settings.relief ? raise(added, charts->texel_m, monitor) : triangle_mesh{};
   if (monitor.cancelled()) return cancelled();
   std::optional<triangle_bvh> raised_tree;
-  if (options.relief) raised_tree.emplace(raised.positions, raised.triangles, threads, &monitor);
+  if (settings.relief) raised_tree.emplace(raised.positions, raised.triangles, threads, &monitor);
   if (monitor.cancelled()) return cancelled();
-  const triangle_mesh& original = options.relief ? raised : full->mesh;
+  const triangle_mesh& original = settings.relief ? raised : full->mesh;
   const triangle_bvh& original_tree = raised_tree ? *raised_tree : full_tree;
 
   textured_model out;
-  out.name = options.name;
+  out.name = settings.name;
   out.mesh = with_uvs(coarse->mesh, *charts);
   out.texture = std::move(projected->texture);
   stitch(out.mesh, original_tree, widest_gap_texels * charts->texel_m, out.texture, threads, &monitor);

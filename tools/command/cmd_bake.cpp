@@ -90,7 +90,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     }
   }
 
-  bake::bake_options settings;
+  bake::bake_settings settings;
   settings.name = options.name.empty() ? fs::path(options.full).stem().string() : options.name;
   settings.triangles = options.triangles;
   settings.texture_size = options.texture;

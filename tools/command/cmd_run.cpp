@@ -188,11 +188,11 @@ result<answer> run_session(const run_command& options, const common_options& com
   any_device device = files->recorder() ? files->recorder()->around(*felt.device) : std::move(*felt.device);
   const result<std::optional<pose>> T_dh = start_of_handle(options, felt, device);
   if (!T_dh) return T_dh.error();
-  control_config control;
+  control_settings control;
   control.map = *T_dh ? map_of(*poses->T_wa, shape.centre_of_mass, **T_dh) : map_of(*poses->T_wa, shape.centre_of_mass);
   control.probe = found.probe = solid_probe(shape);
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
-  control.coupling = found.coupling.config;
+  control.coupling = found.coupling.settings;
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   result<session_outcome> ended =
       run_session({.feel = std::move(feel).value(),

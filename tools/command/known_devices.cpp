@@ -94,7 +94,7 @@ result<void> known_devices::load_plugins(driver_choice choice, const std::string
     if (d.in_process) {
       keep(plugin::plugin_driver::load(d.file));
     } else {
-      plugin::child_options options;
+      plugin::child_settings options;
       options.cancelled = [] { return interrupted(); };
       keep(plugin::child_driver::load(d.file, std::move(options)));
     }
@@ -126,7 +126,7 @@ result<std::unique_ptr<known_devices>> known_devices::look(driver_choice choice,
   all.push_back(std::make_unique<patient_driver>(std::make_shared<hid::spacemouse_driver>(), known->bus_));
 #endif
 #ifdef ASPERITY_HAS_USB
-  falcon_config falcon;
+  falcon_settings falcon;
   falcon.firmware_path = falcon_firmware;
   all.push_back(std::make_unique<patient_driver>(
       std::make_shared<falcon_driver>(known->bus_->usb, known->bus_->clock, falcon), known->bus_));

@@ -31,9 +31,9 @@ const char* words_of(coupling_source s) {
   return "unknown";
 }
 
-virtual_coupling made_of(const chosen_coupling& chosen, const probe_config& probe) {
+virtual_coupling made_of(const chosen_coupling& chosen, const probe_settings& probe) {
   const mat3& i = probe.inertia_kg_m2;
-  return {chosen.config, probe.mass_kg, (i[0][0] + i[1][1] + i[2][2]) / 3.0};
+  return {chosen.settings, probe.mass_kg, (i[0][0] + i[1][1] + i[2][2]) / 3.0};
 }
 
 }  // namespace
@@ -41,22 +41,22 @@ virtual_coupling made_of(const chosen_coupling& chosen, const probe_config& prob
 chosen_coupling coupling_of(const run_command& options, const device_capabilities& device, double scale) {
   chosen_coupling out;
   if (formulation_name(options.render) == "field") {
-    out.config = coupling_for(device, 1e9 / static_cast<double>(device_period_ns), scale);
+    out.settings = coupling_for(device, 1e9 / static_cast<double>(device_period_ns), scale);
     if (device.max_stiffness_n_per_m > 0.0) out.translation = coupling_source::device;
     if (device.max_stiffness_n_m_per_rad > 0.0) out.rotation = coupling_source::device;
   }
   if (options.coupling_n_per_m) {
-    out.config.stiffness_n_per_m = *options.coupling_n_per_m;
+    out.settings.stiffness_n_per_m = *options.coupling_n_per_m;
     out.translation = coupling_source::given;
   }
   if (options.coupling_n_m_per_rad) {
-    out.config.stiffness_n_m_per_rad = *options.coupling_n_m_per_rad;
+    out.settings.stiffness_n_m_per_rad = *options.coupling_n_m_per_rad;
     out.rotation = coupling_source::given;
   }
   return out;
 }
 
-json to_json(const chosen_coupling& chosen, const probe_config& probe) {
+json to_json(const chosen_coupling& chosen, const probe_settings& probe) {
   const virtual_coupling c = made_of(chosen, probe);
   return {{"translation",
            {{"stiffness", c.stiffness_n_per_m()},
@@ -68,7 +68,7 @@ json to_json(const chosen_coupling& chosen, const probe_config& probe) {
             {"from", name_of(chosen.rotation)}}}};
 }
 
-std::string to_text(const chosen_coupling& chosen, const probe_config& probe) {
+std::string to_text(const chosen_coupling& chosen, const probe_settings& probe) {
   const virtual_coupling c = made_of(chosen, probe);
   const bool alike = chosen.translation == chosen.rotation;
   return brief(1e-3 * c.stiffness_n_per_m()) + " N/mm" +

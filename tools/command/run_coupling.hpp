@@ -13,13 +13,13 @@ namespace asperity::command {
 
 /// Where a stiffness comes from.
 enum class coupling_source : std::uint8_t {
-  usual,   ///< coupling_config's own
+  usual,   ///< coupling_settings's own
   device,  ///< coupling_for() the device, for contacts as support planes
   given,   ///< by an option
 };
 
 struct chosen_coupling {
-  coupling_config config{};
+  coupling_settings settings{};
   coupling_source translation = coupling_source::usual, rotation = coupling_source::usual;
 };
 
@@ -28,7 +28,7 @@ struct chosen_coupling {
 /// @param scale workspace_map::scale
 [[nodiscard]] chosen_coupling coupling_of(const run_command& options, const device_capabilities& device, double scale);
 
-[[nodiscard]] json to_json(const chosen_coupling& chosen, const probe_config& probe);
-[[nodiscard]] std::string to_text(const chosen_coupling& chosen, const probe_config& probe);
+[[nodiscard]] json to_json(const chosen_coupling& chosen, const probe_settings& probe);
+[[nodiscard]] std::string to_text(const chosen_coupling& chosen, const probe_settings& probe);
 
 }  // namespace asperity::command

@@ -31,7 +31,7 @@ struct session_findings {
   session_summary summary;
   memory_use memory;
   chosen_coupling coupling;
-  probe_config probe;
+  probe_settings probe;
   std::optional<replay_outcome> replay;  ///< only of a replay
   std::string driver{};                  ///< what became of the driver's process; empty where all is well
 };

@@ -76,9 +76,9 @@ result<pose> first_pose(any_device& device) {
                    "see `asperity devices`"};
 }
 
-motion_config motion_of(const run_command& options, const scene& bodies) {
+motion_settings motion_of(const run_command& options, const scene& bodies) {
   const double size = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
-  motion_config motion;
+  motion_settings motion;
   motion.kind = options.motion == "press"   ? motion_kind::press
                 : options.motion == "twist" ? motion_kind::twist
                 : options.motion == "free"  ? motion_kind::free

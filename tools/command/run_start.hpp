@@ -37,6 +37,6 @@ struct given_poses {
 [[nodiscard]] result<pose> first_pose(any_device& device);
 
 /// What the simulated hand means to do with these bodies.
-[[nodiscard]] motion_config motion_of(const run_command& options, const scene& bodies);
+[[nodiscard]] motion_settings motion_of(const run_command& options, const scene& bodies);
 
 }  // namespace asperity::command

@@ -49,7 +49,7 @@ struct session_setup {
   any_renderer feel;
   scene_placement placement{};
   any_device device;  ///< open and not armed; a simulated or recorded one where the clock is virtual
-  control_config control{};
+  control_settings control{};
   session_clock clock = session_clock::virtual_time;
   double seconds = 3.0;
   std::int64_t contact_period_ns = 1'000'000;

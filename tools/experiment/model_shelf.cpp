@@ -13,7 +13,7 @@ model_shelf::model_shelf(std::filesystem::path folder, progress told)
     : folder_(std::move(folder)), told_(std::move(told)) {}
 
 result<model_ptr> model_shelf::benchmark(models::benchmark which) {
-  bake::bake_options options;
+  bake::bake_settings options;
   options.triangles = models::coarse_triangle_count(which);
   options.coarse = models::make_coarse(which);
   return baked(
@@ -21,7 +21,7 @@ result<model_ptr> model_shelf::benchmark(models::benchmark which) {
 }
 
 result<model_ptr> model_shelf::baked(const std::string& name, const std::function<triangle_mesh()>& full,
-                                     bake::bake_options options) {
+                                     bake::bake_settings options) {
   if (const auto found = kept_.find(name); found != kept_.end()) return found->second;
   const auto keep = [&](result<textured_model> model) -> result<model_ptr> {
     if (!model) return model.error();

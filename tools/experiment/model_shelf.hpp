@@ -29,7 +29,7 @@ class model_shelf {
   /// A model of one's own. `name` tells it from every other one, its numbers included: a file of that name is taken as
   /// it is. @return the same
   [[nodiscard]] result<model_ptr> baked(const std::string& name, const std::function<triangle_mesh()>& full,
-                                        bake::bake_options options);
+                                        bake::bake_settings options);
 
  private:
   std::filesystem::path folder_;

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "asperity/device/simulated/simulated_config.hpp"
+#include "asperity/device/simulated/simulated_settings.hpp"
 
 namespace asperity::experiment {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "asperity/device/simulated/simulated_config.hpp"
+#include "asperity/device/simulated/simulated_settings.hpp"
 #include "asperity/least_motion/least_motion_settings.hpp"
 #include "asperity/window/gradient_penalty.hpp"
 #include "lattice_solid.hpp"
@@ -129,7 +129,7 @@ double fast_motion(const std::vector<vec3>& velocity, double h_s) {
 }  // namespace
 
 result<notch> notch::make(workbench& bench, const variant& kind, bool flat) {
-  bake::bake_options options;
+  bake::bake_settings options;
   options.coarse = make_coarse_pad();
   options.texture_size = 256;
   const result<model_ptr> pad =
@@ -162,7 +162,7 @@ double guard_bound_j(double speed_m_per_s, double speed_rad_per_s) noexcept {
   const device_capabilities real = simulated_capabilities();
   constexpr double h_s = 1e-9 * static_cast<double>(command::device_period_ns);
   const auto beyond = [](double peak, double slew, double speed) { return 0.5 * peak * speed * (peak / slew + h_s); };
-  return guard_config{}.hard_limit_j + beyond(real.peak_force_n, real.force_slew_n_per_s, speed_m_per_s) +
+  return guard_settings{}.hard_limit_j + beyond(real.peak_force_n, real.force_slew_n_per_s, speed_m_per_s) +
          beyond(real.peak_torque_n_m, real.torque_slew_n_m_per_s, speed_rad_per_s);
 }
 

@@ -31,7 +31,7 @@ result<void> touch(const notch& where, holding how, limits_open& open, guard_rec
   if (!bare) return bare.error();
   open.quiet = open.quiet && is_quiet(*bare);
   open.bounded = open.bounded && bare->surplus_j <= bare->bound_j;
-  if (!open.guarded || bare->surplus_j <= guard_config{}.tolerance_j) return {};
+  if (!open.guarded || bare->surplus_j <= guard_settings{}.tolerance_j) return {};
   how.guard = true;
   const result<held_still> with = hold_still(where, how);
   if (!with) return with.error();

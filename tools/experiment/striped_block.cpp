@@ -39,7 +39,7 @@ triangle_mesh coarse() {
 }  // namespace
 
 result<model_ptr> striped_block(workbench& bench) {
-  bake::bake_options options;
+  bake::bake_settings options;
   options.coarse = coarse();
   options.texture_size = 1536;
   return bench.models().baked("striped_block", full_resolution, std::move(options));

@@ -105,7 +105,7 @@ felt_stroke cut_stroke(const std::vector<session_record>& ticks, double from_s, 
 
 result<model_ptr> bake_stylus(workbench& bench, double radius_m) {
   const vec3 half(shank_half_m, shank_half_m, 0.5 * shank_length_m);
-  bake::bake_options options;
+  bake::bake_settings options;
   options.texture_size = 512;
   options.relief.height_m = [radius_m](const bake::relief_point& p) {
     return p.normal.z < -0.5 ? tip_height(radius_m, std::hypot(p.position.x, p.position.y)) : 0.0;
@@ -117,7 +117,7 @@ result<model_ptr> bake_stylus(workbench& bench, double radius_m) {
 
 result<model_ptr> bake_plate(workbench& bench, const std::string& name, const vec2& size_m, std::uint32_t texture_size,
                              std::function<double(const vec2&)> height_m) {
-  bake::bake_options options;
+  bake::bake_settings options;
   options.texture_size = texture_size;
   options.relief.height_m = [height_m = std::move(height_m)](const bake::relief_point& p) {
     return p.normal.z > 0.5 ? height_m(vec2(p.position)) : 0.0;

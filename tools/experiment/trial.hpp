@@ -24,7 +24,7 @@ struct trial {
   std::int64_t contact_period_ns = 1'000'000;
   bool contact_one_period_late = true;  ///< as on a real machine, where a contact takes its time to compute
   bool hold_wrench = false;    ///< the contact's wrench without its stiffness: what a loop without linear contacts does
-  control_config control{};    ///< its map is set by the trial
+  control_settings control{};  ///< its map is set by the trial
   bool gate_may_shut = false;  ///< that is an outcome, not an error: the log ends there, ended.fault says why
 };
 

@@ -120,38 +120,38 @@ result<context_ptr> open_on(const egl_library& egl, const display_source& source
                                             "; install one with OpenGL 4.3 or OpenGL ES 3.1"};
 }
 
-result<context_ptr> open_context(const context_options& options) {
-  const result<const egl_library*> egl = egl_library::load(options.egl_library);
+result<context_ptr> open_context(const context_settings& settings) {
+  const result<const egl_library*> egl = egl_library::load(settings.egl_library);
   if (!egl) return egl.error();
   const auto sources = find_sources(**egl);
   if (!sources) return sources.error();
 
   std::size_t wanted = sources->size();
-  const char* const end = options.device.data() + options.device.size();
-  const auto number = std::from_chars(options.device.data(), end, wanted);
-  const bool by_index = !options.device.empty() && number.ec == std::errc() && number.ptr == end;
-  const bool by_name = !options.device.empty() && !by_index;
+  const char* const end = settings.device.data() + settings.device.size();
+  const auto number = std::from_chars(settings.device.data(), end, wanted);
+  const bool by_index = !settings.device.empty() && number.ec == std::errc() && number.ptr == end;
+  const bool by_name = !settings.device.empty() && !by_index;
   std::optional<error> first_error;
   std::string seen;
   for (std::size_t i = 0; i < sources->size(); ++i) {
     const display_source& source = (*sources)[i];
     if (by_index && i != wanted) continue;
-    result<context_ptr> opened = open_on(**egl, source, options.dialect);
+    result<context_ptr> opened = open_on(**egl, source, settings.dialect);
     if (!opened) {
       if (!first_error) first_error = opened.error();
       continue;
     }
     const std::string& renderer = (*opened)->facts().renderer;
-    if (by_name && !contains(renderer, options.device) && !contains(source.name, options.device)) {
+    if (by_name && !contains(renderer, settings.device) && !contains(source.name, settings.device)) {
       seen += (seen.empty() ? "" : ", ") + renderer;
       continue;
     }
-    (*opened)->limit_memory(options.memory_limit_bytes);
+    (*opened)->limit_memory(settings.memory_limit_bytes);
     return opened;
   }
   if (first_error && seen.empty()) return *first_error;
   return error{error_code::invalid_argument,
-               "OpenGL: there is no device \"" + options.device + "\"; " +
+               "OpenGL: there is no device \"" + settings.device + "\"; " +
                    (by_index ? "give an index below " + std::to_string(sources->size()) : "these are there: " + seen)};
 }
 

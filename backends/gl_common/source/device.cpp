@@ -4,8 +4,8 @@
 
 namespace asperity::gl {
 
-result<std::vector<device>> list_devices(const context_options& options) {
-  const result<const egl_library*> egl = egl_library::load(options.egl_library);
+result<std::vector<device>> list_devices(const context_settings& settings) {
+  const result<const egl_library*> egl = egl_library::load(settings.egl_library);
   if (!egl) return egl.error();
   const auto sources = find_sources(**egl);
   if (!sources) return sources.error();
@@ -15,7 +15,7 @@ result<std::vector<device>> list_devices(const context_options& options) {
     d.index = out.size();
     d.name = source.name;
     d.software = source.software;
-    if (const result<context_ptr> c = open_on(**egl, source, options.dialect)) {
+    if (const result<context_ptr> c = open_on(**egl, source, settings.dialect)) {
       const context_facts& facts = (*c)->facts();
       d.name = facts.renderer;
       d.software = facts.software;

@@ -32,7 +32,7 @@ std::string definitions_of(const depth_settings& s, bool doubles) {
   return text + job::definitions();
 }
 
-result<void> check_options(const compute_options& o, const context_facts& facts, const depth_settings& s) {
+result<void> check_gpu_settings(const compute_settings& o, const context_facts& facts, const depth_settings& s) {
   const auto bad = [](std::string what) { return error{error_code::invalid_argument, "compute depth: " + what}; };
   if (o.contacts < 1 || o.contacts > 65535) {
     return bad("room for " + std::to_string(o.contacts) + " contacts; give 1 to 65535");
@@ -50,7 +50,7 @@ result<void> check_options(const compute_options& o, const context_facts& facts,
 struct compute_depth::parts {
   context_ptr context;
   job_writer writer;
-  compute_options options;
+  compute_settings gpu_settings;
   bool doubles = false;
   std::size_t groups = 0;  ///< per job
   uploaded_scene models;
@@ -61,8 +61,8 @@ struct compute_depth::parts {
   compute_counters counters;
   bool overdue = false;  ///< the device has not answered yet, and may still read and write the buffers
 
-  parts(context_ptr c, const scene& s, const depth_settings& settings, const compute_options& o)
-      : context(std::move(c)), writer(s, settings), options(o) {}
+  parts(context_ptr c, const scene& s, const depth_settings& settings, const compute_settings& o)
+      : context(std::move(c)), writer(s, settings), gpu_settings(o) {}
   [[nodiscard]] result<void> take_buffers();
   [[nodiscard]] number_list list(const mapped_buffer& b) const noexcept {
     return doubles ? number_list(b.as<double>()) : number_list(b.as<float>());
@@ -76,16 +76,16 @@ struct compute_depth::parts {
 result<void> compute_depth::parts::take_buffers() {
   const depth_settings& s = writer.settings();
   const std::size_t jobs_each = writer.jobs_per_contact();
-  const std::size_t jobs = options.contacts * jobs_each;
+  const std::size_t jobs = gpu_settings.contacts * jobs_each;
   const std::size_t samples = std::size_t{s.grid} * s.grid;
   groups = (samples + job::group_samples - 1) / static_cast<std::size_t>(job::group_samples);
   // Of the probe there is a projection per job, of the fixed body one per contact.
-  const std::size_t triangles = options.triangles * jobs_each;
-  const std::size_t edges = s.gradient == gradient_scheme::soft_max ? 3 * options.triangles : 0;
+  const std::size_t triangles = gpu_settings.triangles * jobs_each;
+  const std::size_t edges = s.gradient == gradient_scheme::soft_max ? 3 * gpu_settings.triangles : 0;
   const std::size_t number_count =
       jobs * job::header_numbers + triangles * job::triangle_numbers + edges * job::edge_numbers;
   const std::size_t integer_count =
-      jobs * job::integers + triangles * job::triangle_integers + (jobs + options.contacts) * ((samples + 1) / 2);
+      jobs * job::integers + triangles * job::triangle_integers + (jobs + gpu_settings.contacts) * ((samples + 1) / 2);
   const std::size_t result_count = jobs * groups * job::result_numbers;
   const std::size_t number_bytes = doubles ? sizeof(double) : sizeof(float);
 
@@ -93,11 +93,11 @@ result<void> compute_depth::parts::take_buffers() {
   context->gl().GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
   const auto take = [&](mapped_buffer& to, std::size_t bytes, direction way, const std::string& what) -> result<void> {
     if (bytes > static_cast<std::size_t>(largest)) {
-      return error{error_code::limit_exceeded, "compute depth: " + what + " of " + std::to_string(options.contacts) +
-                                                   " contacts and " + std::to_string(options.triangles) +
-                                                   " triangles take " + std::to_string(bytes) +
-                                                   " bytes; this device takes " + std::to_string(largest) +
-                                                   ": ask for fewer contacts or triangles, or a smaller grid"};
+      return error{error_code::limit_exceeded,
+                   "compute depth: " + what + " of " + std::to_string(gpu_settings.contacts) + " contacts and " +
+                       std::to_string(gpu_settings.triangles) + " triangles take " + std::to_string(bytes) +
+                       " bytes; this device takes " + std::to_string(largest) +
+                       ": ask for fewer contacts or triangles, or a smaller grid"};
     }
     result<mapped_buffer> b = mapped_buffer::make(context, bytes, way, "compute depth: " + what);
     if (!b) return b.error();
@@ -107,24 +107,24 @@ result<void> compute_depth::parts::take_buffers() {
   if (result<void> r = take(numbers, number_count * number_bytes, direction::to_device, "numbers"); !r) return r;
   if (result<void> r = take(integers, integer_count * 4, direction::to_device, "integers"); !r) return r;
   if (result<void> r = take(results, result_count * number_bytes, direction::from_device, "results"); !r) return r;
-  placed.reserve(options.contacts);
+  placed.reserve(gpu_settings.contacts);
   return {};
 }
 
 result<compute_depth> compute_depth::make(context_ptr context, const scene& s, const depth_settings& settings,
-                                          const compute_options& options) {
+                                          const compute_settings& gpu_settings) {
   if (context == nullptr) return error{error_code::invalid_argument, "compute depth: no context; open one"};
   if (result<void> r = check(settings); !r) return r.error();
   if (result<void> r = cpu_depth::check_scene(s); !r) return r.error();
   const context_facts& facts = context->facts();
-  if (result<void> r = check_options(options, facts, settings); !r) return r.error();
+  if (result<void> r = check_gpu_settings(gpu_settings, facts, settings); !r) return r.error();
   const current_scope here(context);
   if (here.state() != status::ok) {
     return error{error_code::unsupported,
                  "compute depth: the context is lost, or current in another thread; release it there first"};
   }
-  auto p = std::make_unique<parts>(context, s, settings, options);
-  p->doubles = options.arithmetic != arithmetic::single_precision && facts.double_precision;
+  auto p = std::make_unique<parts>(context, s, settings, gpu_settings);
+  p->doubles = gpu_settings.arithmetic != arithmetic::single_precision && facts.double_precision;
   result<uploaded_scene> models = upload(p->context, s);
   if (!models) return models.error();
   p->models = *std::move(models);
@@ -165,10 +165,10 @@ status compute_depth::parts::measure(const contact_set& contacts, std::span<pene
     if (c.body >= models.fixed.size()) return status::not_ready;
   }
   if (contacts.size() == 0) return status::ok;
-  if (contacts.size() > options.contacts) return status::capacity_reached;
+  if (contacts.size() > gpu_settings.contacts) return status::capacity_reached;
   if (context->make_current() != status::ok) return status::backend_failed;
   if (overdue) {
-    if (wait_for_device(context->gl(), options.timeout_ns) != status::ok) return status::backend_failed;
+    if (wait_for_device(context->gl(), gpu_settings.timeout_ns) != status::ok) return status::backend_failed;
     overdue = false;
   }
 
@@ -214,7 +214,7 @@ status compute_depth::parts::measure(const contact_set& contacts, std::span<pene
   counters.contacts += contacts.size();
   const std::size_t result_bytes =
       placed.size() * jobs_each * groups * job::result_numbers * (doubles ? sizeof(double) : sizeof(float));
-  overdue = wait_for_device(gl, options.timeout_ns) != status::ok;
+  overdue = wait_for_device(gl, gpu_settings.timeout_ns) != status::ok;
   if (overdue) return status::backend_failed;
   if (results.receive(result_bytes) != status::ok || context->check() != status::ok || gl.GetError() != GL_NO_ERROR) {
     return status::backend_failed;

@@ -23,7 +23,7 @@ result<void> check_settings(const depth_settings& s) {
   return {};
 }
 
-result<void> check_options(const occlusion_options& o, const depth_settings& s) {
+result<void> check_gpu_settings(const occlusion_settings& o, const depth_settings& s) {
   if (o.contacts < 1 || o.contacts > 256) {
     return bad("room for " + std::to_string(o.contacts) + " contacts; give 1 to 256");
   }
@@ -51,10 +51,11 @@ result<void> check_options(const occlusion_options& o, const depth_settings& s) 
 }  // namespace
 
 // A turn about n by one sample at the rim moves the corners by one and a half; resampling reads one further.
-occlusion_depth::parts::parts(context_ptr c, const scene& s, const depth_settings& settings, const occlusion_options& o)
+occlusion_depth::parts::parts(context_ptr c, const scene& s, const depth_settings& settings,
+                              const occlusion_settings& o)
     : context(std::move(c)),
       writer(s, settings, o.moved == moved_heights::reused ? 3 : 0, o.packed),
-      options(o),
+      gpu_settings(o),
       levels{o.depth_bits} {}
 
 result<void> occlusion_depth::parts::set_up() {
@@ -62,8 +63,8 @@ result<void> occlusion_depth::parts::set_up() {
   if (!uploaded) return uploaded.error();
   models = *std::move(uploaded);
 
-  const auto contacts = static_cast<std::uint32_t>(options.contacts);
-  const std::uint32_t fold = options.packed ? 2 : 1;
+  const auto contacts = static_cast<std::uint32_t>(gpu_settings.contacts);
+  const std::uint32_t fold = gpu_settings.packed ? 2 : 1;
   GLint largest = 0;
   context->gl().GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
   const auto side = static_cast<std::uint32_t>(largest);
@@ -77,40 +78,41 @@ result<void> occlusion_depth::parts::set_up() {
                      std::to_string(contacts) + " contacts do not fit into a texture of this device, " +
                      std::to_string(side) + " pixels per side; ask for fewer contacts or a smaller grid"};
   }
-  const std::string definitions = tile_definitions(options.depth_bits, options.packed);
+  const std::string definitions = tile_definitions(gpu_settings.depth_bits, gpu_settings.packed);
   // Every triangle may be drawn at rest and after every motion.
-  const std::size_t records = options.triangles * (height_tiles() - 1);
-  auto h = height_pass::make(context, for_heights, contacts, options.packed, definitions, tile_samples(), records);
+  const std::size_t records = gpu_settings.triangles * (height_tiles() - 1);
+  auto h = height_pass::make(context, for_heights, contacts, gpu_settings.packed, definitions, tile_samples(), records);
   if (!h) return h.error();
   heights = *std::move(h);
-  auto d = difference_pass::make(context, for_differences, contacts, options.depth_bits, definitions, tile_samples());
+  auto d =
+      difference_pass::make(context, for_differences, contacts, gpu_settings.depth_bits, definitions, tile_samples());
   if (!d) return d.error();
   differences = *std::move(d);
-  auto q = query_pass::make(context, options.contacts, writer.settings().grid, options.depth_bits, options.packed,
-                            definitions);
+  auto q = query_pass::make(context, gpu_settings.contacts, writer.settings().grid, gpu_settings.depth_bits,
+                            gpu_settings.packed, definitions);
   if (!q) return q.error();
   queries = *std::move(q);
 
-  asperity::detail::reserve_resident(slots, options.contacts);
-  asperity::detail::reserve_resident(look_for_bad, options.contacts);
+  asperity::detail::reserve_resident(slots, gpu_settings.contacts);
+  asperity::detail::reserve_resident(look_for_bad, gpu_settings.contacts);
   asperity::detail::reserve_resident(runs, models.fixed.size() * writer.quarters());
-  slot_of.assign(options.contacts, no_slot);
+  slot_of.assign(gpu_settings.contacts, no_slot);
   return {};
 }
 
 result<occlusion_depth> occlusion_depth::make(context_ptr context, const scene& s, const depth_settings& settings,
-                                              const occlusion_options& options) {
+                                              const occlusion_settings& gpu_settings) {
   if (context == nullptr) return error{error_code::invalid_argument, "occlusion depth: no context; open one"};
   if (result<void> r = check(settings); !r) return r.error();
   if (result<void> r = check_settings(settings); !r) return r.error();
   if (result<void> r = cpu_depth::check_scene(s); !r) return r.error();
-  if (result<void> r = check_options(options, settings); !r) return r.error();
+  if (result<void> r = check_gpu_settings(gpu_settings, settings); !r) return r.error();
   const current_scope here(context);
   if (here.state() != status::ok) {
     return error{error_code::unsupported,
                  "occlusion depth: the context is lost, or current in another thread; release it there first"};
   }
-  auto p = std::make_unique<parts>(context, s, settings, options);
+  auto p = std::make_unique<parts>(context, s, settings, gpu_settings);
   if (result<void> r = p->set_up(); !r) return r.error();
   if (const std::string errors = take_errors(context->gl()); !errors.empty()) {
     return error{error_code::unsupported, "occlusion depth: " + context->facts().renderer + " reports " + errors};
@@ -142,7 +144,7 @@ double occlusion_depth::step_rad(std::size_t i) const noexcept {
 }
 
 const depth_settings& occlusion_depth::settings() const noexcept { return parts_->writer.settings(); }
-const occlusion_options& occlusion_depth::options() const noexcept { return parts_->options; }
+const occlusion_settings& occlusion_depth::gpu_settings() const noexcept { return parts_->gpu_settings; }
 const occlusion_counters& occlusion_depth::counters() const noexcept { return parts_->counters; }
 const context_ptr& occlusion_depth::owner() const noexcept { return parts_->context; }
 std::size_t occlusion_depth::device_bytes() const noexcept {

@@ -19,7 +19,7 @@ namespace asperity::gl {
 struct occlusion_depth::parts {
   context_ptr context;
   tile_writer writer;
-  occlusion_options options;
+  occlusion_settings gpu_settings;
   depth_levels levels;
   uploaded_scene models;
   height_pass heights;
@@ -35,8 +35,8 @@ struct occlusion_depth::parts {
   /// Motions of the probe whose heights are rendered; the others are read out of those at rest.
   static constexpr std::size_t first_turn = 4, end_turns = 8;
 
-  parts(context_ptr c, const scene& s, const depth_settings& settings, const occlusion_options& o);
-  [[nodiscard]] bool reuses() const noexcept { return options.moved == moved_heights::reused; }
+  parts(context_ptr c, const scene& s, const depth_settings& settings, const occlusion_settings& o);
+  [[nodiscard]] bool reuses() const noexcept { return gpu_settings.moved == moved_heights::reused; }
   [[nodiscard]] std::size_t first_drawn() const noexcept { return reuses() ? first_turn : 0; }
   [[nodiscard]] std::size_t end_drawn() const noexcept { return reuses() ? end_turns : detail::probe_motions; }
   /// Tiles of heights per contact: B, A at rest, A after the motions that are rendered.

@@ -82,9 +82,9 @@ bool occlusion_depth::parts::records_fit() noexcept {
 
 void occlusion_depth::parts::choose_range(contact_slot& slot, double half_m) const noexcept {
   double low = slot.a.low - slot.b.high, high = slot.a.high - slot.b.low;
-  if (options.depth_range_m > 0.0) {
-    low = -options.depth_range_m;
-    high = options.depth_range_m;
+  if (gpu_settings.depth_range_m > 0.0) {
+    low = -gpu_settings.depth_range_m;
+    high = gpu_settings.depth_range_m;
   } else {
     // Single precision measures heights to some 5e-7 of the window's half size: a finer quantum would only pretend.
     const double middle = 0.5 * (low + high);
@@ -212,7 +212,7 @@ status occlusion_depth::parts::measure(const scene_pose& at, const contact_set& 
     if (c.body >= models.fixed.size()) return status::not_ready;
   }
   if (contacts.size() == 0) return status::ok;
-  if (contacts.size() > options.contacts) return status::capacity_reached;
+  if (contacts.size() > gpu_settings.contacts) return status::capacity_reached;
   if (context->make_current() != status::ok) return status::backend_failed;
 
   const status drawn = draw(at, contacts);

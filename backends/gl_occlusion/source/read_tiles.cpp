@@ -49,7 +49,8 @@ result<std::vector<occlusion_tiles>> occlusion_depth::read_tiles() {
   if (p.slots.empty()) return out;
   const tile_atlas& h = p.heights.atlas();
   const tile_atlas& d = p.differences.atlas();
-  const read_atlas heights = read(gl, p.heights.framebuffer(), h, p.slots.size(), p.options.packed ? GL_RGBA : GL_RED);
+  const read_atlas heights =
+      read(gl, p.heights.framebuffer(), h, p.slots.size(), p.gpu_settings.packed ? GL_RGBA : GL_RED);
   const read_atlas levels = read(gl, p.differences.framebuffer(), d, p.slots.size(), GL_DEPTH_COMPONENT);
   if (const std::string errors = take_errors(gl); !errors.empty()) {
     return error{error_code::unsupported, "occlusion depth: reading the tiles back: " + errors};
@@ -69,8 +70,8 @@ result<std::vector<occlusion_tiles>> occlusion_depth::read_tiles() {
       for (std::uint32_t j = 0; j < side; ++j) {
         for (std::uint32_t i = 0; i < side; ++i) {
           std::uint32_t x = i + margin, y = j + margin, channel = 0;
-          if (p.options.packed && x > last / 2) x = last - x, channel += 1;
-          if (p.options.packed && y > last / 2) y = last - y, channel += 2;
+          if (p.gpu_settings.packed && x > last / 2) x = last - x, channel += 1;
+          if (p.gpu_settings.packed && y > last / 2) y = last - y, channel += 2;
           const float v = heights.at(h.x(s, k) + x, h.y(s) + y, channel);
           tile.values_m.push_back(v < -1e29F ? nothing : half_m * static_cast<double>(v));
         }

@@ -101,7 +101,7 @@ std::vector<::can_filter> kernel_filters(const std::vector<id_filter>& filters) 
 }
 
 /// Everything that is set before the socket is bound. The buffer may be refused, the rest may not.
-result<void> set_options(socket_calls& calls, int fd, const socketcan_options& options) {
+result<void> set_options(socket_calls& calls, int fd, const socketcan_settings& settings) {
   const auto set = [&](int level, int name, const auto& value) {
     return calls.set_option(fd, level, name, &value, sizeof value);
   };
@@ -111,15 +111,15 @@ result<void> set_options(socket_calls& calls, int fd, const socketcan_options& o
   };
 
   const int on = 1;
-  if (options.fd) {
+  if (settings.fd) {
     if (const int answer = set(SOL_CAN_RAW, CAN_RAW_FD_FRAMES, on); answer < 0) return failed("CAN FD frames", answer);
   }
   const can_err_mask_t every_error = CAN_ERR_MASK;
   if (const int answer = set(SOL_CAN_RAW, CAN_RAW_ERR_FILTER, every_error); answer < 0) {
     return failed("error frames", answer);
   }
-  if (!options.filters.empty()) {
-    const std::vector<::can_filter> filters = kernel_filters(options.filters);
+  if (!settings.filters.empty()) {
+    const std::vector<::can_filter> filters = kernel_filters(settings.filters);
     const int answer = calls.set_option(fd, SOL_CAN_RAW, CAN_RAW_FILTER, filters.data(),
                                         static_cast<socklen_t>(filters.size() * sizeof filters[0]));
     if (answer < 0) return failed("these identifier filters", answer);
@@ -127,8 +127,8 @@ result<void> set_options(socket_calls& calls, int fd, const socketcan_options& o
   if (const int answer = set(SOL_SOCKET, SO_TIMESTAMPNS, on); answer < 0) return failed("times of arrival", answer);
   if (const int answer = set(SOL_SOCKET, SO_RXQ_OVFL, on); answer < 0) return failed("a count of lost frames", answer);
   // Beyond the system's maximum with privileges, up to it without. A smaller buffer is no fault: losses are counted.
-  if (set(SOL_SOCKET, SO_RCVBUFFORCE, options.receive_buffer_bytes) < 0) {
-    static_cast<void>(set(SOL_SOCKET, SO_RCVBUF, options.receive_buffer_bytes));
+  if (set(SOL_SOCKET, SO_RCVBUFFORCE, settings.receive_buffer_bytes) < 0) {
+    static_cast<void>(set(SOL_SOCKET, SO_RCVBUF, settings.receive_buffer_bytes));
   }
   return {};
 }
@@ -142,13 +142,13 @@ std::string how_to_bring_up(const std::string& name, bool with_fd) {
          (with_fd ? " dbitrate 5000000 fd on" : "");
 }
 
-result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface, const socketcan_options& options,
+result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface, const socketcan_settings& settings,
                                                 socket_calls& calls) {
   open_socket socket(calls);
   if (socket.fd() < 0) return no_socket(socket.fd());
-  const result<int> index = usable_interface(calls, socket.fd(), interface, options.fd);
+  const result<int> index = usable_interface(calls, socket.fd(), interface, settings.fd);
   if (!index) return index.error();
-  if (const result<void> set = set_options(calls, socket.fd(), options); !set) return set.error();
+  if (const result<void> set = set_options(calls, socket.fd(), settings); !set) return set.error();
 
   sockaddr_can address{};
   address.can_family = AF_CAN;
@@ -157,13 +157,13 @@ result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface, co
     if (answer == -ENODEV || answer == -ENXIO) return no_interface(interface);
     return error{error_code::io_failed, interface + " could not be opened: " + words(answer) + "."};
   }
-  const std::int64_t back_off_ns = std::max<std::int64_t>(options.busy_back_off_ns, 0);
+  const std::int64_t back_off_ns = std::max<std::int64_t>(settings.busy_back_off_ns, 0);
   return std::unique_ptr<can_bus>(
-      std::make_unique<socketcan_bus>(calls, socket.release(), *index, options.fd, back_off_ns));
+      std::make_unique<socketcan_bus>(calls, socket.release(), *index, settings.fd, back_off_ns));
 }
 
-result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface, const socketcan_options& options) {
-  return open_socketcan(interface, options, system_socket_calls());
+result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface, const socketcan_settings& settings) {
+  return open_socketcan(interface, settings, system_socket_calls());
 }
 
 result<void> check_support(socket_calls& calls) {

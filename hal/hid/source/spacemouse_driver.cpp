@@ -21,7 +21,7 @@ bool is_multi_axis(const hid_listing& which) {
 
 }  // namespace
 
-std::optional<device_listing> as_spacemouse(const hid_listing& which, const spacemouse_config& config) {
+std::optional<device_listing> as_spacemouse(const hid_listing& which, const spacemouse_settings& settings) {
   const spacemouse_product* const product = find_spacemouse(which.vendor_id, which.product_id);
   if (product == nullptr || !is_multi_axis(which)) return std::nullopt;
   device_listing one;
@@ -30,7 +30,7 @@ std::optional<device_listing> as_spacemouse(const hid_listing& which, const spac
   one.path = which.path;
   one.name = product->name;
   one.maturity = driver_maturity::protocol_tested;
-  spacemouse_config named = config;
+  spacemouse_settings named = settings;
   named.name = product->name;
   one.capabilities = spacemouse_device({}, named).capabilities();
   one.not_openable = which.not_openable;
@@ -61,7 +61,7 @@ result<std::vector<device_listing>> spacemouse_driver::list() {
   if (!all) return all.error();
   std::vector<device_listing> found;
   for (const hid_listing& l : *all) {
-    if (std::optional<device_listing> one = as_spacemouse(l, config_)) found.push_back(std::move(*one));
+    if (std::optional<device_listing> one = as_spacemouse(l, settings_)) found.push_back(std::move(*one));
   }
   return found;
 }
@@ -71,9 +71,9 @@ result<spacemouse_device> spacemouse_driver::make_spacemouse(const device_listin
     return error{error_code::invalid_argument,
                  "the device " + which.identity + " was found by the driver " + which.driver + ", not by spacemouse"};
   }
-  spacemouse_config config = config_;
+  spacemouse_settings settings = settings_;
   for (const spacemouse_product& p : spacemouse_products) {
-    if (p.name == which.name) config.name = p.name;
+    if (p.name == which.name) settings.name = p.name;
   }
   return spacemouse_device(
       [identity = which.identity, path = which.path]() mutable -> result<std::unique_ptr<hid_link>> {
@@ -85,7 +85,7 @@ result<spacemouse_device> spacemouse_driver::make_spacemouse(const device_listin
         if (link) path = now->path;
         return link;
       },
-      config);
+      settings);
 }
 
 result<any_device> spacemouse_driver::make(const device_listing& which) {

@@ -124,8 +124,8 @@ struct linked_driver {
 
 class child_driver::body {
  public:
-  body(std::shared_ptr<const driver_file> file, child_options options)
-      : file_(std::move(file)), options_(std::move(options)) {}
+  body(std::shared_ptr<const driver_file> file, child_settings settings)
+      : file_(std::move(file)), options_(std::move(settings)) {}
 
   // A process with the driver loaded. What the driver's table says is judged like that of any other.
   result<void> start() {
@@ -204,7 +204,7 @@ class child_driver::body {
   }
 
   std::shared_ptr<const driver_file> file_;
-  child_options options_;
+  child_settings options_;
   std::string name_{};
   driver_maturity maturity_ = driver_maturity::simulated;
   std::shared_ptr<child_link> fresh_{};  // a process that has no device yet, and its table
@@ -216,11 +216,11 @@ class child_driver::body {
 child_driver::child_driver(std::unique_ptr<body> b) noexcept : body_(std::move(b)) {}
 child_driver::~child_driver() = default;
 
-result<std::unique_ptr<child_driver>> child_driver::load(const std::filesystem::path& file, child_options options,
+result<std::unique_ptr<child_driver>> child_driver::load(const std::filesystem::path& file, child_settings settings,
                                                          file_trust trust) {
   result<driver_file> opened = driver_file::open(file, trust);
   if (!opened) return opened.error();
-  auto b = std::make_unique<body>(std::make_shared<const driver_file>(std::move(opened).value()), std::move(options));
+  auto b = std::make_unique<body>(std::make_shared<const driver_file>(std::move(opened).value()), std::move(settings));
   if (const result<void> started = b->start(); !started) return started.error();
   return std::unique_ptr<child_driver>(new child_driver(std::move(b)));
 }

@@ -18,8 +18,8 @@ namespace asperity::plugin {
 /// ended, and in read() to wait for its answer for a stated time.
 class child_link {
  public:
-  child_link(std::shared_ptr<const driver_file> file, child_options options)
-      : file_(std::move(file)), options_(std::move(options)) {}
+  child_link(std::shared_ptr<const driver_file> file, child_settings settings)
+      : file_(std::move(file)), options_(std::move(settings)) {}
   child_link(const child_link&) = delete;
   child_link& operator=(const child_link&) = delete;
   /// Asks the process to put out zero and to end, and ends it.
@@ -64,7 +64,7 @@ class child_link {
   void fail(call_answer& answer, const std::string& why) const;
 
   std::shared_ptr<const driver_file> file_;
-  child_options options_;
+  child_settings options_;
   std::unique_ptr<child_process> process_{};
   trouble trouble_ = trouble::none;
   child_phase silent_in_ = child_phase::idle;

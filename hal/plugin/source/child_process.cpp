@@ -97,13 +97,14 @@ std::string find_host_program() {
   return {};
 }
 
-result<std::unique_ptr<child_process>> child_process::start(const driver_file& file, const child_options& options) {
-  const std::string program = options.host_program.empty() ? find_host_program() : options.host_program.string();
+result<std::unique_ptr<child_process>> child_process::start(const driver_file& file, const child_settings& settings) {
+  const std::string program = settings.host_program.empty() ? find_host_program() : settings.host_program.string();
   if (program.empty()) {
     return error{error_code::io_failed,
                  file.path().string() +
                      ": asperity-driver-host, in whose process a driver runs, is not beside this "
-                     "program nor in " ASPERITY_FULL_LIBEXEC ": install it, or name it in child_options::host_program"};
+                     "program nor in " ASPERITY_FULL_LIBEXEC
+                     ": install it, or name it in child_settings::host_program"};
   }
   const result<int> memory = shared_memory();
   if (!memory) return memory.error();
@@ -114,8 +115,8 @@ result<std::unique_ptr<child_process>> child_process::start(const driver_file& f
     return e;
   }
   auto* const page = new (mapped) child_page;
-  page->paced = options.pace == child_pace::paced ? 1 : 0;
-  page->disarm_after_ns = options.disarm_after_ns;
+  page->paced = settings.pace == child_pace::paced ? 1 : 0;
+  page->disarm_after_ns = settings.disarm_after_ns;
 
   const int page_fd = out_of_the_way(*memory);
   const int driver_fd = out_of_the_way(file.descriptor());

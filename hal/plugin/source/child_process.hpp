@@ -18,7 +18,7 @@ class child_process {
  public:
   /// Starts the helper with the judged file and a page of its own. The driver is not loaded yet.
   [[nodiscard]] static result<std::unique_ptr<child_process>> start(const driver_file& file,
-                                                                    const child_options& options);
+                                                                    const child_settings& settings);
   child_process(const child_process&) = delete;
   child_process& operator=(const child_process&) = delete;
   /// Ends the process, if need be by force, and takes the memory back.

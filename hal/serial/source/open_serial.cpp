@@ -52,8 +52,8 @@ error not_opened(const std::string& path, int why) {
 
 }  // namespace
 
-result<std::unique_ptr<byte_link>> open_serial(const std::string& path, const serial_options& options) {
-  if (options.bits_per_s == 0)
+result<std::unique_ptr<byte_link>> open_serial(const std::string& path, const serial_settings& settings) {
+  if (settings.bits_per_s == 0)
     return error{error_code::invalid_argument, "A serial line cannot run at 0 bits per second."};
   // Without waiting for a carrier, and without becoming the terminal that ends this process when it hangs up.
   open_file file(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
@@ -64,13 +64,13 @@ result<std::unique_ptr<byte_link>> open_serial(const std::string& path, const se
   }
   if (const int why = make_exclusive(file.fd()); why != 0) return not_opened(path, why);
   std::uint32_t got = 0;
-  if (const int why = make_raw(file.fd(), options.bits_per_s, got); why != 0) {
+  if (const int why = make_raw(file.fd(), settings.bits_per_s, got); why != 0) {
     return error{error_code::io_failed, path + " does not take the settings of a raw line: " + words(why) + "."};
   }
   // Receivers sample in the middle of the tenth bit; half a bit in ten is too far off, and each end has its share.
-  const std::uint32_t off = got > options.bits_per_s ? got - options.bits_per_s : options.bits_per_s - got;
-  if (off > options.bits_per_s / 50) {
-    return error{error_code::unsupported, path + " cannot run at " + std::to_string(options.bits_per_s) +
+  const std::uint32_t off = got > settings.bits_per_s ? got - settings.bits_per_s : settings.bits_per_s - got;
+  if (off > settings.bits_per_s / 50) {
+    return error{error_code::unsupported, path + " cannot run at " + std::to_string(settings.bits_per_s) +
                                               " bits per second; the nearest that it takes is " + std::to_string(got) +
                                               "."};
   }

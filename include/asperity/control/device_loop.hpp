@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "asperity/control/control_config.hpp"
+#include "asperity/control/control_settings.hpp"
 #include "asperity/control/exchange.hpp"
 #include "asperity/control/passivity_guard.hpp"
 #include "asperity/control/probe_motion.hpp"
@@ -37,7 +37,7 @@ namespace asperity {
 ///   not felt. Letting it go would bury the probe in the body, and the next contact would throw it out.
 /// - Lateness past rate_limits shuts the gate (stalled, contact_stalled, overloaded) while the device may put out.
 /// - A rejected sample: the wanted wrench is zero in this tick, and the probe goes on towards the last good pose. After
-///   sample_check_config::reject_limit rejections in a row the gate shuts (bad_samples).
+///   sample_check_settings::reject_limit rejections in a row the gate shuts (bad_samples).
 /// - A probe step that fails (a contact that is not finite): the wanted wrench is zero in this tick.
 /// - Energy past the guard's cut-off shuts the gate (energy).
 /// - An application that has not beaten exchange::application for longer than watchdog_ns shuts the gate (watchdog).
@@ -49,22 +49,22 @@ template <haptic_device Device, session_observer Observer = no_observer>
 class device_loop {
  public:
   /// @param shared outlives the loop
-  device_loop(Device& dev, const control_config& config, const vec3& centre_of_mass_a, exchange& shared,
+  device_loop(Device& dev, const control_settings& settings, const vec3& centre_of_mass_a, exchange& shared,
               Observer observer = {})
       : device_(&dev),
-        config_(config),
-        T_hc_(config.map.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}),
+        settings_(settings),
+        T_hc_(settings.map.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}),
         T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a})),
         shared_(&shared),
         observer_(std::move(observer)),
-        check_(config.samples),
-        motion_(config.probe, config.coupling, config.contact, config.substeps),
-        guard_(guard_for(config.guard, dev.capabilities())),
-        rates_(config.rates, config.ageing),
-        gate_(tighter(limits_of(dev.capabilities()), config.limits), command_valid_ns, config.low_pass_hz),
+        check_(settings.samples),
+        motion_(settings.probe, settings.coupling, settings.contact, settings.substeps),
+        guard_(guard_for(settings.guard, dev.capabilities())),
+        rates_(settings.rates, settings.ageing),
+        gate_(tighter(limits_of(dev.capabilities()), settings.limits), command_valid_ns, settings.low_pass_hz),
         goes_silent_(dev.capabilities().device_side_watchdog) {}
 
-  // Who takes a loop away takes the force away: at once, because nobody is left to take it down slowly.
+  // The destructor disarms the device, so that its wrench goes to zero at once: no later tick could lower it slowly.
   device_loop(const device_loop&) = delete;
   device_loop& operator=(const device_loop&) = delete;
   ~device_loop() {
@@ -77,11 +77,11 @@ class device_loop {
   /// One period.
   /// @param clock_ns the session's clock
   /// @return ok | stale_input (sample rejected) | not_finite (probe) | not_ready (no good sample yet) |
-  ///         backend_failed (the gate is shut: see gate().fault())
+  ///         gate_shut (see gate().fault())
   /// @rt as safe as the device: no allocation, lock, throw, print or clock here
   [[nodiscard]] status tick(std::int64_t clock_ns) noexcept {
     const std::int64_t gap_ns = advance_clock(clock_ns);
-    const double dt_s = static_cast<double>(std::min(gap_ns, config_.longest_step_ns)) * 1e-9;
+    const double dt_s = static_cast<double>(std::min(gap_ns, settings_.longest_step_ns)) * 1e-9;
     const std::int64_t now_ns = now_ns_;
     const bool expired = now_ns > valid_until_ns_;
     const wrench held = expired && goes_silent_ ? wrench{} : gate_.last();
@@ -157,7 +157,7 @@ class device_loop {
   }
 
  private:
-  [[nodiscard]] static guard_config guard_for(guard_config g, const device_capabilities& c) noexcept {
+  [[nodiscard]] static guard_settings guard_for(guard_settings g, const device_capabilities& c) noexcept {
     if (!(g.mass_kg > 0.0) && !(g.inertia_kg_m2 > 0.0)) {
       g.mass_kg = c.moving_mass_kg;
       g.inertia_kg_m2 = c.moving_inertia_kg_m2;
@@ -174,12 +174,12 @@ class device_loop {
     gate_.trip(gone ? gate_fault::device_departed : gate_fault::device_failed);
   }
 
-  // The first tick counts as a sign of life: somebody started the session. A beat carries no time, so one that is found
-  // behind a long gap may have come at its very end: the whole gap counts as silence.
+  // The first tick counts as a beat, because the application has just started the session. A beat carries no time: one
+  // that is found after a long gap may have come at the end of it, so the whole gap counts as silence.
   [[nodiscard]] bool is_application_silent() noexcept {
     const std::uint64_t beats = shared_->application.beats();
     if (!heard_) beat_ns_ = now_ns_;
-    const bool silent = config_.watchdog_ns > 0 && now_ns_ - beat_ns_ > config_.watchdog_ns;
+    const bool silent = settings_.watchdog_ns > 0 && now_ns_ - beat_ns_ > settings_.watchdog_ns;
     if (beats != beats_) beat_ns_ = now_ns_;
     beats_ = beats;
     heard_ = true;
@@ -201,8 +201,8 @@ class device_loop {
     return contact.answer == status::not_ready ? rate_monitor::no_contact : now_ns - contact.time_ns;
   }
 
-  // The newest contact. @return whether it finds the probe where it went while the one before was old, or none was
-  // there
+  // Takes the newest contact. @return whether the contact before was old or missing, and the new one pushes the probe
+  // much harder or otherwise at the place where it went meanwhile
   [[nodiscard]] bool take_contact(std::int64_t now_ns) noexcept {
     const linear_contact& contact = shared_->contacts.front();
     const std::int64_t age_ns = now_ns - (contact.answer == status::not_ready ? placed_ns_ : contact.time_ns);
@@ -217,7 +217,7 @@ class device_loop {
            glm::length(change.torque) > rates_.limits().surprise_n_m;
   }
 
-  [[nodiscard]] pose pose_of_sample() const noexcept { return config_.map.to_world(last_seen_.T_dh) * T_hc_; }
+  [[nodiscard]] pose pose_of_sample() const noexcept { return settings_.map.to_world(last_seen_.T_dh) * T_hc_; }
 
   void place() noexcept {
     placed_ns_ = now_ns_;
@@ -226,7 +226,8 @@ class device_loop {
     placed_ = true;
   }
 
-  // After a lapse the target returns to the hand no faster than contacts can follow; without contacts it stays.
+  // Moves the probe towards the hand. After a lapse the target returns to the hand no faster than contacts can follow;
+  // without contacts it stays.
   [[nodiscard]] status move_probe(double dt_s, bool accepted, const rate_verdict& rates) noexcept {
     const pose wanted_T_wc = accepted ? pose_of_sample() : motion_.target();
     const double part = part_allowed(motion_.way_to(wanted_T_wc), dt_s, rates);
@@ -244,8 +245,8 @@ class device_loop {
   }
 
   [[nodiscard]] wrench wrench_on_hand() const noexcept {
-    const pose T_wh = config_.map.to_world(last_seen_.T_dh);
-    return config_.map.to_device(motion_.on_hand_w(), motion_.target().position, T_wh.position);
+    const pose T_wh = settings_.map.to_world(last_seen_.T_dh);
+    return settings_.map.to_device(motion_.on_hand_w(), motion_.target().position, T_wh.position);
   }
 
   void report(std::int64_t now_ns, sample_verdict verdict, status probe_status, const guard_action& guarded,
@@ -280,7 +281,7 @@ class device_loop {
     observer_(r);
   }
 
-  // What the contact solver itself has to say.
+  // The flags that the contact solver's result gives.
   [[nodiscard]] static tick_flag flags_of(const contact_solution& s, bool failed) noexcept {
     tick_flag out = tick_flag::none;
     if (s.deepest_m > deepest_held_m) out |= tick_flag::not_held;
@@ -289,13 +290,13 @@ class device_loop {
   }
 
   [[nodiscard]] status answer(sample_verdict verdict, status probe_status) const noexcept {
-    if (gate_.fault() != gate_fault::none) return status::backend_failed;
+    if (gate_.fault() != gate_fault::none) return status::gate_shut;
     if (verdict != sample_verdict::accepted) return status::stale_input;
     return probe_status;
   }
 
   Device* device_;
-  control_config config_;
+  control_settings settings_;
   pose T_hc_;
   pose T_ca_;
   exchange* shared_;

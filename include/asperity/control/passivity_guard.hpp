@@ -9,7 +9,7 @@
 
 namespace asperity {
 
-struct guard_config {
+struct guard_settings {
   bool enabled = true;
   /// Apparent mass and inertia of the device's handle: they set and bound the damping. Where both are zero a
   /// device_loop takes what the device states of itself; a guard by itself then adds no damping and only scales.
@@ -50,10 +50,10 @@ struct guard_action {
 /// @source science, section 5; floor and scaling are ours
 class passivity_guard {
  public:
-  explicit passivity_guard(const guard_config& config = {}) noexcept : config_(config) {}
+  explicit passivity_guard(const guard_settings& settings = {}) noexcept : settings_(settings) {}
 
   /// Forgets all energy and the last pose.
-  void reset() noexcept { *this = passivity_guard(config_); }
+  void reset() noexcept { *this = passivity_guard(settings_); }
 
   /// Books one sample: the wrench that was held since the last call (it left the gate then) and the pose reached with
   /// it. Any frame, as long as wrench and pose share it and the torque is about the pose's origin.
@@ -70,36 +70,36 @@ class passivity_guard {
     last_ = T;
     const double given_j = glm::dot(held.force, dx) + glm::dot(held.torque, dphi);
     delivered_j_ += given_j;
-    surplus_j_ = std::max(-config_.credit_j, surplus_j_ + given_j);
+    surplus_j_ = std::max(-settings_.credit_j, surplus_j_ + given_j);
     velocity_ = h_s > 0.0 ? twist{dx / h_s, dphi / h_s} : twist{};
   }
 
   /// The wrench that may go on to the gate.
   /// @rt safe
   [[nodiscard]] guard_action adjust(const wrench& wanted) const noexcept {
-    if (!config_.enabled || !(surplus_j_ > config_.tolerance_j)) return {wanted, 0.0, 1.0};
-    const double over = (surplus_j_ - config_.soft_limit_j) / (config_.hard_limit_j - config_.soft_limit_j);
+    if (!settings_.enabled || !(surplus_j_ > settings_.tolerance_j)) return {wanted, 0.0, 1.0};
+    const double over = (surplus_j_ - settings_.soft_limit_j) / (settings_.hard_limit_j - settings_.soft_limit_j);
     const double scale = 1.0 - std::clamp(over, 0.0, 1.0);
-    const double power_per_rate = config_.mass_kg * glm::dot(velocity_.linear, velocity_.linear) +
-                                  config_.inertia_kg_m2 * glm::dot(velocity_.angular, velocity_.angular);
+    const double power_per_rate = settings_.mass_kg * glm::dot(velocity_.linear, velocity_.linear) +
+                                  settings_.inertia_kg_m2 * glm::dot(velocity_.angular, velocity_.angular);
     double alpha = 0.0;
     if (power_per_rate > 0.0 && h_s_ > 0.0) alpha = std::min(surplus_j_ / (h_s_ * power_per_rate), 0.5 / h_s_);
-    const wrench damping{-alpha * config_.mass_kg * velocity_.linear,
-                         -alpha * config_.inertia_kg_m2 * velocity_.angular};
+    const wrench damping{-alpha * settings_.mass_kg * velocity_.linear,
+                         -alpha * settings_.inertia_kg_m2 * velocity_.angular};
     return {scale * wanted + damping, alpha, scale};
   }
 
   /// Whether more than the cut-off was delivered, so that nothing but silence is left. @rt safe
-  [[nodiscard]] bool exhausted() const noexcept { return config_.enabled && surplus_j_ > config_.cut_off_j; }
+  [[nodiscard]] bool exhausted() const noexcept { return settings_.enabled && surplus_j_ > settings_.cut_off_j; }
 
   /// Energy delivered to the hand since reset(), J; negative where the hand put more in. The plain book, without floor.
   [[nodiscard]] double delivered_j() const noexcept { return delivered_j_; }
   /// What the controller acts on: delivered energy with the floor of -credit_j, J.
   [[nodiscard]] double surplus_j() const noexcept { return surplus_j_; }
-  [[nodiscard]] const guard_config& config() const noexcept { return config_; }
+  [[nodiscard]] const guard_settings& settings() const noexcept { return settings_; }
 
  private:
-  guard_config config_;
+  guard_settings settings_;
   bool has_last_ = false;
   pose last_{};
   twist velocity_{};

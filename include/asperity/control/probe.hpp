@@ -14,13 +14,13 @@
 namespace asperity {
 
 /// Mass properties of the virtual tool. A light tool transmits texture: at 100 Hz and 2 N/mm, 5 g pass 97 %, 50 g 11 %.
-struct probe_config {
+struct probe_settings {
   double mass_kg = 0.01;
   mat3 inertia_kg_m2{1e-5};  ///< about the centre of mass, body axes; symmetric positive definite
 };
 
 /// A virtual tool of this mass with the shape of a model: the inertia of a body of uniform density.
-[[nodiscard]] inline probe_config solid_probe(const mass_properties& shape, double mass_kg = 0.01) noexcept {
+[[nodiscard]] inline probe_settings solid_probe(const mass_properties& shape, double mass_kg = 0.01) noexcept {
   return {mass_kg, mass_kg * shape.inertia_per_mass};
 }
 
@@ -52,7 +52,7 @@ struct probe_energy {
 /// @source science, section 4
 class probe {
  public:
-  explicit probe(const probe_config& config = {}) noexcept : config_(config) {}
+  explicit probe(const probe_settings& settings = {}) noexcept : settings_(settings) {}
 
   /// Puts the probe there, at rest.
   void reset(const pose& T_wc) noexcept {
@@ -112,7 +112,7 @@ class probe {
 
   [[nodiscard]] const probe_state& state() const noexcept { return state_; }
   [[nodiscard]] const probe_energy& energy() const noexcept { return energy_; }
-  [[nodiscard]] const probe_config& config() const noexcept { return config_; }
+  [[nodiscard]] const probe_settings& settings() const noexcept { return settings_; }
   /// Kinetic energy, J.
   [[nodiscard]] double kinetic_j() const noexcept {
     const vec6 v = to_vec6(state_.velocity_w);
@@ -131,8 +131,8 @@ class probe {
   [[nodiscard]] mat6 inertia_w() const noexcept {
     const mat3 r = glm::mat3_cast(state_.T_wc.rotation);
     mat6 out;
-    set_block(out, 0, 0, mat3(config_.mass_kg));
-    set_block(out, 3, 3, r * config_.inertia_kg_m2 * glm::transpose(r));
+    set_block(out, 0, 0, mat3(settings_.mass_kg));
+    set_block(out, 3, 3, r * settings_.inertia_kg_m2 * glm::transpose(r));
     return out;
   }
 
@@ -176,7 +176,7 @@ class probe {
     energy_.numerical_j += 0.5 * dot(dv, inertia * dv);
   }
 
-  probe_config config_;
+  probe_settings settings_;
   probe_state state_{};
   probe_energy energy_{};
 };

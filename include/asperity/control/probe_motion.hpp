@@ -25,7 +25,8 @@ class probe_motion {
  public:
   /// @param substeps of the probe in one period; at least one is made
   /// @pre check(law)
-  probe_motion(const probe_config& body, const coupling_config& coupling, const contact_law& law, int substeps) noexcept
+  probe_motion(const probe_settings& body, const coupling_settings& coupling, const contact_law& law,
+               int substeps) noexcept
       : law_(law),
         substeps_(std::max(1, substeps)),
         coupling_(coupling, body.mass_kg, mean_inertia(body)),
@@ -111,7 +112,7 @@ class probe_motion {
   [[nodiscard]] const virtual_coupling& coupling() const noexcept { return coupling_; }
 
  private:
-  [[nodiscard]] static double mean_inertia(const probe_config& p) noexcept {
+  [[nodiscard]] static double mean_inertia(const probe_settings& p) noexcept {
     return (p.inertia_kg_m2[0][0] + p.inertia_kg_m2[1][1] + p.inertia_kg_m2[2][2]) / 3.0;
   }
 

@@ -44,11 +44,11 @@ struct tick_timing {
 template <contact_renderer Renderer, haptic_device Device, session_observer Observer = no_observer>
 class real_session {
  public:
-  real_session(Renderer feel, scene_placement placement, Device& dev, const control_config& config,
+  real_session(Renderer feel, scene_placement placement, Device& dev, const control_settings& settings,
                const real_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
         contact_(std::move(feel), placement, shared_, selection_for(schedule.contact_period_ns)),
-        device_(dev, with_period(config, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
+        device_(dev, with_period(settings, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
                 std::move(observer)) {}
 
   // The loops hold the address of the exchange, the threads that of the session.
@@ -91,7 +91,7 @@ class real_session {
   /// Timing so far. @pre the session does not run: the threads write without a lock
   [[nodiscard]] const tick_timing& device_timing() const noexcept { return device_timing_; }
   [[nodiscard]] const tick_timing& contact_timing() const noexcept { return contact_timing_; }
-  /// A sign of life of the application, from any of its threads. Only these feed control_config::watchdog_ns.
+  /// A sign of life of the application, from any of its threads. Only these feed control_settings::watchdog_ns.
   void beat() noexcept { shared_.application.beat(); }
   /// The loops. @pre the session does not run
   [[nodiscard]] contact_loop<Renderer>& contact() noexcept { return contact_; }

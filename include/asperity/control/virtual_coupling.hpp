@@ -11,7 +11,7 @@
 namespace asperity {
 
 /// Stiffness and damping of the virtual coupling. A damping left at zero is made critical for the probe's mass.
-struct coupling_config {
+struct coupling_settings {
   double stiffness_n_per_m = 500.0;
   double stiffness_n_m_per_rad = 3.0;
   double damping_n_s_per_m = 0.0;
@@ -32,7 +32,7 @@ struct coupling_pull {
 class virtual_coupling {
  public:
   /// @param inertia_kg_m2 a typical moment of inertia of the probe
-  virtual_coupling(const coupling_config& c, double mass_kg, double inertia_kg_m2) noexcept
+  virtual_coupling(const coupling_settings& c, double mass_kg, double inertia_kg_m2) noexcept
       : kt_(c.stiffness_n_per_m),
         kr_(c.stiffness_n_m_per_rad),
         bt_(c.damping_n_s_per_m > 0.0 ? c.damping_n_s_per_m
@@ -90,8 +90,8 @@ class virtual_coupling {
 /// A stiffness that the device does not state (0) leaves the coupling's default.
 /// @param scale workspace_map::scale; a device's K is K / scale^2 in the world, and its force F is F / scale
 /// @pre rate_hz > 0, scale > 0
-[[nodiscard]] inline coupling_config coupling_for(const device_capabilities& device, double rate_hz,
-                                                  double scale = 1.0) noexcept {
+[[nodiscard]] inline coupling_settings coupling_for(const device_capabilities& device, double rate_hz,
+                                                    double scale = 1.0) noexcept {
   constexpr double share = 0.5;
   constexpr double least_stretch_m = 0.002;
   constexpr double least_turn_rad = 0.05;
@@ -101,7 +101,7 @@ class virtual_coupling {
     const double stable = share * slower * stiffness;
     return peak > 0.0 ? std::min(stable, peak / least_way) : stable;
   };
-  coupling_config out;
+  coupling_settings out;
   if (device.max_stiffness_n_per_m > 0.0) {
     out.stiffness_n_per_m =
         bounded(device.max_stiffness_n_per_m, device.peak_force_n, least_stretch_m) / (scale * scale);

@@ -27,11 +27,11 @@ class virtual_session {
  public:
   /// @param dev open and, to be felt, armed; outlives the session
   /// @pre both periods > 0
-  virtual_session(Renderer feel, scene_placement placement, Device& dev, const control_config& config,
+  virtual_session(Renderer feel, scene_placement placement, Device& dev, const control_settings& settings,
                   const virtual_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
         contact_(std::move(feel), placement, shared_, selection_for(schedule.contact_period_ns)),
-        device_(dev, with_period(config, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
+        device_(dev, with_period(settings, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
                 std::move(observer)),
         next_contact_ns_(schedule.start_ns),
         next_device_ns_(schedule.start_ns) {}
@@ -67,7 +67,7 @@ class virtual_session {
   /// @pre not before the last one
   void next_device_at(std::int64_t at_ns) noexcept { next_device_ns_ = at_ns; }
 
-  /// A sign of life of the application. Only these feed control_config::watchdog_ns.
+  /// A sign of life of the application. Only these feed control_settings::watchdog_ns.
   void beat() noexcept { shared_.application.beat(); }
   /// Time of the next device tick.
   [[nodiscard]] std::int64_t now_ns() const noexcept { return next_device_ns_; }

@@ -13,9 +13,9 @@
 namespace asperity {
 
 /// What a virtual tool is made of.
-struct virtual_tool_config {
-  probe_config probe{};
-  coupling_config coupling{};
+struct virtual_tool_settings {
+  probe_settings probe{};
+  coupling_settings coupling{};
   contact_law contact{};
   plane_selection selection{};   ///< selection_for() the period in which ticks are rendered
   pose T_ha{};                   ///< the probe's body frame on the handle
@@ -36,12 +36,12 @@ struct virtual_tool_config {
 /// It limits no force and watches no clock: what leaves should pass an output_gate, as a device_loop's wrench does.
 class virtual_tool {
  public:
-  /// @pre check(config.contact), check(config.selection)
-  explicit virtual_tool(const virtual_tool_config& config) noexcept
-      : config_(config),
-        T_hc_(config.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), config.centre_of_mass_a}),
-        T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), config.centre_of_mass_a})),
-        motion_(config.probe, config.coupling, config.contact, config.substeps) {}
+  /// @pre check(settings.contact), check(settings.selection)
+  explicit virtual_tool(const virtual_tool_settings& settings) noexcept
+      : settings_(settings),
+        T_hc_(settings.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), settings.centre_of_mass_a}),
+        T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), settings.centre_of_mass_a})),
+        motion_(settings.probe, settings.coupling, settings.contact, settings.substeps) {}
 
   /// Puts the probe where the handle is, at rest.
   /// @pre is_valid(T_wh)
@@ -72,9 +72,9 @@ class virtual_tool {
       return {};
     }
     const pose then_T_wc = T_wa_then * inverse(T_ca_);
-    linearise(found, answer, {then_T_wc, 0, motion_.coupling().pull(T_wh * T_hc_, then_T_wc)}, config_.selection, rest_,
-              contact_);
-    last_ = motion_.move(std::min(dt_s, config_.longest_step_s), T_wh * T_hc_, 1.0, contact_);
+    linearise(found, answer, {then_T_wc, 0, motion_.coupling().pull(T_wh * T_hc_, then_T_wc)}, settings_.selection,
+              rest_, contact_);
+    last_ = motion_.move(std::min(dt_s, settings_.longest_step_s), T_wh * T_hc_, 1.0, contact_);
     const wrench felt = transport(motion_.on_hand_w(), motion_.target().position, T_wh.position);
     if (last_ == status::ok && !is_finite(felt)) last_ = status::not_finite;
     return last_ == status::ok ? felt : wrench{};
@@ -87,7 +87,7 @@ class virtual_tool {
   [[nodiscard]] const probe_motion& motion() const noexcept { return motion_; }
 
  private:
-  virtual_tool_config config_;
+  virtual_tool_settings settings_;
   pose T_hc_;
   pose T_ca_;
   probe_motion motion_;

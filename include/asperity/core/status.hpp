@@ -18,6 +18,7 @@ enum class status : std::uint8_t {
   stale_input,       ///< the newest input is older than its limit
   not_ready,         ///< the object was not set up, or was closed
   backend_failed,    ///< a device or depth backend could not answer
+  gate_shut,         ///< the output gate is shut: the wrench was zeroed, and stays zero until the gate is cleared
 };
 
 /// The status in words.
@@ -37,6 +38,8 @@ enum class status : std::uint8_t {
       return "not ready";
     case status::backend_failed:
       return "backend failed";
+    case status::gate_shut:
+      return "gate shut";
   }
   return "unknown status";
 }

@@ -6,8 +6,7 @@
 //   arm() allows output: state armed. Both are outside a tick and say in one sentence what is wrong. arm() fails in any
 //   state but ready; nothing else ever arms: not a reconnection, not a cleared fault.
 // - read(now) fills in the newest measurement that the device has at `now`. Where nothing new came, the sample is the
-// last
-//   one, unchanged (same sequence, same times), and the status is ok: how old is too old is the caller's decision.
+//   last one, unchanged (same sequence, same times), and the status is ok: how old is too old is the caller's decision.
 //   Where the device cannot answer, the sample is untouched and the status says so.
 // - write(now) takes the wrench on the hand in wrench_frame::device_base. Where the state does not allow output, zero
 //   is put out. The device applies zero after valid_until_ns by itself where it can.
@@ -15,9 +14,9 @@
 // - read() and write() of a device that is gone, or not open, answer not_ready; where it is there and in a fault, or
 //   could not answer, backend_failed.
 // - Times are the session's clock, given by the caller, never decreasing. A device never reads a clock in read() or
-// write().
+//   write().
 // - read, write and disarm do not allocate, lock, throw or print. They may enter the kernel where the transport needs
-// it.
+//   it.
 // - One thread at a time. The destructor puts out zero and closes.
 #pragma once
 

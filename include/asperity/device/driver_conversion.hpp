@@ -93,6 +93,7 @@ inline void put_text(std::span<char> field, std::string_view text) noexcept {
     case status::not_ready:
       return ASPERITY_NOT_READY;
     case status::backend_failed:
+    case status::gate_shut:
       break;
   }
   return ASPERITY_FAILED;

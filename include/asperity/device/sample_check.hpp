@@ -41,7 +41,7 @@ enum class sample_verdict : std::uint8_t {
   return "unknown verdict";
 }
 
-struct sample_check_config {
+struct sample_check_settings {
   std::int64_t stale_after_ns = 20'000'000;  ///< age (now - host_time_ns, either sign) above which a sample is rejected
   double max_speed_m_per_s = 10.0;           ///< faster than a hand; a larger step between samples is an encoder fault
   double max_turn_rate_rad_per_s = 100.0;
@@ -52,7 +52,7 @@ struct sample_check_config {
 /// @rt safe
 class sample_check {
  public:
-  explicit sample_check(const sample_check_config& config = {}) noexcept : config_(config) {}
+  explicit sample_check(const sample_check_settings& settings = {}) noexcept : settings_(settings) {}
 
   /// Verdict on what read() left behind. Only an accepted sample may be used.
   [[nodiscard]] sample_verdict judge(std::int64_t now_ns, status read, const device_sample& s) noexcept {
@@ -70,7 +70,7 @@ class sample_check {
   }
 
   /// Whether so many samples in a row were rejected that the device must be given up.
-  [[nodiscard]] bool exhausted() const noexcept { return rejected_in_a_row_ >= config_.reject_limit; }
+  [[nodiscard]] bool exhausted() const noexcept { return rejected_in_a_row_ >= settings_.reject_limit; }
   [[nodiscard]] std::uint32_t rejected_in_a_row() const noexcept { return rejected_in_a_row_; }
   [[nodiscard]] std::uint64_t rejected() const noexcept { return rejected_; }
   /// Forgets the last pose, so that the next one may be anywhere.
@@ -95,8 +95,8 @@ class sample_check {
       const double dt = std::max(1e-3, static_cast<double>(s.host_time_ns - last_ns_) * 1e-9);
       const double step_m = glm::length(s.T_dh.position - last_T_dh_.position);
       const double turn_rad = glm::length(log_rotation(q * glm::conjugate(last_T_dh_.rotation)));
-      if (!(step_m <= config_.max_speed_m_per_s * dt)) return sample_verdict::jump;
-      if (!(turn_rad <= config_.max_turn_rate_rad_per_s * dt)) return sample_verdict::jump;
+      if (!(step_m <= settings_.max_speed_m_per_s * dt)) return sample_verdict::jump;
+      if (!(turn_rad <= settings_.max_turn_rate_rad_per_s * dt)) return sample_verdict::jump;
     }
     return sample_verdict::accepted;
   }
@@ -106,10 +106,10 @@ class sample_check {
   [[nodiscard]] bool is_recent(std::int64_t now_ns, std::int64_t host_time_ns) const noexcept {
     const auto [earlier, later] = std::minmax(now_ns, host_time_ns);
     const std::uint64_t apart = static_cast<std::uint64_t>(later) - static_cast<std::uint64_t>(earlier);
-    return apart <= static_cast<std::uint64_t>(std::max<std::int64_t>(0, config_.stale_after_ns));
+    return apart <= static_cast<std::uint64_t>(std::max<std::int64_t>(0, settings_.stale_after_ns));
   }
 
-  sample_check_config config_;
+  sample_check_settings settings_;
   bool has_last_ = false;
   pose last_T_dh_{};
   std::int64_t last_ns_ = 0;

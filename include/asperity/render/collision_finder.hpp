@@ -1,18 +1,23 @@
 // The first of the three policies: who touches whom.
 //
-// Contract of a collision finder
-// - find() reports the contacts between the coarse convex pieces of the probe and of every fixed body that are closer
-//   than its tolerance, overlapping ones included, clustered into contact patches.
-// - n_ab is a unit vector from A towards B; a gap has separation > 0, an overlap < 0.
-// - A patch lists coarse triangles that can hold a point of the contact inside its window, each once; a superset is
-//   allowed. The window is in the world; its centre lies halfway between the surfaces along n and in the middle of
-//   the region of contact, which moves continuously where witness points of parallel faces jump.
-// - The same poses after the same history give the same bits. State between ticks (cached simplices, contact ids,
-//   window axes) may change the cost and the frame {u, v}, never whether two pieces touch. One thing more may be kept:
-//   the direction of a contact that has grown too deep to have one. Such a contact is marked (contact::held).
-// - find() clears the set that it is given.
-// - Nothing in find() allocates, locks, throws, prints or reads a clock. Poses are finite; T_wb has one pose per fixed
-//   body. What does not fit is dropped, counted in contact_set::dropped(), and answered with capacity_reached.
+// Contract of every collision finder
+// - find() reports every place where the probe and a fixed body may touch: all that are closer than its reach,
+//   overlapping ones included. What it reports is of its found_type, and find() clears it first.
+// - The same poses after the same history give the same bits.
+// - Poses are finite; T_wb has one pose per fixed body. What does not fit is dropped, counted in the found_type, and
+//   answered with capacity_reached.
+// - Nothing in find() allocates, locks, throws, prints or reads a clock.
+//
+// What a formulation promises besides
+// - The paper's (found_type contact_set, convex_piece_finder): contacts between coarse convex pieces, clustered into
+//   patches. n_ab is a unit vector from A towards B; a gap has separation > 0, an overlap < 0. A patch lists coarse
+//   triangles that can hold a point of the contact inside its window, each once; a superset is allowed. The window is
+//   in the world; its centre lies halfway between the surfaces along n and in the middle of the region of contact,
+//   which moves continuously where witness points of parallel faces jump. State between ticks (cached simplices,
+//   contact ids, window axes) may change the cost and the frame {u, v}, never whether two pieces touch; the direction
+//   of a contact that has grown too deep to have one may be kept, and is marked (contact::held).
+// - Fields (found_type near_samples, field_finder): leaves of samples, a superset of those within reach. It keeps
+//   nothing between ticks, so that the same poses give the same bits whatever was before.
 #pragma once
 
 #include <concepts>

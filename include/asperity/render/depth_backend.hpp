@@ -1,13 +1,17 @@
 // The second policy: how deep, and which way out.
 //
-// Contract of a depth backend
-// - measure() fills out[i] for contact i of the set, for every contact, in one call: a GPU pays for its round trip once
-//   per tick.
-// - Heights along n are those of the textured surfaces over the coarse patches (paper, Eq. 8); out.depth_m is their
-//   largest difference h_A - h_B over the window. Gradients are about c_A, in world axes, the component along n is 1.
-// - Where the patches share no sample: no_overlap is set and every number is zero.
+// Contract of every depth backend
+// - measure() fills out[i] for the i-th place that was found, for every place, in one call: a GPU pays for its round
+//   trip once per tick.
+// - Depths are in metres, positive in overlap. Gradients are about c_A, in world axes.
 // - Agreement with the double-precision CPU backend is within a bound that the backend states.
 // - Nothing in measure() allocates, locks, throws, prints or reads a clock (a GPU backend says what its driver does).
+//
+// What a formulation promises besides
+// - The paper's (reading_type penetration): heights along n are those of the textured surfaces over the coarse
+//   patches (paper, Eq. 8), and depth_m is their largest difference h_A - h_B over the window; the gradient's
+//   component along n is 1. Where the patches share no sample, no_overlap is set and every number is zero.
+// - Fields (reading_type near_plane): the deepest sample of each leaf as a support plane.
 #pragma once
 
 #include <concepts>

@@ -1,17 +1,20 @@
 // The third policy: from depths to one wrench on the probe.
 //
-// Contract of a force model
+// Contract of every force model
 // - accumulate() turns what was read of all contacts into the net wrench on the probe A, about its centre of mass c_A,
-// in
-//   world axes, and its stiffness J = dW/dq, q = (translation of c_A; rotation about c_A). B feels the opposite.
-// - It is given the poses too: a model whose wrench is made of the depths alone leaves them as they are.
+//   in world axes, and its stiffness J = dW/dq, q = (translation of c_A; rotation about c_A). B feels the opposite.
 // - No contact, no overlap or a gap everywhere: exactly zero wrench and zero stiffness.
 // - J is symmetric negative semidefinite, so that an implicit step may use it whatever its size.
-// - It reports what a person would call the contacts: those that were found, or what the model makes of the bodies.
-//   They are a description of the force. The spans live until the next call.
+// - It reports contacts as a description of the force, one depth for each. The spans live until the next call.
 // - The answer depends on the arguments alone. A model keeps memory from call to call, and no more.
 // - Nothing in accumulate() allocates, locks, throws, prints or reads a clock.
 // - capacity_reached says that the wrench is usable and lacks something; what is neither that nor ok leaves a zero.
+//
+// What a formulation promises besides
+// - The paper's (gradient_penalty): the wrench is made of the depths alone, whatever the poses are, and the contacts
+//   reported are those that were found.
+// - Planes (plane_springs): a spring for each direction, on the deepest support plane of that direction.
+// - The least motion: the wrench is minus the gradient of an energy that depends on the pose alone.
 #pragma once
 
 #include <concepts>

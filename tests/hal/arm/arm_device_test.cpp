@@ -283,21 +283,21 @@ TEST(articulated_device, is_a_device_behind_any_device_and_leaves_nothing_on) {
 TEST(articulated_device, what_is_no_arm_is_refused) {
   arm_rig rig({.with_plant = false});
   const auto refused = [&rig](auto change) {
-    articulated_config c = rig.dev->config();
+    articulated_settings c = rig.dev->settings();
     change(c);
     const auto made = articulated_device::make(std::move(c));
     return made ? std::string() : made.error().message;
   };
-  EXPECT_NE(refused([](articulated_config& c) { c.clock = nullptr; }).find("clock"), std::string::npos);
-  EXPECT_NE(refused([](articulated_config& c) { c.joints.pop_back(); }).find("5 drives"), std::string::npos);
-  EXPECT_NE(refused([](articulated_config& c) { c.joints[2].drive = nullptr; }).find("joint 3"), std::string::npos);
-  EXPECT_NE(refused([](articulated_config& c) { c.joints[2].bus = 7; }).find("not there"), std::string::npos);
-  EXPECT_NE(refused([](articulated_config& c) { c.joints[2].drive = c.joints[1].drive; }).find("same drive"),
+  EXPECT_NE(refused([](articulated_settings& c) { c.clock = nullptr; }).find("clock"), std::string::npos);
+  EXPECT_NE(refused([](articulated_settings& c) { c.joints.pop_back(); }).find("5 drives"), std::string::npos);
+  EXPECT_NE(refused([](articulated_settings& c) { c.joints[2].drive = nullptr; }).find("joint 3"), std::string::npos);
+  EXPECT_NE(refused([](articulated_settings& c) { c.joints[2].bus = 7; }).find("not there"), std::string::npos);
+  EXPECT_NE(refused([](articulated_settings& c) { c.joints[2].drive = c.joints[1].drive; }).find("same drive"),
             std::string::npos);
-  EXPECT_NE(refused([](articulated_config& c) { c.buses[0].bus = nullptr; }).find("bus 1"), std::string::npos);
-  EXPECT_NE(refused([](articulated_config& c) { c.stop.zone_rad = NAN; }).find("soft stop"), std::string::npos);
-  cia402_drive nameless(cia402_config{.node = 9});
-  EXPECT_NE(refused([&](articulated_config& c) { c.joints[4].drive = &nameless; }).find("torque limit"),
+  EXPECT_NE(refused([](articulated_settings& c) { c.buses[0].bus = nullptr; }).find("bus 1"), std::string::npos);
+  EXPECT_NE(refused([](articulated_settings& c) { c.stop.zone_rad = NAN; }).find("soft stop"), std::string::npos);
+  cia402_drive nameless(cia402_settings{.node = 9});
+  EXPECT_NE(refused([&](articulated_settings& c) { c.joints[4].drive = &nameless; }).find("torque limit"),
             std::string::npos);
 }
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "asperity/drivers/articulated/articulated_config.hpp"
+#include "asperity/drivers/articulated/articulated_settings.hpp"
 #include "asperity/drivers/canopen/cia402_drive.hpp"
 #include "hal/peers/fake_arm.hpp"
 #include "hal/peers/fake_cia402.hpp"
@@ -45,8 +45,8 @@ inline constexpr double arm_counts = 65536.0;
 inline constexpr joint_vector arm_start_rad{0.1, -0.9, 1.7, 0.05, -0.7, 0.1};
 
 /// The mechanics, without a hand's motion.
-[[nodiscard]] inline fake_arm_config arm_mechanics() {
-  fake_arm_config c;
+[[nodiscard]] inline fake_arm_settings arm_mechanics() {
+  fake_arm_settings c;
   c.chain = desk_arm();
   c.start_rad = arm_start_rad;
   for (std::size_t i = 0; i < arm_joints; ++i) {
@@ -63,7 +63,7 @@ inline constexpr joint_vector arm_start_rad{0.1, -0.9, 1.7, 0.05, -0.7, 0.1};
 [[nodiscard]] inline std::uint8_t arm_node(std::size_t i) { return static_cast<std::uint8_t>(i + 1); }
 
 /// What the driver is told of motor i; the rest is `base`'s.
-[[nodiscard]] inline cia402_config arm_motor(std::size_t i, cia402_config base) {
+[[nodiscard]] inline cia402_settings arm_motor(std::size_t i, cia402_settings base) {
   base.node = arm_node(i);
   base.rated_torque_n_m = 1e-3 * arm_rated_m_n_m(i);
   base.peak_torque_n_m = i < 3 ? 12.0 : 3.0;

@@ -22,24 +22,24 @@ inline constexpr std::int64_t tick_ns = 1'000'000;
 
 struct rig_options {
   std::array<link_script, arm_buses> scripts{};  ///< of the host's end of each bus
-  std::optional<motion_config> motion{};         ///< of the hand; none: it holds still at the start
-  hand_config hand{};
+  std::optional<motion_settings> motion{};       ///< of the hand; none: it holds still at the start
+  hand_settings hand{};
   bool with_plant = true;  ///< without: the joints stand still, which costs no time
-  articulated_config device{};
-  cia402_config drive{};
+  articulated_settings device{};
+  cia402_settings drive{};
   bool starts_in_fault = false;
 };
 
 class arm_rig {
  public:
   explicit arm_rig(rig_options options = {}) : with_plant_(options.with_plant) {
-    fake_arm_config mechanics = arm_mechanics();
+    fake_arm_settings mechanics = arm_mechanics();
     mechanics.hand = options.hand;
-    mechanics.motion = options.motion.value_or(motion_config{.depth_m = 0.0});
+    mechanics.motion = options.motion.value_or(motion_settings{.depth_m = 0.0});
     if (!options.motion) mechanics.motion.T_dh = forward(mechanics.chain, arm_start_rad).T_dh;
     plant = std::make_unique<fake_arm>(mechanics);
 
-    articulated_config c = options.device;
+    articulated_settings c = options.device;
     c.chain = mechanics.chain;
     c.clock = &clock;
     c.rest_rad = arm_start_rad;
@@ -51,9 +51,9 @@ class arm_rig {
     }
     for (std::size_t i = 0; i < arm_joints; ++i) {
       nodes[i] = std::make_unique<virtual_can_node>(*buses[i / 2]);
-      fakes[i] = std::make_unique<fake_cia402>(fake_cia402_config{.node = arm_node(i),
-                                                                  .rated_torque_m_n_m = arm_rated_m_n_m(i),
-                                                                  .starts_in_fault = options.starts_in_fault},
+      fakes[i] = std::make_unique<fake_cia402>(fake_cia402_settings{.node = arm_node(i),
+                                                                    .rated_torque_m_n_m = arm_rated_m_n_m(i),
+                                                                    .starts_in_fault = options.starts_in_fault},
                                                *nodes[i]);
       drives[i] = std::make_unique<cia402_drive>(arm_motor(i, options.drive));
       c.joints.push_back(arm_joint_of(i, *drives[i]));

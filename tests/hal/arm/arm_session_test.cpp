@@ -39,7 +39,7 @@ struct watch {
 struct arm_session_case {
   const char* name;
   motion_kind kind = motion_kind::press;
-  hand_config hand{};
+  hand_settings hand{};
   std::int64_t contact_period_ns = 1'000'000;
   bool late = false;
   bool guard = true;
@@ -68,15 +68,15 @@ arm_session_result run(const arm_session_case& c, Renderer renderer, scene_place
   rig_options o;
   o.hand = c.hand;
   const pose start = forward(desk_arm(), arm_start_rad).T_dh;
-  o.motion = motion_config{.kind = c.kind,
-                           .T_dh = start,
-                           .direction_d = {0.0, 0.0, -1.0},
-                           .sideways_d = {0.0, 1.0, 0.0},
-                           .depth_m = 0.022,
-                           .approach_s = 1.6,
-                           .amplitude_m = 0.006,
-                           .amplitude_rad = 0.1,
-                           .frequency_hz = 1.5};
+  o.motion = motion_settings{.kind = c.kind,
+                             .T_dh = start,
+                             .direction_d = {0.0, 0.0, -1.0},
+                             .sideways_d = {0.0, 1.0, 0.0},
+                             .depth_m = 0.022,
+                             .approach_s = 1.6,
+                             .amplitude_m = 0.006,
+                             .amplitude_rad = 0.1,
+                             .frequency_hz = 1.5};
   o.device.gravity_ramp_ns = 100'000'000;
   arm_rig rig(o);
   arm_session_result out;
@@ -86,7 +86,7 @@ arm_session_result run(const arm_session_case& c, Renderer renderer, scene_place
   }
 
   clocked_arm dev(rig);
-  control_config control;
+  control_settings control;
   control.guard.enabled = c.guard;
   // The world's origin lies on the surface, under the handle; the probe is tilted a little, so that a torque is felt.
   control.map.T_wd.position = -(start.position + vec3(0.0, 0.0, surface_d_m));

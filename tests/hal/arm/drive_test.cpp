@@ -13,8 +13,8 @@ namespace {
 using namespace asperity;
 using namespace asperity::test_support;
 
-cia402_config motor() {
-  cia402_config c;
+cia402_settings motor() {
+  cia402_settings c;
   c.node = 5;
   c.rated_torque_n_m = 0.4;
   c.peak_torque_n_m = 8.0;
@@ -25,8 +25,8 @@ cia402_config motor() {
 
 /// What an application does with one drive.
 struct bench {
-  explicit bench(cia402_config config = motor(), fake_cia402_config peer = {.node = 5}, link_script script = {})
-      : host(bus, std::move(script)), node(bus), fake(peer, node), drive(config) {
+  explicit bench(cia402_settings settings = motor(), fake_cia402_settings peer = {.node = 5}, link_script script = {})
+      : host(bus, std::move(script)), node(bus), fake(peer, node), drive(settings) {
     clock.on_advance([this](std::int64_t now) {
       fake.step(now);
       largest = std::max(largest, std::abs(fake.torque_permille()));
@@ -123,7 +123,7 @@ TEST(cia402_drive, comes_up_configured_and_puts_out_the_torque_it_is_told) {
 }
 
 TEST(cia402_drive, reversed_turns_angle_and_torque) {
-  cia402_config c = motor();
+  cia402_settings c = motor();
   c.reversed = true;
   c.zero_offset_rad = 1.0;
   bench b(c);

@@ -29,7 +29,7 @@ asperity::can_frame frame_of(std::uint32_t id, std::uint8_t size = 8) {
 
 class socketcan : public testing::Test {
  protected:
-  void open(const can::socketcan_options& options = {}) {
+  void open(const can::socketcan_settings& options = {}) {
     auto opened = can::open_socketcan("can0", options, *kernel);
     ASSERT_TRUE(opened) << opened.error().message;
     bus = std::move(opened).value();
@@ -109,7 +109,7 @@ TEST_F(socketcan, each_way_of_not_opening_has_its_sentence) {
 // where only a bigger buffer was refused, a bus.
 TEST_F(socketcan, opening_survives_the_failure_of_every_call) {
   fake_kernel untroubled;
-  const can::socketcan_options options{.fd = true, .filters = {{.id = 1, .mask = 0x7FF}}};
+  const can::socketcan_settings options{.fd = true, .filters = {{.id = 1, .mask = 0x7FF}}};
   ASSERT_TRUE(can::open_socketcan("can0", options, untroubled));
   EXPECT_EQ(untroubled.open_descriptors, 0) << "the bus closes its descriptor";
   int opened_after_all = 0;

@@ -28,11 +28,11 @@ class scripted_driver final : public device_driver {
     return bus_->plugged;
   }
   result<any_device> make(const device_listing& which) override {
-    simulated_config config;
-    config.seed = static_cast<std::uint64_t>(which.identity.back() - '0');
-    config.motion = {.kind = motion_kind::press, .T_dh = {quat(1, 0, 0, 0), {0, 0, 0.002}}, .depth_m = 0.01};
-    if (which.identity == "arm:2") config.faults = {{device_fault::depart, 400'000'000, 2'000'000'000}};
-    return any_device(simulated_device(config));
+    simulated_settings settings;
+    settings.seed = static_cast<std::uint64_t>(which.identity.back() - '0');
+    settings.motion = {.kind = motion_kind::press, .T_dh = {quat(1, 0, 0, 0), {0, 0, 0.002}}, .depth_m = 0.01};
+    if (which.identity == "arm:2") settings.faults = {{device_fault::depart, 400'000'000, 2'000'000'000}};
+    return any_device(simulated_device(settings));
   }
 
  private:
@@ -130,7 +130,7 @@ struct one_hand {
 
   explicit one_hand(any_device d)
       : device(std::move(d)),
-        session(analytic_wall{}, {{pose{}}, vec3(0.0)}, device, control_config{}, {}, felt{&records}) {
+        session(analytic_wall{}, {{pose{}}, vec3(0.0)}, device, control_settings{}, {}, felt{&records}) {
     records.reserve(2000);
     EXPECT_TRUE(device.open() && device.arm());
   }

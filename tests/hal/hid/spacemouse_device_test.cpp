@@ -17,7 +17,7 @@ constexpr std::int64_t ms = 1'000'000;
 // A fake on one end of a cable, the driver on the other.
 struct bench {
   explicit bench(spacemouse_kind kind = spacemouse_kind::classic, link_script script = {},
-                 spacemouse_config config = {})
+                 spacemouse_settings settings = {})
       : cable(fake_spacemouse::descriptor(kind), std::move(script)),
         mouse(kind, [this](std::int64_t t, std::span<const std::uint8_t> r) { cable.send(t, r); }),
         device(
@@ -26,7 +26,7 @@ struct bench {
               ++opened;
               return cable.host_end();
             },
-            config) {}
+            settings) {}
 
   status run_to(std::int64_t until_ns) {
     status s = status::ok;
@@ -113,7 +113,7 @@ TEST(spacemouse_motion, moves_no_faster_than_it_may_whatever_comes_in) {
   const std::array<double, 12> values{0.0, 1.0, -1.0, 0.3, nan, inf, -inf, 1e300, -1e300, 93.6, -93.6, 5e-324};
   std::mt19937_64 bits(5);
   for (const bool broken : {false, true}) {
-    spacemouse_motion_config c;
+    spacemouse_motion_settings c;
     if (broken) {
       c.max_speed_m_per_s = inf;
       c.max_turn_rad_per_s = nan;

@@ -42,11 +42,11 @@ struct desk {
             },
             config_for(shown_n)) {
     EXPECT_TRUE(device.open() && device.arm());
-    session.emplace(analytic_wall{}, scene_placement{{pose{}}, vec3(0.0)}, device, control_config{});
+    session.emplace(analytic_wall{}, scene_placement{{pose{}}, vec3(0.0)}, device, control_settings{});
   }
 
-  static spacemouse_config config_for(double shown_n) {
-    spacemouse_config c;
+  static spacemouse_settings config_for(double shown_n) {
+    spacemouse_settings c;
     c.motion.T_dh_start.position = {0, 0, 0.01};
     c.shown_force_n = shown_n;
     return c;

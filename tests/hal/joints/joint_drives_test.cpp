@@ -288,13 +288,13 @@ TYPED_TEST(JointDrives, a_reset_in_the_middle_does_not_bring_torque_back) {
 }
 
 TYPED_TEST(JointDrives, options_out_of_range_are_a_fault_and_no_torque) {
-  const auto refused = [](const joint_drive_options& joint) {
+  const auto refused = [](const joint_drive_settings& joint) {
     rig<TypeParam> r({}, TypeParam::options(joint));
     r.drive.start(r.clock.now_ns());
     r.run(20 * ms);
-    return r.drive.state() == drive_state::fault && r.why_contains("options") && r.peer.frames() == 0;
+    return r.drive.state() == drive_state::fault && r.why_contains("settings") && r.peer.frames() == 0;
   };
-  joint_drive_options o = geared();
+  joint_drive_settings o = geared();
   for (const double bad : {std::nan(""), 0.0, -1.0, HUGE_VAL}) {
     o = geared();
     o.peak_torque_n_m = bad;

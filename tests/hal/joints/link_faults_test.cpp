@@ -103,7 +103,7 @@ TYPED_TEST(LinkFaults, a_bad_link_never_brings_more_torque_than_asked_for) {
 
 // The n-th call on the bus fails, for every n of a whole session.
 TYPED_TEST(LinkFaults, the_nth_call_that_fails_leaves_no_torque_and_a_cause) {
-  joint_drive_options joint = geared();
+  joint_drive_settings joint = geared();
   const auto session = [](rig<TypeParam>& r) {
     r.drive.start(r.clock.now_ns());
     if (!r.run_until(drive_state::idle, 300 * ms) || !r.drive.enable(r.clock.now_ns())) return;

@@ -24,8 +24,8 @@ namespace asperity::test_support {
 constexpr std::int64_t ms = 1'000'000;
 
 /// A geared and reversed joint, so that a forgotten sign or ratio shows.
-inline joint_drive_options geared() {
-  joint_drive_options o;
+inline joint_drive_settings geared() {
+  joint_drive_settings o;
   o.scale = {.gear_ratio = 6.0, .reversed = true, .zero_rad = 0.25};
   o.peak_torque_n_m = 20.0;
   return o;
@@ -44,10 +44,10 @@ struct mit_kind {
   using fake = fake_mit;
   static constexpr const char* name = "MIT";
   static constexpr own_fault broken{2, 2, "over-current"};
-  static mit_options options(const joint_drive_options& joint) {
+  static mit_settings options(const joint_drive_settings& joint) {
     return {.joint = joint, .ranges = mit::ak60_6, .watchdog_set = true};
   }
-  static fake::config peer() { return {.ranges = mit::ak60_6}; }
+  static fake::settings peer() { return {.ranges = mit::ak60_6}; }
   static std::optional<double> torque_of(const can_frame& f) {
     bool special = true;
     for (std::size_t i = 0; i < 7; ++i) special = special && f.data[i] == 0xff;
@@ -71,22 +71,22 @@ struct odrive_kind {
 struct odrive_0_6_kind : odrive_kind {
   static constexpr const char* name = "ODrive 0.6";
   static constexpr own_fault broken{0x100, 0x100, "over-voltage"};
-  static odrive_options options(const joint_drive_options& joint) {
-    odrive_options o{.joint = joint, .node = 3, .watchdog_set = true};
+  static odrive_settings options(const joint_drive_settings& joint) {
+    odrive_settings o{.joint = joint, .node = 3, .watchdog_set = true};
     o.joint.quiet_ns = 30 * ms;
     return o;
   }
-  static fake::config peer() { return {}; }
+  static fake::settings peer() { return {}; }
 };
 struct odrive_0_5_kind : odrive_kind {
   static constexpr const char* name = "ODrive 0.5";
   static constexpr own_fault broken{0x40, 0x40, "motor"};
-  static odrive_options options(const joint_drive_options& joint) {
-    odrive_options o = odrive_0_6_kind::options(joint);
+  static odrive_settings options(const joint_drive_settings& joint) {
+    odrive_settings o = odrive_0_6_kind::options(joint);
     o.torque_constant_n_m_per_a = 0.05;
     return o;
   }
-  static fake::config peer() { return {.firmware = odrive::firmware::v0_5}; }
+  static fake::settings peer() { return {.firmware = odrive::firmware::v0_5}; }
 };
 
 struct moteus_kind {
@@ -94,8 +94,8 @@ struct moteus_kind {
   using fake = fake_moteus;
   static constexpr const char* name = "moteus";
   static constexpr own_fault broken{34, 34, "over-voltage"};
-  static moteus_options options(const joint_drive_options& joint) { return {.joint = joint}; }
-  static fake::config peer() { return {}; }
+  static moteus_settings options(const joint_drive_settings& joint) { return {.joint = joint}; }
+  static fake::settings peer() { return {}; }
   static std::optional<double> torque_of(const can_frame& f) {
     // The one form in which the driver commands; whatever else writes a mode is a stop.
     if (f.size < 3 || f.data[0] != 0x01 || f.data[1] != 0x00 || f.data[2] != 0x0a) return std::nullopt;
@@ -132,10 +132,10 @@ class rig {
   using options_type = decltype(Kind::options(geared()));
 
   explicit rig(link_script script = {}, options_type options = Kind::options(geared()),
-               typename Kind::fake::config peer_config = Kind::peer())
+               typename Kind::fake::settings peer_settings = Kind::peer())
       : host(bus, std::move(script)),
         far(bus),
-        peer(far, peer_config),
+        peer(far, peer_settings),
         drive(options),
         watched(host, [this](const can_frame& f) { look(f); }) {
     clock.on_advance([this](std::int64_t now_ns) { peer.step(now_ns); });

@@ -52,7 +52,7 @@ TEST(MitDrive, feeds_the_drives_watchdog_with_the_applications_commands_only) {
 }
 
 TEST(MitDrive, a_limit_below_the_zero_of_the_wire_is_refused) {
-  joint_drive_options o = geared();
+  joint_drive_settings o = geared();
   o.peak_torque_n_m = 0.02;  // 15 N m / 4095 * 6 is more
   rig<mit_kind> r({}, mit_kind::options(o));
   r.drive.start(r.clock.now_ns());
@@ -70,7 +70,7 @@ TEST(OdriveDrive, picks_the_table_by_the_version) {
 }
 
 TEST(OdriveDrive, another_firmware_is_refused) {
-  fake_odrive::config c;
+  fake_odrive::settings c;
   c.version = {2, 5, 0, 0, 0, 7, 1, 0};
   rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
   r.drive.start(r.clock.now_ns());
@@ -80,7 +80,7 @@ TEST(OdriveDrive, another_firmware_is_refused) {
 }
 
 TEST(OdriveDrive, what_another_program_left_running_is_stopped_first) {
-  fake_odrive::config c;
+  fake_odrive::settings c;
   c.watchdog_ns = 0;
   rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
   r.peer.leave_behind(2.0F);
@@ -90,7 +90,7 @@ TEST(OdriveDrive, what_another_program_left_running_is_stopped_first) {
 }
 
 TEST(OdriveDrive, an_axis_that_does_not_obey_is_stopped_harder) {
-  fake_odrive::config c;
+  fake_odrive::settings c;
   c.watchdog_ns = 0;
   rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
   ASSERT_TRUE(r.go(10.0));
@@ -105,7 +105,7 @@ TEST(OdriveDrive, an_axis_that_does_not_obey_is_stopped_harder) {
 
 TEST(OdriveDrive, feeds_the_drives_watchdog_with_the_applications_commands_only) {
   for (const auto v : {odrive::firmware::v0_5, odrive::firmware::v0_6}) {
-    fake_odrive::config c;
+    fake_odrive::settings c;
     c.firmware = v;
     c.watchdog_ns = 5 * ms;
     rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
@@ -121,7 +121,7 @@ TEST(OdriveDrive, feeds_the_drives_watchdog_with_the_applications_commands_only)
 }
 
 TEST(OdriveDrive, heartbeats_that_stop_are_a_fault_though_estimates_come) {
-  fake_odrive::config c;
+  fake_odrive::settings c;
   rig<odrive_0_6_kind> r({}, odrive_0_6_kind::options(geared()), c);
   ASSERT_TRUE(r.go(10.0));
   r.run(10 * ms);
@@ -140,7 +140,7 @@ TEST(OdriveDrive, heartbeats_that_stop_are_a_fault_though_estimates_come) {
 }
 
 TEST(MoteusDrive, another_version_of_the_registers_is_refused) {
-  fake_moteus::config c;
+  fake_moteus::settings c;
   c.register_map = 4;
   rig<moteus_kind> r({}, moteus_kind::options(geared()), c);
   r.drive.start(r.clock.now_ns());
@@ -168,7 +168,7 @@ TEST(MoteusDrive, every_command_carries_its_watchdog_and_its_limit) {
 
 // Silent for longer than the drive's watchdog and shorter than the driver's own limits: the drive's word is passed on.
 TEST(MoteusDrive, an_expired_watchdog_is_told) {
-  joint_drive_options joint = geared();
+  joint_drive_settings joint = geared();
   joint.quiet_ns = joint.hold_ns = joint.silence_ns = 500 * ms;
   rig<moteus_kind> r({}, moteus_kind::options(joint));
   ASSERT_TRUE(r.go(10.0));

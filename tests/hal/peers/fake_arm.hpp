@@ -51,13 +51,13 @@ namespace asperity::test_support {
   return out;
 }
 
-struct fake_arm_config {
+struct fake_arm_settings {
   serial_chain chain{};
   joint_vector start_rad{};
   joint_vector reflected_kg_m2{};
   joint_vector friction_n_m_s_per_rad{};
-  hand_config hand{};
-  motion_config motion{};
+  hand_settings hand{};
+  motion_settings motion{};
   std::uint64_t seed = 1;
   bool hand_holds = true;
   std::int64_t step_ns = 50'000;
@@ -66,9 +66,9 @@ struct fake_arm_config {
 /// Integrates in steps of one length: semi-implicit, dampers at the end of the step. Full rigid-body dynamics.
 class fake_arm {
  public:
-  explicit fake_arm(const fake_arm_config& config)
-      : config_(config), motion_(config.motion, config.seed), q_(config.start_rad) {
-    at_ = forward(config_.chain, q_);
+  explicit fake_arm(const fake_arm_settings& settings)
+      : settings_(settings), motion_(settings.motion, settings.seed), q_(settings.start_rad) {
+    at_ = forward(settings_.chain, q_);
   }
 
   void set_torques(const joint_vector& t) { torque_ = t; }
@@ -80,20 +80,20 @@ class fake_arm {
       started_ = true;
       origin_ns_ = now_ns_ = now_ns;
     }
-    while (now_ns_ + config_.step_ns <= now_ns) step();
+    while (now_ns_ + settings_.step_ns <= now_ns) step();
   }
 
   [[nodiscard]] const joint_vector& q() const { return q_; }
   [[nodiscard]] const joint_vector& qd() const { return qd_; }
   [[nodiscard]] const pose& T_dh() const { return at_.T_dh; }
-  [[nodiscard]] twist velocity_d() const { return handle_velocity(config_.chain, at_, qd_); }
-  [[nodiscard]] const serial_chain& chain() const { return config_.chain; }
+  [[nodiscard]] twist velocity_d() const { return handle_velocity(settings_.chain, at_, qd_); }
+  [[nodiscard]] const serial_chain& chain() const { return settings_.chain; }
   /// Work of the motors beyond what holds the links against gravity: what reaches the hand's side, J.
   [[nodiscard]] double delivered_j() const { return delivered_j_; }
   /// Integral of |motor torque - (J^T intended + gravity)| |speed|, J: the most that rounding, lag and delay can add.
   [[nodiscard]] double astray_j() const { return astray_j_; }
   [[nodiscard]] double kinetic_j() const {
-    const joint_matrix m = inertia_of(config_.chain, at_, config_.reflected_kg_m2);
+    const joint_matrix m = inertia_of(settings_.chain, at_, settings_.reflected_kg_m2);
     double e = 0.0;
     for (std::size_t i = 0; i < n(); ++i) {
       for (std::size_t j = 0; j < n(); ++j) e += 0.5 * qd_[i] * m[i][j] * qd_[j];
@@ -102,20 +102,20 @@ class fake_arm {
   }
 
  private:
-  [[nodiscard]] std::size_t n() const { return config_.chain.joints.size(); }
+  [[nodiscard]] std::size_t n() const { return settings_.chain.joints.size(); }
 
   void step() {
-    const double h = 1e-9 * static_cast<double>(config_.step_ns);
+    const double h = 1e-9 * static_cast<double>(settings_.step_ns);
     const hand_target hand = motion_.at(1e-9 * static_cast<double>(now_ns_ - origin_ns_));
-    const hand_config& g = config_.hand;
-    joint_matrix m = inertia_of(config_.chain, at_, config_.reflected_kg_m2);
-    const joint_vector bias = newton_euler(config_.chain, q_, qd_, {});
-    const joint_vector weight = torques_against_gravity(config_.chain, at_);
+    const hand_settings& g = settings_.hand;
+    joint_matrix m = inertia_of(settings_.chain, at_, settings_.reflected_kg_m2);
+    const joint_vector bias = newton_euler(settings_.chain, q_, qd_, {});
+    const joint_vector weight = torques_against_gravity(settings_.chain, at_);
     std::array<vec6, most_joints> column{};
     for (std::size_t i = 0; i < n(); ++i) column[i] = jacobian_column(at_, i);
 
     vec6 pull;
-    if (config_.hand_holds) {
+    if (settings_.hand_holds) {
       pull.linear =
           g.stiffness_n_per_m * (hand.T_dh.position - at_.T_dh.position) + g.damping_n_s_per_m * hand.velocity_d.linear;
       pull.angular = g.stiffness_n_m_per_rad * log_rotation(hand.T_dh.rotation * glm::conjugate(at_.T_dh.rotation)) +
@@ -127,8 +127,8 @@ class fake_arm {
       rhs[i] += h * (torque_[i] + dot(column[i], pull) - bias[i]);
     }
     for (std::size_t i = 0; i < n(); ++i) {
-      m[i][i] += h * config_.friction_n_m_s_per_rad[i];
-      if (!config_.hand_holds) continue;
+      m[i][i] += h * settings_.friction_n_m_s_per_rad[i];
+      if (!settings_.hand_holds) continue;
       for (std::size_t j = 0; j < n(); ++j) {
         m[i][j] += h * (g.damping_n_s_per_m * glm::dot(column[i].linear, column[j].linear) +
                         g.damping_n_m_s_per_rad * glm::dot(column[i].angular, column[j].angular));
@@ -140,11 +140,11 @@ class fake_arm {
       astray_j_ += h * std::fabs(torque_[i] - weight[i] - dot(column[i], to_vec6(intended_))) * std::fabs(qd_[i]);
       q_[i] += h * qd_[i];
     }
-    at_ = forward(config_.chain, q_);
-    now_ns_ += config_.step_ns;
+    at_ = forward(settings_.chain, q_);
+    now_ns_ += settings_.step_ns;
   }
 
-  fake_arm_config config_;
+  fake_arm_settings settings_;
   motion_script motion_;
   joint_vector q_{};
   joint_vector qd_{};

@@ -15,7 +15,7 @@
 
 namespace asperity::test_support {
 
-struct fake_cia402_config {
+struct fake_cia402_settings {
   std::uint8_t node = 1;
   std::uint32_t rated_torque_m_n_m = 400;
   std::uint32_t supported_modes = 0x3ad;  // many, with bit 9
@@ -27,8 +27,8 @@ struct fake_cia402_config {
 /// One drive on a bus. Call step() often; everything else is for tests.
 class fake_cia402 {
  public:
-  fake_cia402(const fake_cia402_config& config, can_bus& bus) : config_(config), bus_(bus) {
-    if (config.starts_in_fault) power_ = canopen::power_state::fault;
+  fake_cia402(const fake_cia402_settings& settings, can_bus& bus) : settings_(settings), bus_(bus) {
+    if (settings.starts_in_fault) power_ = canopen::power_state::fault;
     reset_objects();
   }
 
@@ -40,13 +40,13 @@ class fake_cia402 {
     if (boots_at_ns_ && now_ns >= *boots_at_ns_) {
       boots_at_ns_.reset();
       nmt_ = canopen::nmt_state::pre_operational;
-      send(canopen::encode_heartbeat(config_.node, canopen::nmt_state::boot_up));
+      send(canopen::encode_heartbeat(settings_.node, canopen::nmt_state::boot_up));
     }
     if (nmt_ == canopen::nmt_state::boot_up) return;
     const std::uint64_t beat_ms = value(0x1017, 0);
     if (beat_ms != 0 && !mute_heartbeat && now_ns - beat_ns_ >= static_cast<std::int64_t>(beat_ms) * 1'000'000) {
       beat_ns_ = now_ns;
-      send(canopen::encode_heartbeat(config_.node, nmt_));
+      send(canopen::encode_heartbeat(settings_.node, nmt_));
     }
     watch_host();
     switch_power();
@@ -109,7 +109,7 @@ class fake_cia402 {
                             bool mappable = false) {
       if (!missing_.contains(key(index, sub))) objects_[key(index, sub)] = {v, size, writable, mappable};
     };
-    const std::uint32_t n = config_.node;
+    const std::uint32_t n = settings_.node;
     add(0x1016, 0, 1, 1, false);
     add(0x1016, 1, 0, 4, true);
     add(0x1017, 0, 0, 2, true);
@@ -135,10 +135,10 @@ class fake_cia402 {
     add(0x606c, 0, 0, 4, false, true);
     add(0x6071, 0, 77, 2, true, true);  // left over from somebody else
     add(0x6072, 0, 1000, 2, true, true);
-    add(0x6076, 0, config_.rated_torque_m_n_m, 4, false);
+    add(0x6076, 0, settings_.rated_torque_m_n_m, 4, false);
     add(0x6077, 0, 0, 2, false, true);
     add(0x60b2, 0, 0, 2, true, true);
-    add(0x6502, 0, config_.supported_modes, 4, false);
+    add(0x6502, 0, settings_.supported_modes, 4, false);
   }
 
   void send(const can_frame& f) { static_cast<void>(bus_.send(now_ns_, f)); }
@@ -155,7 +155,7 @@ class fake_cia402 {
     host_seen_ns_.reset();
     waiting_ = {};
     control_ = 0;
-    if (!mute_boot_up) boots_at_ns_ = now_ns_ + config_.boot_ns;
+    if (!mute_boot_up) boots_at_ns_ = now_ns_ + settings_.boot_ns;
   }
 
   void fault(std::uint16_t code) {
@@ -163,18 +163,18 @@ class fake_cia402 {
     power_ = canopen::power_state::fault;
     next_power_.reset();
     if (sends_emergency && nmt_ != canopen::nmt_state::boot_up) {
-      send(canopen::encode_emergency(config_.node, {code, 0x01}));
+      send(canopen::encode_emergency(settings_.node, {code, 0x01}));
     }
   }
 
   void take(const can_frame& f) {
     if (const auto order = canopen::decode_nmt(f)) {
-      if (order->node == 0 || order->node == config_.node) obey(order->command);
+      if (order->node == 0 || order->node == settings_.node) obey(order->command);
       return;
     }
     if (nmt_ == canopen::nmt_state::boot_up) return;
     if (canopen::is_sync(f)) return sync();
-    if (const auto request = canopen::decode_request(f, config_.node)) {
+    if (const auto request = canopen::decode_request(f, settings_.node)) {
       if (nmt_ != canopen::nmt_state::stopped && !mute_sdo) answer(*request);
       return;
     }
@@ -200,19 +200,19 @@ class fake_cia402 {
   }
 
   void answer(const canopen::sdo_request& r) {
-    const auto abort = [&](std::uint32_t code) { send(canopen::encode_abort(config_.node, r.at, code)); };
+    const auto abort = [&](std::uint32_t code) { send(canopen::encode_abort(settings_.node, r.at, code)); };
     if (const auto no = refused_.find(key(r.at.index, r.at.sub)); no != refused_.end()) return abort(no->second);
     const auto at = objects_.find(key(r.at.index, r.at.sub));
     if (at == objects_.end()) return abort(canopen::abort_code::no_object);
     if (!r.write) {
       return send(
-          canopen::encode_value(config_.node, r.at, static_cast<std::uint32_t>(at->second.value), at->second.size));
+          canopen::encode_value(settings_.node, r.at, static_cast<std::uint32_t>(at->second.value), at->second.size));
     }
     if (!at->second.writable) return abort(canopen::abort_code::read_only);
     if (r.size != 0 && r.size != at->second.size) return abort(canopen::abort_code::wrong_length);
     if (const std::uint32_t bad = mapping_error(r)) return abort(bad);
     if (!ignored_.contains(at->first)) at->second.value = r.value;
-    send(canopen::encode_written(config_.node, r.at));
+    send(canopen::encode_written(settings_.node, r.at));
   }
 
   // CiA 301, 7.5.2.36: a mapping changes only while its PDO is off and empty.
@@ -249,7 +249,7 @@ class fake_cia402 {
     std::size_t length = 0;
     for (std::uint8_t i = 1; i <= value(map, 0); ++i) length += (value(map, i) & 0xff) / 8;
     if (f.size < length) {
-      send(canopen::encode_emergency(config_.node, {0x8210, 0x10}));
+      send(canopen::encode_emergency(settings_.node, {0x8210, 0x10}));
       return;
     }
     std::size_t at = 0;
@@ -322,7 +322,7 @@ class fake_cia402 {
     }
     const auto command = word & 0x0f;
     const auto later = [this](canopen::power_state to) {
-      if (!next_power_) next_power_at_ns_ = now_ns_ + config_.switching_ns;
+      if (!next_power_) next_power_at_ns_ = now_ns_ + settings_.switching_ns;
       next_power_ = to;
     };
     if ((command & 0x02) == 0) {  // disable voltage
@@ -354,14 +354,14 @@ class fake_cia402 {
     const auto limit_ns = static_cast<std::int64_t>(watched & 0xffff) * 1'000'000;
     if (limit_ns == 0 || !host_seen_ns_ || now_ns_ - *host_seen_ns_ <= limit_ns) return;
     host_seen_ns_.reset();
-    send(canopen::encode_emergency(config_.node, {0x8130, 0x11}));
+    send(canopen::encode_emergency(settings_.node, {0x8130, 0x11}));
     if (value(0x6007, 0) != 0 || missing_.contains(key(0x6007, 0))) {
       power_ = canopen::power_state::fault;
       next_power_.reset();
     }
   }
 
-  fake_cia402_config config_;
+  fake_cia402_settings settings_;
   can_bus& bus_;
   std::int64_t now_ns_ = 0;
   canopen::nmt_state nmt_ = canopen::nmt_state::pre_operational;

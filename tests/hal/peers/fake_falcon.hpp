@@ -21,7 +21,7 @@
 
 namespace asperity::test_support {
 
-struct fake_falcon_config {
+struct fake_falcon_settings {
   std::vector<std::uint8_t> image{};  ///< what it wants before it runs
   bool awake = false;                 ///< the firmware runs from the start
   bool homed = false;
@@ -34,12 +34,14 @@ struct fake_falcon_config {
 
 class fake_falcon {
  public:
-  explicit fake_falcon(fake_falcon_config config = {}) : config_(std::move(config)), bits_(config_.seed) { power_on(); }
+  explicit fake_falcon(fake_falcon_settings settings = {}) : settings_(std::move(settings)), bits_(settings_.seed) {
+    power_on();
+  }
 
   /// As after plugging the power in.
   void power_on() {
-    mode_ = config_.awake ? mode::running : mode::asleep;
-    homed_ = config_.homed ? falcon_all_homed : 0;
+    mode_ = settings_.awake ? mode::running : mode::asleep;
+    homed_ = settings_.homed ? falcon_all_homed : 0;
     homing_frames_ = 0;
     applied_ = {};
     stored_.clear();
@@ -55,7 +57,7 @@ class fake_falcon {
   void free_encoders() { forced_.first = false; }
   void forget_homing() {
     homed_ = 0;
-    config_.frames_to_home = 1 << 30;
+    settings_.frames_to_home = 1 << 30;
   }
   void fall_silent(bool silent) { silent_ = silent; }
 
@@ -112,7 +114,7 @@ class fake_falcon {
   /// The next transfer to the host, at most 512 bytes. @return its size: at least the chip's two bytes of status
   std::size_t transmit(std::span<std::uint8_t> transfer) {
     std::size_t payload = std::min<std::size_t>(waiting_.size(), 5 * ftdi_payload_size);
-    if (config_.split && payload > 0) payload = bits_() % (payload + 1);
+    if (settings_.split && payload > 0) payload = bits_() % (payload + 1);
     std::size_t size = 0;
     do {
       transfer[size++] = 0x01;
@@ -142,7 +144,7 @@ class fake_falcon {
   void set_baud(std::uint16_t divisor) {
     baud_ = divisor;
     if (divisor == 2 && mode_ == mode::loading && !stored_.empty()) {
-      mode_ = stored_ == config_.image ? mode::running : mode::asleep;
+      mode_ = stored_ == settings_.image ? mode::running : mode::asleep;
     }
   }
 
@@ -160,8 +162,8 @@ class fake_falcon {
       mode_ = mode::loading;
       say(std::span(&byte, 1));
     } else if (mode_ == mode::loading && baud_ == 0x15) {
-      const bool wrong = static_cast<long>(stored_.size()) == config_.wrong_echo_at && config_.wrong_echoes > 0;
-      if (wrong) --config_.wrong_echoes;
+      const bool wrong = static_cast<long>(stored_.size()) == settings_.wrong_echo_at && settings_.wrong_echoes > 0;
+      if (wrong) --settings_.wrong_echoes;
       stored_.push_back(byte);
       const auto echo = static_cast<std::uint8_t>(wrong ? byte ^ 0x10 : byte);
       say(std::span(&echo, 1));
@@ -177,7 +179,7 @@ class fake_falcon {
     applied_ = command.motor_counts;
     light_ = command.light;
     for (const std::int16_t c : applied_) largest_ = std::max(largest_, std::abs(static_cast<int>(c)));
-    if (command.home && ++homing_frames_ >= config_.frames_to_home) homed_ = falcon_all_homed;
+    if (command.home && ++homing_frames_ >= settings_.frames_to_home) homed_ = falcon_all_homed;
     if (silent_) return;
     falcon_report report{.encoder_counts = {}, .buttons = buttons_, .homed = homed_};
     if (forced_.first) {
@@ -191,7 +193,7 @@ class fake_falcon {
     say(encode_falcon_report(report));
   }
 
-  fake_falcon_config config_;
+  fake_falcon_settings settings_;
   std::mt19937_64 bits_;
   mode mode_ = mode::asleep;
   std::uint16_t baud_ = 0;

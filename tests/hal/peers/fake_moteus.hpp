@@ -15,13 +15,13 @@ namespace asperity::test_support {
 
 class fake_moteus {
  public:
-  struct config {
+  struct settings {
     std::uint32_t id = 1;
     std::uint32_t host_id = 0;
     std::int32_t register_map = 5;
     std::int64_t enabling_ns = 2'000'000;
   };
-  fake_moteus(can_bus& bus, const config& c) : bus_(bus), config_(c) {}
+  fake_moteus(can_bus& bus, const settings& c) : bus_(bus), settings_(c) {}
 
   double position_rad = 0.0;  ///< of the output
   double velocity_rad_per_s = 0.0;
@@ -70,7 +70,7 @@ class fake_moteus {
  private:
   // Plain reading of the document: head, count, register, values. Written apart from the codec on purpose.
   void take(std::int64_t now_ns, const can_frame& f) {
-    if (!f.fd || f.remote || (f.id & 0x7fU) != config_.id || (f.id & 0x7f00U) >> 8U != config_.host_id) return;
+    if (!f.fd || f.remote || (f.id & 0x7fU) != settings_.id || (f.id & 0x7f00U) >> 8U != settings_.host_id) return;
     ++frames_;
     std::size_t at = 0;
     bool commanded = false;
@@ -98,7 +98,7 @@ class fake_moteus {
     }
     if (commanded) begin(now_ns);
     if ((f.id & 0x8000U) == 0 || mute_) return;
-    can_frame out{.id = config_.id << 8U | config_.host_id, .extended = config_.id > 7, .fd = true};
+    can_frame out{.id = settings_.id << 8U | settings_.host_id, .extended = settings_.id > 7, .fd = true};
     out.size = static_cast<std::uint8_t>(reply.finish(out.data));
     if (out.size > 0) static_cast<void>(bus_.send(now_ns, out));
   }
@@ -146,7 +146,7 @@ class fake_moteus {
       fault_ = 0;
     } else if (wanted_mode_ == 10 && mode_ == 0) {
       mode_ = 2;
-      enabled_at_ns_ = now_ns + config_.enabling_ns;
+      enabled_at_ns_ = now_ns + settings_.enabling_ns;
       ++enables_;
     }
   }
@@ -180,7 +180,7 @@ class fake_moteus {
           w.value(0x010304, moteus::quantity::plain);
           break;
         case 0x102:
-          w.value(config_.register_map, moteus::quantity::plain);
+          w.value(settings_.register_map, moteus::quantity::plain);
           break;
         default:
           w.value(0.0, moteus::quantity::plain);
@@ -200,7 +200,7 @@ class fake_moteus {
   }
 
   can_bus& bus_;
-  config config_;
+  settings settings_;
   std::int64_t fed_ns_ = 0, boots_until_ns_ = 0, enabled_at_ns_ = 0;
   std::uint64_t frames_ = 0;
   double position_ = 0.0, torque_ = 0.0, kp_ = 1.0, kd_ = 1.0, integral_ = 1.0, most_ = 0.0, watchdog_s_ = 0.0;

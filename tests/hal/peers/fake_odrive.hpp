@@ -12,7 +12,7 @@ namespace asperity::test_support {
 
 class fake_odrive {
  public:
-  struct config {
+  struct settings {
     std::uint32_t node = 3;
     odrive::firmware firmware = odrive::firmware::v0_6;
     odrive::version version{2, 4, 4, 58, 0, 6, 9, 0};  ///< what 0.6 answers
@@ -21,7 +21,7 @@ class fake_odrive {
     std::int64_t watchdog_ns = 20'000'000;  ///< 0: none
     double torque_constant = 0.05;
   };
-  fake_odrive(can_bus& bus, const config& c) : bus_(bus), config_(c) {}
+  fake_odrive(can_bus& bus, const settings& c) : bus_(bus), settings_(c) {}
 
   double position_rad = 0.0;  ///< of the motor
   double velocity_rad_per_s = 0.0;
@@ -67,38 +67,38 @@ class fake_odrive {
       if (now_ns >= boots_until_ns_) take(now_ns, f);
     }
     if (now_ns < boots_until_ns_) return;
-    if (enabled() && config_.watchdog_ns > 0 && now_ns - fed_ns_ > config_.watchdog_ns) {
+    if (enabled() && settings_.watchdog_ns > 0 && now_ns - fed_ns_ > settings_.watchdog_ns) {
       expired_ = true;
-      fail(config_.firmware == odrive::firmware::v0_6 ? 0x1000000U : 0x800U);
+      fail(settings_.firmware == odrive::firmware::v0_6 ? 0x1000000U : 0x800U);
     }
     if (mute_) return;
-    if (now_ns - beat_ns_ >= config_.heartbeat_ns) {
+    if (now_ns - beat_ns_ >= settings_.heartbeat_ns) {
       beat_ns_ = now_ns;
       const odrive::heartbeat h{.axis_error = error_, .axis_state = state_};
-      static_cast<void>(bus_.send(now_ns, odrive::encode_heartbeat(config_.node, h, config_.firmware)));
+      static_cast<void>(bus_.send(now_ns, odrive::encode_heartbeat(settings_.node, h, settings_.firmware)));
     }
-    if (config_.firmware == odrive::firmware::v0_6 && now_ns - estimates_ns_ >= config_.estimates_ns) {
+    if (settings_.firmware == odrive::firmware::v0_6 && now_ns - estimates_ns_ >= settings_.estimates_ns) {
       estimates_ns_ = now_ns;
       send_estimates(now_ns);
       const auto t = static_cast<float>(torque_n_m());
-      static_cast<void>(bus_.send(now_ns, odrive::encode_floats(config_.node, odrive::message::torques, {t, t})));
+      static_cast<void>(bus_.send(now_ns, odrive::encode_floats(settings_.node, odrive::message::torques, {t, t})));
     }
   }
 
  private:
   void take(std::int64_t now_ns, const can_frame& f) {
-    if (f.extended || f.id >> 5U != config_.node) return;
+    if (f.extended || f.id >> 5U != settings_.node) return;
     ++frames_;
     remote_ += f.remote ? 1 : 0;
     const std::uint32_t command = f.id & 0x1fU;
-    const bool is_0_5 = config_.firmware == odrive::firmware::v0_5;
+    const bool is_0_5 = settings_.firmware == odrive::firmware::v0_5;
     // 0.5 feeds its watchdog with every frame.
     if (is_0_5 || command == 0x0e) fed_ns_ = now_ns;
     const bool getter = f.remote || f.size == 0;
     switch (command) {
       case 0x00:
         if (!is_0_5 && getter && !mute_) {
-          static_cast<void>(bus_.send(now_ns, odrive::encode_version(config_.node, config_.version)));
+          static_cast<void>(bus_.send(now_ns, odrive::encode_version(settings_.node, settings_.version)));
         }
         break;
       case 0x02:
@@ -123,8 +123,9 @@ class fake_odrive {
         break;
       case 0x14:
         if (is_0_5 && getter && !mute_) {
-          const auto amperes = static_cast<float>(torque_n_m() / config_.torque_constant);
-          static_cast<void>(bus_.send(now_ns, odrive::encode_floats(config_.node, odrive::message::iq, {0, amperes})));
+          const auto amperes = static_cast<float>(torque_n_m() / settings_.torque_constant);
+          static_cast<void>(
+              bus_.send(now_ns, odrive::encode_floats(settings_.node, odrive::message::iq, {0, amperes})));
         }
         break;
       case 0x18:
@@ -150,7 +151,7 @@ class fake_odrive {
     const auto p = static_cast<float>((position_rad - offset_rad_) / turn);
     const auto v = static_cast<float>(velocity_rad_per_s / turn);
     static_cast<void>(
-        bus_.send(now_ns, odrive::encode_floats(config_.node, odrive::message::encoder_estimates, {p, v})));
+        bus_.send(now_ns, odrive::encode_floats(settings_.node, odrive::message::encoder_estimates, {p, v})));
   }
 
   [[nodiscard]] static std::uint32_t word(const can_frame& f, std::size_t at) {
@@ -160,7 +161,7 @@ class fake_odrive {
   }
 
   can_bus& bus_;
-  config config_;
+  settings settings_;
   std::int64_t fed_ns_ = 0, beat_ns_ = 0, estimates_ns_ = 0, boots_until_ns_ = 0;
   std::uint64_t frames_ = 0, remote_ = 0;
   std::uint32_t error_ = 0, control_mode_ = 3, input_mode_ = 1;

@@ -29,9 +29,9 @@ inline std::int64_t clock_ns() {
 inline double seconds_since(std::int64_t begin_ns) { return 1e-9 * static_cast<double>(clock_ns() - begin_ns); }
 
 /// Patient on a busy machine, but with what is known to hang.
-inline child_options options_for(const std::string& way, child_pace pace = child_pace::lockstep) {
+inline child_settings options_for(const std::string& way, child_pace pace = child_pace::lockstep) {
   const bool hangs = way.starts_with("hangs") || way.starts_with("prints");
-  child_options o;
+  child_settings o;
   o.pace = pace;
   o.list_patience_ns = 10'000'000'000;
   o.call_patience_ns = o.open_patience_ns = hangs ? 200'000'000 : 10'000'000'000;
@@ -41,7 +41,7 @@ inline child_options options_for(const std::string& way, child_pace pace = child
 }
 
 inline result<std::unique_ptr<child_driver>> load(const std::filesystem::path& file,
-                                                  child_options o = options_for("nothing")) {
+                                                  child_settings o = options_for("nothing")) {
   return child_driver::load(file, std::move(o), file_trust::as_named);
 }
 
@@ -50,7 +50,7 @@ struct broken_device {
   std::unique_ptr<child_driver> driver{};
   std::optional<plugin_device> device{};
 
-  broken_device(const std::string& way, child_options o, bool armed = true) {
+  broken_device(const std::string& way, child_settings o, bool armed = true) {
     const broken_way chosen(way);
     result<std::unique_ptr<child_driver>> loaded = load(test_support::broken_driver, std::move(o));
     EXPECT_TRUE(loaded) << loaded.error().message;

@@ -47,7 +47,7 @@ TEST(child, each_way_to_fail_before_there_is_a_device_is_one_clear_line) {
     const std::int64_t begin_ns = clock_ns();
     std::string message;
     {
-      child_options o = options_for(bad.way);
+      child_settings o = options_for(bad.way);
       if (o.call_patience_ns < o.list_patience_ns) o.list_patience_ns = 300'000'000;
       result<std::unique_ptr<child_driver>> loaded = load(test_support::broken_driver, o);
       if (loaded) {
@@ -79,7 +79,7 @@ TEST(child, what_a_driver_does_outside_a_tick_ends_in_an_error_and_not_here) {
   }
   {
     // A person gives up before the driver does.
-    child_options o = options_for("hangs_in_open");
+    child_settings o = options_for("hangs_in_open");
     o.open_patience_ns = 3'600'000'000'000;
     const std::int64_t begin_ns = clock_ns();
     o.cancelled = [begin_ns] { return seconds_since(begin_ns) > 0.3; };
@@ -157,8 +157,8 @@ TEST(child, what_a_driver_does_in_a_tick_is_a_fault_of_its_device) {
 }
 
 TEST(child, a_hang_is_a_fault_within_the_stated_time_of_the_session) {
-  child_options o = options_for("hangs_in_read", child_pace::paced);
-  o.silence_ns = child_options{}.silence_ns;
+  child_settings o = options_for("hangs_in_read", child_pace::paced);
+  o.silence_ns = child_settings{}.silence_ns;
   broken_device b("hangs_in_read", std::move(o));
   ASSERT_TRUE(b.device);
   const std::int64_t begin_ns = clock_ns();
@@ -243,7 +243,7 @@ TEST(child, a_cleared_fault_starts_the_driver_anew_and_arms_nothing) {
 
 TEST(child, a_hostile_process_can_say_nothing_that_is_believed) {
   // Instead of the helper a program that writes noise over everything that is shared, and rings all the time.
-  child_options o = options_for("hangs", child_pace::paced);
+  child_settings o = options_for("hangs", child_pace::paced);
   o.host_program = ASPERITY_HOSTILE_HOST;
   o.list_patience_ns = o.call_patience_ns = o.open_patience_ns = 80'000'000;
   int armed = 0;
@@ -301,7 +301,7 @@ TEST(child, a_tick_allocates_nothing_on_this_side) {
 }
 
 TEST(child, a_program_without_the_helper_is_told_what_is_missing) {
-  child_options o = options_for("nothing");
+  child_settings o = options_for("nothing");
   o.host_program = "/nowhere/asperity-driver-host";
   const result<std::unique_ptr<child_driver>> loaded = load(test_support::sample_driver, o);
   ASSERT_FALSE(loaded);

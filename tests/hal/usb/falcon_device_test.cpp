@@ -11,7 +11,7 @@ namespace {
 using namespace asperity;
 using namespace asperity::test_support;
 
-fake_falcon_config awake_and_homed() { return {.awake = true, .homed = true}; }
+fake_falcon_settings awake_and_homed() { return {.awake = true, .homed = true}; }
 
 bool mentions(const error& e, const std::string& word) { return e.message.find(word) != std::string::npos; }
 
@@ -27,9 +27,9 @@ TEST(falcon_device, sleeps_until_it_is_given_its_firmware) {
 
 TEST(falcon_device, is_woken_homed_and_ready) {
   const fake_image image;
-  falcon_config config = quick_config();
-  config.firmware_path = image.path();
-  falcon_rig rig({.image = image.bytes()}, {}, config);
+  falcon_settings settings = quick_settings();
+  settings.firmware_path = image.path();
+  falcon_rig rig({.image = image.bytes()}, {}, settings);
   const auto opened = rig.device->open();
   ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ(rig.device->state(), device_state::ready);
@@ -41,10 +41,10 @@ TEST(falcon_device, is_woken_homed_and_ready) {
 
 TEST(falcon_device, is_woken_through_split_and_melted_packets) {
   const fake_image image(1000);
-  falcon_config config = quick_config();
-  config.firmware_path = image.path();
+  falcon_settings settings = quick_settings();
+  settings.firmware_path = image.path();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    falcon_rig rig({.image = image.bytes(), .split = true, .seed = seed}, {}, config);
+    falcon_rig rig({.image = image.bytes(), .split = true, .seed = seed}, {}, settings);
     const auto opened = rig.device->open();
     ASSERT_TRUE(opened) << seed << ": " << opened.error().message;
     ASSERT_TRUE(rig.device->arm());
@@ -56,38 +56,38 @@ TEST(falcon_device, is_woken_through_split_and_melted_packets) {
 
 TEST(falcon_device, an_echo_that_differs_is_found_and_tried_again) {
   const fake_image image;
-  falcon_config config = quick_config();
-  config.firmware_path = image.path();
-  falcon_rig twice({.image = image.bytes(), .wrong_echo_at = 100, .wrong_echoes = 2}, {}, config);
+  falcon_settings settings = quick_settings();
+  settings.firmware_path = image.path();
+  falcon_rig twice({.image = image.bytes(), .wrong_echo_at = 100, .wrong_echoes = 2}, {}, settings);
   const auto opened = twice.device->open();
   ASSERT_TRUE(opened) << opened.error().message;
   EXPECT_EQ(twice.peer.boots(), 3);
 
-  falcon_rig always({.image = image.bytes(), .wrong_echo_at = 100, .wrong_echoes = 100}, {}, config);
+  falcon_rig always({.image = image.bytes(), .wrong_echo_at = 100, .wrong_echoes = 100}, {}, settings);
   const auto failed = always.device->open();
   ASSERT_FALSE(failed);
   EXPECT_TRUE(mentions(failed.error(), "byte 100")) << failed.error().message;
 }
 
 TEST(falcon_device, says_what_is_wrong_with_the_image) {
-  falcon_config config = quick_config();
-  config.firmware_path = "no/such/image.bin";
-  falcon_rig missing({}, {}, config);
+  falcon_settings settings = quick_settings();
+  settings.firmware_path = "no/such/image.bin";
+  falcon_rig missing({}, {}, settings);
   auto opened = missing.device->open();
   ASSERT_FALSE(opened);
   EXPECT_TRUE(mentions(opened.error(), "no/such/image.bin"));
 
   const fake_image empty(0);
-  config.firmware_path = empty.path();
-  falcon_rig with_empty({}, {}, config);
+  settings.firmware_path = empty.path();
+  falcon_rig with_empty({}, {}, settings);
   opened = with_empty.device->open();
   ASSERT_FALSE(opened);
   EXPECT_TRUE(mentions(opened.error(), "no bytes"));
 
   const fake_image other(90);
   const fake_image right(150);
-  config.firmware_path = other.path();
-  falcon_rig with_other({.image = right.bytes()}, {}, config);
+  settings.firmware_path = other.path();
+  falcon_rig with_other({.image = right.bytes()}, {}, settings);
   opened = with_other.device->open();
   ASSERT_FALSE(opened);
   EXPECT_TRUE(mentions(opened.error(), "is it the right image?")) << opened.error().message;
@@ -170,7 +170,7 @@ TEST(falcon_device, puts_out_nothing_for_a_position_that_is_old) {
   const vec3 wanted{0.5, -1.0, 2.0};
   for (int i = 0; i < 20; ++i) ASSERT_EQ(rig.tick(wanted), status::ok);
   ASSERT_FALSE(rig.peer.at_rest());
-  const std::int64_t most_ns = falcon_config{}.silent_after_ns;
+  const std::int64_t most_ns = falcon_settings{}.silent_after_ns;
   for (std::int64_t t = 0; t <= most_ns + 5'000'000; t += 1'000'000) {
     rig.clock.advance_ns(1'000'000);
     static_cast<void>(rig.device->write(rig.clock.now_ns(), rig.command(wanted)));
@@ -217,9 +217,9 @@ TEST(falcon_device, torque_is_dropped_and_a_huge_force_keeps_its_direction) {
 }
 
 TEST(falcon_device, a_lower_limit_is_obeyed) {
-  falcon_config config = quick_config();
-  config.limit_counts = 700;
-  falcon_rig rig(awake_and_homed(), {}, config);
+  falcon_settings settings = quick_settings();
+  settings.limit_counts = 700;
+  falcon_rig rig(awake_and_homed(), {}, settings);
   ASSERT_TRUE(rig.device->open());
   ASSERT_TRUE(rig.device->arm());
   for (int i = 0; i < 10; ++i) ASSERT_EQ(rig.tick({100.0, 0.0, 0.0}), status::ok);

@@ -17,23 +17,23 @@ constexpr std::int64_t ms = 1'000'000;
 // --- the nth call, in open ---
 
 // Calls that an opening makes, firmware and homing included.
-std::uint64_t open_calls(const fake_image& image, falcon_config config) {
-  falcon_rig rig({.image = image.bytes()}, {}, config);
+std::uint64_t open_calls(const fake_image& image, falcon_settings settings) {
+  falcon_rig rig({.image = image.bytes()}, {}, settings);
   EXPECT_TRUE(rig.device->open());
   return rig.cable.player().calls();
 }
 
 TEST(falcon_fault, the_nth_call_of_an_opening_fails) {
   const fake_image image(70);
-  falcon_config config = quick_config();
-  config.firmware_path = image.path();
-  const std::uint64_t calls = open_calls(image, config);
+  falcon_settings settings = quick_settings();
+  settings.firmware_path = image.path();
+  const std::uint64_t calls = open_calls(image, settings);
   ASSERT_GT(calls, 100U);
   int opened_anyway = 0;
   int refused = 0;
   for (std::uint64_t n = 0; n < calls; ++n) {
     for (const io_status with : {io_status::failed, io_status::gone, io_status::too_short, io_status::busy}) {
-      falcon_rig rig({.image = image.bytes()}, {.events = {fail_call(n, with)}}, config);
+      falcon_rig rig({.image = image.bytes()}, {.events = {fail_call(n, with)}}, settings);
       const auto opened = rig.device->open();
       ASSERT_EQ(rig.peer.largest_applied(), 0) << n << ' ' << to_string(with);
       if (opened) {

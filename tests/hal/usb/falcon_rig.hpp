@@ -40,8 +40,8 @@ class fake_image {
 };
 
 /// Short waits, so that thousands of openings take no time.
-[[nodiscard]] inline falcon_config quick_config() {
-  falcon_config c;
+[[nodiscard]] inline falcon_settings quick_settings() {
+  falcon_settings c;
   c.wake_ns = 20'000'000;
   c.homing_timeout_ns = 200'000'000;
   c.settle_reports = 5;
@@ -49,15 +49,15 @@ class fake_image {
 }
 
 struct falcon_rig {
-  explicit falcon_rig(fake_falcon_config fake = {}, link_script script = {}, falcon_config config = quick_config(),
-                      std::int64_t clock_step_ns = 250'000)
+  explicit falcon_rig(fake_falcon_settings fake = {}, link_script script = {},
+                      falcon_settings settings = quick_settings(), std::int64_t clock_step_ns = 250'000)
       : clock(1'000'000'000, clock_step_ns), cable(std::move(script)), peer(std::move(fake)) {
     bus.attach(cable, listing());
     cable.on_control([this](const usb_setup& setup, std::span<std::uint8_t> data, std::size_t& done) {
       return peer.control(setup, data, done);
     });
     clock.on_advance([this](std::int64_t now_ns) { step(now_ns); });
-    device = std::make_unique<falcon_device>(bus, clock, listing(), std::move(config));
+    device = std::make_unique<falcon_device>(bus, clock, listing(), std::move(settings));
   }
 
   [[nodiscard]] static usb_listing listing() {

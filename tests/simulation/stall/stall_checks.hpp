@@ -130,7 +130,7 @@ class stall_checks {
       way_m = std::max(way_m, glm::length(s_.hand.at(e.from_ns).position - s_.hand.at(e.from_ns - back).position));
       turn_rad = std::max(turn_rad, std::fabs(s_.hand.angle_rad(e.from_ns) - s_.hand.angle_rad(e.from_ns - back)));
     }
-    const coupling_config& k = s_.control.coupling;
+    const coupling_settings& k = s_.control.coupling;
     const double pull_n = k.stiffness_n_per_m * way_m;
     const double force_bound_n = pull_n + stall_bounds::force_n;
     const double torque_bound_n_m =

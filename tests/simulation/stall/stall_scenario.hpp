@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "asperity/control/control_config.hpp"
+#include "asperity/control/control_settings.hpp"
 #include "simulation/dice.hpp"
 #include "simulation/stall/scripted_device.hpp"
 #include "simulation/stall/terrain.hpp"
@@ -25,7 +25,7 @@ struct stall_scenario {
   hand_script hand{};
   terrain ground{};
   device_capabilities capabilities{};
-  control_config control{};
+  control_settings control{};
   stalled_thread who = stalled_thread::both;
   stall_pattern pattern = stall_pattern::single;
   std::vector<stall> stalls{};        ///< in order, apart

@@ -24,8 +24,8 @@ const triangle_mesh& full_torus() {
   return mesh;
 }
 
-bake_options small_options(unsigned threads = 2) {
-  bake_options options;
+bake_settings small_options(unsigned threads = 2) {
+  bake_settings options;
   options.name = "wavy torus";
   options.triangles = 300;
   options.texture_size = 256;
@@ -186,7 +186,7 @@ triangle_mesh ridged_block() {
 }
 
 TEST(Bake, AGivenCoarseBoxKeepsTheRidgesInTheTexture) {
-  bake_options options = small_options();
+  bake_settings options = small_options();
   options.texture_size = 512;
   options.coarse = shapes::box(block_size, {1, 1, 1});
   const auto model = bake(ridged_block(), options);
@@ -218,7 +218,7 @@ TEST(Bake, AGivenCoarseBoxKeepsTheRidgesInTheTexture) {
 }
 
 TEST(Bake, RefusesACoarseMeshOfOtherUnits) {
-  bake_options options = small_options();
+  bake_settings options = small_options();
   options.coarse = shapes::scaled(shapes::box(block_size, {1, 1, 1}), 1000.0);
   const auto r = bake(ridged_block(), options);
   ASSERT_FALSE(r.has_value());
@@ -227,7 +227,7 @@ TEST(Bake, RefusesACoarseMeshOfOtherUnits) {
 }
 
 TEST(Bake, RefusesABadCoarseMeshByName) {
-  bake_options options = small_options();
+  bake_settings options = small_options();
   options.coarse = shapes::box(block_size, {1, 1, 1});
   options.coarse->triangles.pop_back();
   const auto r = bake(ridged_block(), options);
@@ -237,7 +237,7 @@ TEST(Bake, RefusesABadCoarseMeshByName) {
 
 TEST(Bake, RemarksOnWhatItDidDifferently) {
   std::vector<std::string> remarks;
-  bake_options options = small_options();
+  bake_settings options = small_options();
   options.texture_size = 64;
   options.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
   const triangle_mesh box = shapes::box(block_size, {2, 2, 2});
@@ -253,7 +253,7 @@ TEST(Bake, RemarksOnWhatItDidDifferently) {
 
 TEST(Bake, RemarksOnPiecesThatItCouldNotMake) {
   std::vector<std::string> remarks;
-  bake_options options = small_options();
+  bake_settings options = small_options();
   options.texture_size = 64;
   options.pieces = 7;
   options.remark = [&](std::string_view sentence) { remarks.emplace_back(sentence); };
@@ -262,23 +262,23 @@ TEST(Bake, RemarksOnPiecesThatItCouldNotMake) {
 }
 
 TEST(Bake, RefusesOptionsOutOfRange) {
-  bake_options few = small_options();
+  bake_settings few = small_options();
   few.triangles = 3;
   EXPECT_EQ(bake(full_torus(), few).error().code, error_code::invalid_argument);
-  bake_options none = small_options();
+  bake_settings none = small_options();
   none.pieces = 0;
   EXPECT_EQ(bake(full_torus(), none).error().code, error_code::invalid_argument);
-  bake_options tiny = small_options();
+  bake_settings tiny = small_options();
   tiny.texture_size = 1;
   EXPECT_EQ(bake(full_torus(), tiny).error().code, error_code::invalid_argument);
-  bake_options huge = small_options();
+  bake_settings huge = small_options();
   huge.texture_size = 1U << 20;
   EXPECT_EQ(bake(full_torus(), huge).error().code, error_code::invalid_argument);
 }
 
 TEST(Bake, TellsOfItsStagesAndStopsAtAnyOfThem) {
   std::vector<std::string> stages;
-  bake_options options = small_options();
+  bake_settings options = small_options();
   const triangle_mesh mesh = wavy.mesh(60, 30);
   options.progress = [&](std::string_view stage, double done) {
     EXPECT_GE(done, 0.0);

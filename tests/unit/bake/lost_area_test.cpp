@@ -37,7 +37,7 @@ triangle_mesh chambered_slab() {
 
 const textured_model& baked_slab() {
   static const textured_model model = [] {
-    bake_options options;
+    bake_settings options;
     options.texture_size = 512;
     options.threads = 2;
     options.coarse = shapes::box({60 * mm, 60 * mm, 10 * mm}, {1, 1, 1});
@@ -78,7 +78,7 @@ TEST(LostArea, ShowsInTheLargestErrorsAndNotInTheOthers) {
 }
 
 TEST(LostArea, OfASurfaceThatIsAllSeenIsNothing) {
-  bake_options options;
+  bake_settings options;
   options.texture_size = 256;
   options.threads = 2;
   options.triangles = 300;

@@ -22,8 +22,8 @@ height_map_settings slab_range() {
   return {-slab.amplitude_m, 2.0 * slab.amplitude_m, map_wrap::clamp, map_wrap::clamp};
 }
 
-bake_options with_relief(relief heights) {
-  bake_options out;
+bake_settings with_relief(relief heights) {
+  bake_settings out;
   out.name = "slab";
   out.texture_size = 208;
   out.threads = 2;
@@ -138,7 +138,7 @@ void expect_same_relief(const std::vector<std::size_t>& turned_triangles) {
     std::swap(turned.uvs[t][1], turned.uvs[t][2]);
   }
   const auto small = [](const triangle_mesh& on, const relief& heights) {
-    bake_options options = with_relief(heights);
+    bake_settings options = with_relief(heights);
     options.texture_size = 96;
     return bake(on, options);
   };
@@ -171,7 +171,7 @@ TEST(Relief, OfAMapIsRefusedOnAMeshWithoutTextureCoordinates) {
 
 TEST(Relief, IsKeptWhenTheMeshIsSimplified) {
   const triangle_mesh mesh = slab.mesh(12);
-  bake_options options = with_relief(*height_map_relief(mesh, slab.height_map(map_side, 16), slab_range()));
+  bake_settings options = with_relief(*height_map_relief(mesh, slab.height_map(map_side, 16), slab_range()));
   options.triangles = 100;
   const auto model = bake(mesh, options);
   ASSERT_TRUE(model) << model.error().message;
@@ -193,7 +193,7 @@ TEST(Relief, RefusesHeightsThatCannotBeMeant) {
   expect_refused(bake(mesh, with_relief({[](const relief_point& p) { return std::sqrt(p.position.x); }, 0.0})),
                  error_code::bad_texture, "not finite");
   std::string said;
-  bake_options coarse = with_relief(*height_map_relief(mesh, slab.height_map(map_side, 16), slab_range()));
+  bake_settings coarse = with_relief(*height_map_relief(mesh, slab.height_map(map_side, 16), slab_range()));
   coarse.texture_size = 32;
   coarse.remark = [&](std::string_view sentence) { said += sentence; };
   ASSERT_TRUE(bake(mesh, coarse));

@@ -20,8 +20,8 @@ const triangle_mesh& original() {
   return mesh;
 }
 
-bake_options keeping(triangle_mesh coarse) {
-  bake_options out;
+bake_settings keeping(triangle_mesh coarse) {
+  bake_settings out;
   out.name = "slab";
   out.texture_size = 352;
   out.threads = 2;
@@ -61,7 +61,7 @@ TEST(KeptUvs, BakeAsWellAsAnAtlasThatIsMade) {
   for (std::size_t t = 0; t < given.uvs.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_NEAR(glm::length(kept().mesh.triangles[t].uv[k] - given.uvs[t][k]), 0.0, 1e-7);
-  bake_options making = keeping(low());
+  bake_settings making = keeping(low());
   making.keep_uvs = false;
   const auto made = bake(original(), making);
   ASSERT_TRUE(made) << made.error().message;
@@ -91,7 +91,7 @@ TEST(KeptUvs, FeelTheSameWhereTexelsAreStretched) {
   triangle_mesh mesh = low();
   for (auto& t : mesh.uvs)
     for (vec2& p : t) p.y = 0.25 + 0.5 * p.y + 0.1 * p.x;
-  bake_options options = keeping(mesh);
+  bake_settings options = keeping(mesh);
   options.texture_size = 576;
   std::string said;
   options.remark = [&](std::string_view sentence) { said += sentence; };
@@ -111,7 +111,7 @@ TEST(KeptUvs, StayAtTheirCornersWhenTrianglesAreTurned) {
   for (std::size_t t = 0; t < inside_out.triangles.size(); ++t) turn(inside_out, t);
   for (const std::size_t t : {1UL, 6UL, 11UL}) turn(mixed, t);
   const auto small_bake = [](const triangle_mesh& coarse) {
-    bake_options options = keeping(coarse);
+    bake_settings options = keeping(coarse);
     options.texture_size = 192;
     return bake(slab.fine_mesh(24), options);
   };
@@ -122,7 +122,7 @@ TEST(KeptUvs, StayAtTheirCornersWhenTrianglesAreTurned) {
 }
 
 TEST(KeptUvs, OfAMeshThatIsItsOwnCoarseMesh) {
-  bake_options options = keeping(low());
+  bake_settings options = keeping(low());
   options.coarse.reset();
   options.texture_size = 240;
   options.relief.height_m = [](const relief_point& p) {
@@ -135,7 +135,7 @@ TEST(KeptUvs, OfAMeshThatIsItsOwnCoarseMesh) {
 }
 
 TEST(KeptUvs, AreRefusedWhereThereAreNone) {
-  const auto expect_refused = [](const triangle_mesh& mesh, const bake_options& options, error_code code,
+  const auto expect_refused = [](const triangle_mesh& mesh, const bake_settings& options, error_code code,
                                  const std::string& says) {
     const auto r = bake(mesh, options);
     ASSERT_FALSE(r);
@@ -145,7 +145,7 @@ TEST(KeptUvs, AreRefusedWhereThereAreNone) {
   triangle_mesh bare = low();
   bare.uvs.clear();
   expect_refused(original(), keeping(bare), error_code::bad_mesh, "no texture coordinates to keep");
-  bake_options simplifying = keeping(low());
+  bake_settings simplifying = keeping(low());
   simplifying.coarse.reset();
   expect_refused(original(), simplifying, error_code::invalid_argument, "simplifying it to 600");
   expect_refused(bare, simplifying, error_code::bad_mesh, "no texture coordinates to keep");

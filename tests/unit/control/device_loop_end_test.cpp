@@ -25,7 +25,7 @@ class bad_sample_test : public testing::TestWithParam<fault_case> {};
 // One bad sample: nothing is wanted in that tick, and the session goes on. One repeated sample is an ordinary thing,
 // and the force goes on as well. Five in a row: the gate shuts.
 TEST_P(bad_sample_test, is_rejected_and_survived_once) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.faults = {{GetParam().kind, 800 * ms, 801 * ms}};
   wall_session r(hand);
   r.run_ms(1200);
@@ -43,7 +43,7 @@ TEST_P(bad_sample_test, is_rejected_and_survived_once) {
 }
 
 TEST_P(bad_sample_test, shuts_the_gate_when_it_lasts) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.faults = {{GetParam().kind, 800 * ms, 10'000 * ms}};
   wall_session r(hand);
   r.run_ms(900);
@@ -70,7 +70,7 @@ INSTANTIATE_TEST_SUITE_P(every_kind, bad_sample_test,
                                          fault_case{device_fault::stale, sample_verdict::stale}));
 
 TEST(device_loop, never_arms_again_by_itself) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.faults = {{device_fault::nan_pose, 800 * ms, 850 * ms}};
   wall_session r(hand);
   r.run_ms(1500);
@@ -90,7 +90,7 @@ TEST(device_loop, never_arms_again_by_itself) {
 
 // Encoder steps to and fro turn damping into a source. Where the guard cannot hold the sum, the gate shuts.
 TEST(device_loop, shuts_where_the_guard_cannot_hold_the_energy) {
-  control_config control;
+  control_settings control;
   control.guard.soft_limit_j = -1.0;
   control.guard.hard_limit_j = 1.0;  // a guard that is too weak on purpose
   control.guard.cut_off_j = 0.01;
@@ -117,7 +117,7 @@ TEST(device_loop, shuts_where_the_guard_cannot_hold_the_energy) {
 }
 
 TEST(device_loop, shuts_where_the_device_refuses_a_command) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.faults = {{device_fault::refuse_write, 800 * ms, 801 * ms}};
   wall_session r(hand);
   r.run_ms(900);
@@ -126,7 +126,7 @@ TEST(device_loop, shuts_where_the_device_refuses_a_command) {
 }
 
 TEST(device_loop, a_device_that_leaves_and_returns_stays_in_its_fault) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.faults = {{device_fault::depart, 800 * ms, 801 * ms}};
   wall_session r(hand);
   r.run_ms(900);
@@ -158,7 +158,7 @@ TEST(device_loop, a_device_that_is_closed_has_failed_and_not_departed) {
 }
 
 TEST(device_loop, a_silent_application_shuts_the_gate_and_ticks_alone_do_not_feed_its_watchdog) {
-  control_config control;
+  control_settings control;
   control.watchdog_ns = 50 * ms;
   wall_session r(pressing_hand(), control);
   for (int i = 0; i < 1000; ++i) {
@@ -203,7 +203,7 @@ TEST(device_loop, a_loop_that_goes_away_leaves_no_force_behind) {
 
 // A device that may not put out is told zero at once, so that one that is armed again in the next tick begins at zero.
 TEST(device_loop, forgets_its_wrench_with_the_first_tick_of_a_disarmed_device) {
-  control_config control;
+  control_settings control;
   control.limits.force_slew_n_per_s = 200.0;
   wall_session r(pressing_hand(), control);
   r.run_ms(1000);
@@ -220,7 +220,7 @@ TEST(device_loop, forgets_its_wrench_with_the_first_tick_of_a_disarmed_device) {
 
 // What is recorded of a tick without a sample is the last good pose.
 TEST(device_loop, a_rejected_sample_goes_nowhere) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.faults = {{device_fault::nan_pose, 800 * ms, 803 * ms}};
   wall_session r(hand);
   r.run_ms(900);
@@ -248,7 +248,7 @@ TEST(device_loop, a_lost_probe_pulls_at_nothing) {
   simulated_device dev(pressing_hand());
   std::vector<session_record> log;
   virtual_session<breaking_renderer, simulated_device, keep_all> session(
-      {{}, &broken}, {{pose{}}, vec3(0.0)}, wall_session::opened(dev), control_config{}, {}, keep_all{&log});
+      {{}, &broken}, {{pose{}}, vec3(0.0)}, wall_session::opened(dev), control_settings{}, {}, keep_all{&log});
   static_cast<void>(session.run_until(1000 * ms));
   ASSERT_GT(force_of(log.back()), 1.0);
   broken = true;
@@ -292,7 +292,7 @@ TEST(device_loop, survives_a_renderer_gone_mad) {
   simulated_device dev(pressing_hand());
   ASSERT_TRUE(dev.open() && dev.arm());
   std::vector<session_record> log;
-  virtual_session<mad_renderer, simulated_device, keep_all> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{},
+  virtual_session<mad_renderer, simulated_device, keep_all> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{},
                                                                     {}, keep_all{&log});
   static_cast<void>(session.run_until(500 * ms));
   for (const session_record& r : log) {

@@ -17,7 +17,7 @@ using test_support::pressing_hand;
 using test_support::wall_session;
 
 TEST(device_loop, starts_the_probe_at_the_device_without_a_jump) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.motion.T_dh.position = {0.3, -0.2, 0.1};
   hand.motion.T_dh.rotation = exp_rotation({0.3, 0.1, -1.0});
   wall_session r(hand);
@@ -42,7 +42,7 @@ TEST(device_loop, pushes_back_where_hand_coupling_and_wall_balance) {
 TEST(device_loop, puts_nothing_out_before_it_is_armed) {
   simulated_device dev(pressing_hand());
   ASSERT_TRUE(dev.open());
-  virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+  virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
   static_cast<void>(session.run_until(1000 * ms));
   EXPECT_EQ(dev.state(), device_state::ready);
   EXPECT_EQ(dev.delivered_j(), 0.0);
@@ -51,10 +51,10 @@ TEST(device_loop, puts_nothing_out_before_it_is_armed) {
 // The handle carries a probe whose centre of mass is off its axis, in a workspace that is turned and scaled: the hand
 // feels the wall's force along the device's own axes, and the torque of the lever.
 TEST(device_loop, maps_frames_and_levers) {
-  simulated_config hand;
+  simulated_settings hand;
   hand.motion = {.T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .direction_d = {1, 0, 0}, .depth_m = 0.012};
   hand.hand.stiffness_n_m_per_rad = 1e3;  // a grip that does not turn
-  control_config control;
+  control_settings control;
   control.map.T_wd = {exp_rotation({0, 0.5 * 3.141592653589793, 0}), {0, 0, 0.008}};  // device +x is world -z
   control.map.scale = 1.0;
   analytic_wall wall;
@@ -75,11 +75,11 @@ TEST(device_loop, maps_frames_and_levers) {
 
 TEST(device_loop, substeps_come_closer_to_the_continuous_probe) {
   const auto lag = [](int substeps) {
-    simulated_config hand;
+    simulated_settings hand;
     hand.motion = {
         .kind = motion_kind::scrub, .depth_m = 0.0, .approach_s = 0.01, .amplitude_m = 0.0005, .frequency_hz = 40.0};
     hand.hand = {.stiffness_n_per_m = 2e4, .damping_n_s_per_m = 50.0};
-    control_config control;
+    control_settings control;
     control.substeps = substeps;
     wall_session r(hand, control);
     r.run_ms(1000);
@@ -95,7 +95,7 @@ TEST(device_loop, substeps_come_closer_to_the_continuous_probe) {
 
 // Armed while the hand already presses: the wrench grows from zero at the slew rate. Found by simulation.
 TEST(device_loop, begins_at_zero_when_it_is_armed_in_contact) {
-  control_config control;
+  control_settings control;
   control.limits.force_slew_n_per_s = 200.0;
   wall_session r(pressing_hand(), control);
   r.run_ms(1000);
@@ -176,7 +176,7 @@ TEST(device_loop, a_contact_that_stays_away_is_no_longer_felt) {
 }
 
 TEST(device_loop, keeps_within_the_limits_of_device_and_application) {
-  control_config control;
+  control_settings control;
   control.limits.peak_force_n = 0.7;
   wall_session r(pressing_hand(), control);
   r.run_ms(1500);
@@ -187,7 +187,7 @@ TEST(device_loop, keeps_within_the_limits_of_device_and_application) {
 
 // The device's own limits hold although the application states none.
 TEST(device_loop, keeps_within_what_the_device_states_of_itself) {
-  simulated_config hand = pressing_hand();
+  simulated_settings hand = pressing_hand();
   hand.capabilities.peak_force_n = hand.capabilities.continuous_force_n = 0.6;
   hand.capabilities.force_slew_n_per_s = 20.0;
   wall_session r(hand);

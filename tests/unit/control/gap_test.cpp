@@ -42,7 +42,7 @@ struct rig {
   contact_loop<Renderer> contact;
   device_loop<scripted_device> loop;
 
-  explicit rig(const hand_script& hand, const device_capabilities& c = strong(), control_config control = {},
+  explicit rig(const hand_script& hand, const device_capabilities& c = strong(), control_settings control = {},
                Renderer feel = {})
       : dev(hand, c),
         contact(feel, {{pose{}}, vec3(0.0)}, shared),
@@ -77,7 +77,7 @@ struct placed_device {
   using policy_tag = device_tag;
   pose T_dh{};
   device_command told{};
-  device_capabilities stated = simulated_config{}.capabilities;
+  device_capabilities stated = simulated_settings{}.capabilities;
 
   [[nodiscard]] const device_capabilities& capabilities() const noexcept { return stated; }
   [[nodiscard]] device_state state() const noexcept { return device_state::active; }
@@ -105,7 +105,7 @@ TEST(gap, of_a_late_tick_is_a_tick_of_the_longest_step) {
     placed_device dev;
     exchange shared;
     std::vector<session_record> log;
-    control_config control;
+    control_settings control;
     control.longest_step_ns = 5 * ms;
     device_loop<placed_device, test_support::keep_all> loop(dev, control, vec3(0.0), shared,
                                                             test_support::keep_all{&log});
@@ -258,9 +258,10 @@ TEST(gap, is_forgotten_with_the_fault) {
   r.run(0, 1150);
   r.tick(1450 * ms);
   ASSERT_EQ(r.loop.gate().fault(), gate_fault::stalled);
+  EXPECT_EQ(r.loop.tick(1451 * ms), status::gate_shut);
   ASSERT_TRUE(r.loop.clear_fault());
   ASSERT_TRUE(r.dev.arm());
-  r.run(1451, 1480);
+  r.run(1452, 1480);
   EXPECT_GT(r.force_n(), 0.5);
 }
 
@@ -268,7 +269,7 @@ TEST(gap, is_forgotten_with_the_fault) {
 TEST(gap, does_not_add_to_the_drag_of_a_free_probe) {
   const auto most_n = [](std::int64_t gap_ms) {
     const hand_script free{.above_m = 0.5, .depth_m = -0.5, .scrub_m = 0.05, .scrub_hz = 1.5, .turn_rad = 0.0};
-    control_config control;
+    control_settings control;
     control.rates.fading_lost_share = 2.0;  // judged by itself, without what lateness takes away
     control.rates.silent_lost_share = 3.0;
     wall_rig r(free, strong(), control);
@@ -287,7 +288,7 @@ TEST(gap, does_not_add_to_the_drag_of_a_free_probe) {
 }
 
 TEST(gap, counts_as_silence_of_the_application) {
-  control_config control;
+  control_settings control;
   control.watchdog_ns = 1000 * ms;
   control.rates.longest_gap_ns = 10'000 * ms;  // so that the watchdog has to see it
   control.rates.longest_contact_age_ns = 10'000 * ms;

@@ -87,8 +87,8 @@ TEST(passivity_guard, never_damps_faster_than_half_the_velocity_in_a_sample) {
 }
 
 TEST(passivity_guard, takes_the_wrench_away_at_the_hard_limit) {
-  const guard_config config{.mass_kg = 0.1, .soft_limit_j = 0.005, .hard_limit_j = 0.02};
-  passivity_guard guard(config);
+  const guard_settings settings{.mass_kg = 0.1, .soft_limit_j = 0.005, .hard_limit_j = 0.02};
+  passivity_guard guard(settings);
   guard.observe(at_x(0.0), {}, 0.0);
   guard.observe(at_x(0.001), {{12.5, 0, 0}, vec3(0.0)}, 1e-3);
   EXPECT_NEAR(guard.adjust({}).scale, 0.5, 1e-9);
@@ -102,7 +102,7 @@ TEST(passivity_guard, lends_no_more_than_its_credit) {
   guard.observe(at_x(0.0), {}, 0.0);
   guard.observe(at_x(1.0), {{-5.0, 0, 0}, vec3(0.0)}, 1.0);
   EXPECT_EQ(guard.delivered_j(), -5.0);
-  EXPECT_EQ(guard.surplus_j(), -guard.config().credit_j);
+  EXPECT_EQ(guard.surplus_j(), -guard.settings().credit_j);
 }
 
 // Sessions against an analytic wall.
@@ -144,11 +144,11 @@ struct scene_setting {
 };
 
 felt feel(const scene_setting& s) {
-  simulated_config device_config;
-  device_config.motion = {.kind = s.motion, .T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .depth_m = 0.015};
-  simulated_device dev(device_config);
+  simulated_settings device_settings;
+  device_settings.motion = {.kind = s.motion, .T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .depth_m = 0.015};
+  simulated_device dev(device_settings);
   EXPECT_TRUE(dev.open() && dev.arm());
-  control_config control;
+  control_settings control;
   control.guard.enabled = s.guard;
   test_support::analytic_wall wall;
   wall.linearised = s.linearised;
@@ -191,9 +191,9 @@ TEST(passivity_guard, bounds_the_energy_of_a_held_force) {
         "%.0f and %.0f mm/s\n",
         1e9 / static_cast<double>(period_ns), 1e3 * unguarded.seen.delivered_j, 1e3 * guarded.seen.delivered_j,
         1e3 * unguarded.vibration_m_per_s, 1e3 * guarded.vibration_m_per_s);
-    const guard_config config;
+    const guard_settings settings;
     EXPECT_GT(guarded.seen.alpha, 0.0);
-    EXPECT_LE(guarded.seen.largest_surplus_j, config.hard_limit_j + guarded.seen.overshoot_j);
+    EXPECT_LE(guarded.seen.largest_surplus_j, settings.hard_limit_j + guarded.seen.overshoot_j);
     EXPECT_LE(guarded.seen.largest_surplus_j, 0.025);
     EXPECT_GT(unguarded.seen.largest_surplus_j, 0.05);  // negative control: the bound does not hold by itself
     EXPECT_LT(guarded.vibration_m_per_s, 0.5 * unguarded.vibration_m_per_s);

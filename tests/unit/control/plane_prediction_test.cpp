@@ -11,6 +11,7 @@
 
 #include <asperity/control/plane_prediction.hpp>
 
+#include "control/rest_of.hpp"
 #include "support/fresh_seed.hpp"
 #include "unit/control/drawn.hpp"
 

@@ -16,8 +16,8 @@ namespace asperity::test_support {
 
 struct plane_case {
   plane_body body{};
-  simulated_config hand{};
-  control_config control{};
+  simulated_settings hand{};
+  control_settings control{};
   virtual_schedule schedule{};
   double length_s = 0.9;
   double settled_s = 0.6;  ///< from here on what moves is not meant
@@ -52,9 +52,9 @@ inline device_capabilities strong_device(double newtons) {
 }
 
 /// A hand that comes down from 2 mm above where the probe touches and then presses with this force.
-inline simulated_config hand_that_presses(double newtons, const vec3& touch_d, const vec3& direction_d,
-                                          double coupling_n_per_m) {
-  simulated_config c;
+inline simulated_settings hand_that_presses(double newtons, const vec3& touch_d, const vec3& direction_d,
+                                            double coupling_n_per_m) {
+  simulated_settings c;
   c.capabilities = strong_device(newtons);
   c.hand = {.stiffness_n_per_m = 600,
             .damping_n_s_per_m = 6,

@@ -34,9 +34,9 @@ virtual_schedule late(const loop_rates& r) {
 }
 
 /// The default coupling, or what the simulated device holds at a slow rate.
-coupling_config coupling_at(const loop_rates& r) {
-  coupling_config c;
-  const coupling_config held = coupling_for(simulated_capabilities(), r.device_hz);
+coupling_settings coupling_at(const loop_rates& r) {
+  coupling_settings c;
+  const coupling_settings held = coupling_for(simulated_capabilities(), r.device_hz);
   c.stiffness_n_per_m = std::min(c.stiffness_n_per_m, held.stiffness_n_per_m);
   c.stiffness_n_m_per_rad = std::min(c.stiffness_n_m_per_rad, held.stiffness_n_m_per_rad);
   return c;
@@ -113,8 +113,8 @@ TEST(plane_session, never_goes_through_a_thin_plate) {
         c.body = block_on_plate(i % 2 == 0 ? 0.001 : 0.02);
         c.control.coupling = coupling_at(r);
         c.hand.seed = d.bits();
-        c.hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_config{});
-        motion_config& m = c.hand.motion;
+        c.hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_settings{});
+        motion_settings& m = c.hand.motion;
         const double heading = d.between(0.0, 6.283);
         const double tilt = d.between(0.0, 0.5);
         m.kind = kind == 2 ? motion_kind::tap : (i % 4 < 2 ? motion_kind::press : motion_kind::scrub);
@@ -148,8 +148,8 @@ double deepest_with_gaps(double told_gap_m, double contact_hz, int sessions, dra
     plane_case c = block(10.0, {1000, contact_hz});
     c.body.told_gap_m = told_gap_m;
     c.hand.seed = d.bits();
-    c.hand.hand = i % 3 == 0 ? soft_hand() : (i % 3 == 1 ? firm_hand() : hand_config{});
-    motion_config& m = c.hand.motion;
+    c.hand.hand = i % 3 == 0 ? soft_hand() : (i % 3 == 1 ? firm_hand() : hand_settings{});
+    motion_settings& m = c.hand.motion;
     m.kind = i % 2 == 0 ? motion_kind::press : motion_kind::tap;
     m.T_dh = {exp_rotation(d.inside(0.05)), {0, 0, 0.01 + d.between(0.002, 0.005)}};
     m.depth_m = d.between(0.005, 0.02);
@@ -193,13 +193,13 @@ TEST(plane_session, makes_no_energy) {
         if (body % 4 == 2) c.body = ball_in_groove(0.005, 0.7), touch = 0.0062;
         if (body % 4 == 3) c.body = block_on_plate(0.001);
         c.hand.seed = d.bits();
-        c.hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_config{});
+        c.hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_settings{});
         // As stiff as the device holds at this rate: up to 1.5 N/mm.
         const double part = d.log_between(0.2, 1.0);
         c.control.coupling = coupling_for(simulated_capabilities(), r.device_hz);
         c.control.coupling.stiffness_n_per_m *= part;
         c.control.coupling.stiffness_n_m_per_rad *= part;
-        motion_config& m = c.hand.motion;
+        motion_settings& m = c.hand.motion;
         const double heading = d.between(0.0, 6.283);
         const double tilt = d.between(0.0, 0.5);
         m.kind = kind == 2 ? motion_kind::tap : (d.between(0.0, 1.0) < 0.5 ? motion_kind::press : motion_kind::scrub);
@@ -292,7 +292,7 @@ plane_case peg(double gap_m, bool turns, const loop_rates& r) {
   plane_case c = pressed(peg_in_slot(gap_m), 3.0, {0, 0, 0.005}, {0, 0, -1}, r);
   c.hand.hand = firm_hand();
   c.control.coupling = coupling_at(r);
-  motion_config& m = c.hand.motion;
+  motion_settings& m = c.hand.motion;
   m.kind = turns ? motion_kind::twist : motion_kind::scrub;
   m.T_dh.position = {0, 0, 0.0052};
   m.direction_d = turns ? vec3(0, 1, 0) : vec3(0, 0, -1);

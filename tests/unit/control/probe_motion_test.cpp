@@ -52,7 +52,7 @@ TEST(probe_motion, steps_of_an_encoder_are_no_jolts_at_any_rate) {
 // At 1 kHz and below the velocity is that of the period itself: no delay is added where the hand turns round.
 TEST(probe_motion, slow_loops_feel_the_velocity_of_the_period) {
   drawn d(seed_of(fresh_seed("probe_motion", "200 periods"), "periods"));
-  const virtual_coupling coupling({}, probe_config{}.mass_kg, 1e-5);
+  const virtual_coupling coupling({}, probe_settings{}.mass_kg, 1e-5);
   for (const double period_s : {1e-3, 2e-3, 5e-3}) {
     probe_motion m({}, {}, {}, 8);
     m.place({});

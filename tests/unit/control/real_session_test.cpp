@@ -28,8 +28,8 @@ namespace {
 using namespace asperity;
 using test_support::analytic_wall;
 
-simulated_config touching_hand() {
-  simulated_config c;
+simulated_settings touching_hand() {
+  simulated_settings c;
   c.motion = {.depth_m = 0.01, .approach_s = 0.05};
   return c;
 }
@@ -64,11 +64,11 @@ TEST(real_session, stops_when_it_is_destroyed_and_when_it_never_ran) {
   simulated_device dev(touching_hand());
   ASSERT_TRUE(dev.open() && dev.arm());
   {
-    real_session<analytic_wall, simulated_device> idle({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+    real_session<analytic_wall, simulated_device> idle({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
     idle.stop();
   }
   {
-    real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+    real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
     session.start();
     session.start();
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -79,7 +79,7 @@ TEST(real_session, stops_when_it_is_destroyed_and_when_it_never_ran) {
 TEST(real_session, tells_the_gate_why_it_stops) {
   simulated_device dev(touching_hand());
   ASSERT_TRUE(dev.open() && dev.arm());
-  real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{});
+  real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
   for (const gate_fault cause : {gate_fault::interrupted, gate_fault::stopped}) {
     session.start();
     session.stop(cause);
@@ -98,7 +98,7 @@ TEST(real_session, lets_each_thread_be_set_up_once) {
   real_schedule schedule;
   schedule.timed_ticks = 4;
   schedule.set_up_thread = [](session_thread) { ++threads_set_up; };
-  real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{}, schedule);
+  real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{}, schedule);
   session.start();
   std::this_thread::sleep_for(std::chrono::milliseconds(60));
   session.stop();
@@ -138,7 +138,7 @@ std::string real_time_session() {
   if (!dev.open() || !dev.arm()) return "the device does not arm";
   const memory_lock locked;
   if ((locked.outcome() == grant::granted) != (locked.refusal() == 0)) return "a memory lock contradicts itself";
-  real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{},
+  real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{},
                                                         {.set_up_thread = set_up_and_look});
   session.start();
   std::this_thread::sleep_for(std::chrono::milliseconds(60));

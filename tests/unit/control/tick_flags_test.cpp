@@ -27,7 +27,7 @@ tick_flag told_by(const Body& body, double newtons, const contact_law& law, cons
     tick_flag told = tick_flag::none;
     void operator()(const session_record& r) noexcept { told |= r.flags; }
   };
-  control_config control;
+  control_settings control;
   control.contact = law;
   control.coupling = coupling_for(simulated_capabilities(), 1e9 / static_cast<double>(schedule.device_period_ns));
   simulated_device dev(hand_that_presses(newtons, touch, direction, control.coupling.stiffness_n_per_m));

@@ -40,7 +40,7 @@ struct digest {
 };
 
 std::uint64_t run(std::uint64_t seed, const virtual_schedule& schedule, motion_kind motion, std::int64_t chunk_ns) {
-  simulated_config hand;
+  simulated_settings hand;
   hand.seed = seed;
   hand.motion = {.kind = motion, .T_dh = {quat(1, 0, 0, 0), {0, 0, 0.002}}, .depth_m = 0.01};
   hand.measurement.delay_ns = 300'000;
@@ -49,7 +49,7 @@ std::uint64_t run(std::uint64_t seed, const virtual_schedule& schedule, motion_k
   EXPECT_TRUE(dev.open() && dev.arm());
   analytic_wall wall;
   wall.arm_m = 0.01;
-  virtual_session<analytic_wall, simulated_device, digest> session(wall, {{pose{}}, vec3(0.0)}, dev, control_config{},
+  virtual_session<analytic_wall, simulated_device, digest> session(wall, {{pose{}}, vec3(0.0)}, dev, control_settings{},
                                                                    schedule);
   for (std::int64_t t = 0; t <= 1'500'000'000; t += chunk_ns) static_cast<void>(session.run_until(t));
   return session.device().observer().value;
@@ -73,7 +73,7 @@ TEST(virtual_session, depends_on_its_schedule) {
 TEST(virtual_session, runs_the_contact_first_where_both_are_due) {
   simulated_device dev;
   ASSERT_TRUE(dev.open() && dev.arm());
-  virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_config{},
+  virtual_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{},
                                                            {.contact_period_ns = 2'000'000});
   for (std::uint64_t tick = 0; tick < 10; ++tick) {
     EXPECT_EQ(session.contact_ticks(), (tick + 1) / 2);
@@ -86,7 +86,7 @@ TEST(virtual_session, keeps_to_its_periods) {
   simulated_device dev;
   ASSERT_TRUE(dev.open() && dev.arm());
   virtual_session<analytic_wall, simulated_device> session(
-      {}, {{pose{}}, vec3(0.0)}, dev, control_config{},
+      {}, {{pose{}}, vec3(0.0)}, dev, control_settings{},
       {.start_ns = 5, .device_period_ns = 1'000'000, .contact_period_ns = 4'000'000});
   static_cast<void>(session.run_until(5 + 1'000'000'000));
   EXPECT_EQ(session.device_ticks(), 1000U);
@@ -109,7 +109,7 @@ ages age_of_contact(bool late) {
   simulated_device dev;
   EXPECT_TRUE(dev.open() && dev.arm());
   virtual_session<analytic_wall, simulated_device, ages> session(
-      {}, {{pose{}}, vec3(0.0)}, dev, control_config{},
+      {}, {{pose{}}, vec3(0.0)}, dev, control_settings{},
       {.contact_period_ns = 5'000'000, .contact_one_period_late = late});
   static_cast<void>(session.run_until(1'000'000'000));
   return session.device().observer();

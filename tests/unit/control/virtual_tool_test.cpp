@@ -147,9 +147,9 @@ TEST(coupling_for, takes_half_of_what_the_device_holds_at_the_rate) {
   EXPECT_DOUBLE_EQ(coupling_for(device_of(3000, 1000), 500).stiffness_n_per_m, 750.0);
   EXPECT_DOUBLE_EQ(coupling_for(device_of(3000, 1000), 4000).stiffness_n_per_m, 1500.0);  // structure, not sampling
   EXPECT_DOUBLE_EQ(coupling_for(device_of(3000, 0), 100).stiffness_n_per_m, 1500.0);
-  const coupling_config unknown = coupling_for({}, 1000);
-  EXPECT_EQ(unknown.stiffness_n_per_m, coupling_config{}.stiffness_n_per_m);
-  EXPECT_EQ(unknown.stiffness_n_m_per_rad, coupling_config{}.stiffness_n_m_per_rad);
+  const coupling_settings unknown = coupling_for({}, 1000);
+  EXPECT_EQ(unknown.stiffness_n_per_m, coupling_settings{}.stiffness_n_per_m);
+  EXPECT_EQ(unknown.stiffness_n_m_per_rad, coupling_settings{}.stiffness_n_m_per_rad);
 }
 
 TEST(coupling_for, leaves_a_way_to_steer_in) {
@@ -183,7 +183,7 @@ TEST(coupling_for, is_passive_on_the_simulated_device) {
       c.hand = hand_that_presses(6.0, {0, 0, 0.013}, {0, 0, -1}, c.control.coupling.stiffness_n_per_m);
       c.hand.motion.depth_m += 0.003;  // from so high that a tilted block is clear of the face
       c.hand.seed = d.bits();
-      c.hand.hand = kind % 3 == 0 ? soft_hand() : (kind % 3 == 1 ? firm_hand() : hand_config{});
+      c.hand.hand = kind % 3 == 0 ? soft_hand() : (kind % 3 == 1 ? firm_hand() : hand_settings{});
       if (kind % 3 == 2) c.hand.motion.kind = motion_kind::tap;
       if (kind >= 3) c.hand.motion.T_dh.rotation = exp_rotation(d.inside(0.2));
       c.hand.motion.frequency_hz = d.between(1.0, 5.0);

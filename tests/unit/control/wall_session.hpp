@@ -19,8 +19,8 @@ struct keep_all {
 };
 
 /// A hand that presses onto the wall at z = 0 and reaches it after about 0.2 s.
-inline simulated_config pressing_hand() {
-  simulated_config c;
+inline simulated_settings pressing_hand() {
+  simulated_settings c;
   c.motion = {.T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .depth_m = 0.015, .approach_s = 0.4};
   return c;
 }
@@ -30,7 +30,7 @@ struct wall_session {
   simulated_device dev;
   virtual_session<analytic_wall, simulated_device, keep_all> session;
 
-  explicit wall_session(const simulated_config& hand, const control_config& control = {},
+  explicit wall_session(const simulated_settings& hand, const control_settings& control = {},
                         const analytic_wall& wall = {})
       : dev(hand), session(wall, {{pose{}}, vec3(0.0)}, opened(dev), control, {}, keep_all{&log}) {}
 

@@ -11,8 +11,8 @@ using namespace asperity;
 
 constexpr std::int64_t ms = 1'000'000;
 
-simulated_config wandering() {
-  simulated_config c;
+simulated_settings wandering() {
+  simulated_settings c;
   c.motion = {.kind = motion_kind::free};
   c.measurement.jitter_ns = 2 * ms;
   c.faults = {{device_fault::drop, 100 * ms, 103 * ms}, {device_fault::depart, 400 * ms, 401 * ms}};

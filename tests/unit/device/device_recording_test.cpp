@@ -25,8 +25,8 @@ struct keep_all {
   void operator()(const session_record& r) noexcept { to->push_back(r.on_hand_d); }
 };
 
-simulated_config hand_with_faults() {
-  simulated_config c;
+simulated_settings hand_with_faults() {
+  simulated_settings c;
   c.motion = {.T_dh = {quat(1, 0, 0, 0), {0, 0, 0.005}}, .depth_m = 0.015, .approach_s = 0.2};
   c.measurement = {.delay_ns = 2 * ms, .jitter_ns = 1 * ms, .loss = 0.2};
   c.faults = {{device_fault::nan_pose, 400 * ms, 403 * ms}, {device_fault::refuse_write, 600 * ms, 610 * ms}};

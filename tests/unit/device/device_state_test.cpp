@@ -215,11 +215,11 @@ TEST(device_state, no_sequence_of_five_operations_arms_the_simulated_device_but_
       if (testing::Test::HasFatalFailure()) return;
     }
   };
-  simulated_config config;
-  config.faults = {{device_fault::depart, 1'000'000'000, 1'000'000'001}};
+  simulated_settings settings;
+  settings.faults = {{device_fault::depart, 1'000'000'000, 1'000'000'001}};
   // A plant that nobody steps: the operations count, not the motion.
-  config.hand.tremor_m = 0.0;
-  simulated_device fresh(config);
+  settings.hand.tremor_m = 0.0;
+  simulated_device fresh(settings);
   device_sample in;
   static_cast<void>(fresh.read(999'999'999, in));  // the plant's clock begins here
   walk(walk, fresh, 5, 999'999'999);

@@ -12,7 +12,7 @@ using namespace asperity;
 constexpr motion_kind kinds[] = {motion_kind::press, motion_kind::scrub, motion_kind::twist, motion_kind::tap,
                                  motion_kind::free};
 
-motion_config tilted(motion_kind kind) {
+motion_settings tilted(motion_kind kind) {
   return {.kind = kind,
           .T_dh = {exp_rotation({0.4, -0.2, 0.9}), {0.1, 0.2, 0.3}},
           .direction_d = {0.0, 0.6, -0.8},
@@ -46,7 +46,7 @@ TEST(motion_script, velocity_is_the_derivative_of_the_pose) {
 }
 
 TEST(motion_script, approaches_and_then_moves_as_told) {
-  const motion_config c = tilted(motion_kind::scrub);
+  const motion_settings c = tilted(motion_kind::scrub);
   const motion_script press(tilted(motion_kind::press));
   EXPECT_LT(glm::length(press.at(5.0).T_dh.position - (c.T_dh.position + c.depth_m * c.direction_d)), 1e-15);
   const motion_script scrub(c);
@@ -59,7 +59,7 @@ TEST(motion_script, approaches_and_then_moves_as_told) {
 }
 
 TEST(motion_script, taps_in_an_uneven_rhythm_between_the_pressed_pose_and_the_lift) {
-  motion_config c = tilted(motion_kind::tap);
+  motion_settings c = tilted(motion_kind::tap);
   c.frequency_hz = 4.0;
   const vec3 pressed = c.T_dh.position + c.depth_m * c.direction_d;
   std::vector<double> blows_s;
@@ -93,7 +93,7 @@ TEST(motion_script, taps_in_an_uneven_rhythm_between_the_pressed_pose_and_the_li
 }
 
 TEST(motion_script, wanders_by_seed_inside_its_box) {
-  const motion_config c = tilted(motion_kind::free);
+  const motion_settings c = tilted(motion_kind::free);
   const motion_script one(c, 1);
   const motion_script again(c, 1);
   const motion_script two(c, 2);

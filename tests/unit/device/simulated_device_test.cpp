@@ -11,7 +11,7 @@ using namespace asperity;
 
 constexpr std::int64_t ms = 1'000'000;
 
-simulated_device armed(const simulated_config& c) {
+simulated_device armed(const simulated_settings& c) {
   simulated_device d(c);
   EXPECT_TRUE(d.open());
   EXPECT_TRUE(d.arm());
@@ -22,8 +22,8 @@ device_command push(const vec3& force, std::int64_t valid_until_ns) {
   return {{force, vec3(0.0)}, wrench_frame::device_base, valid_until_ns, 1};
 }
 
-simulated_config still_hand() {
-  simulated_config c;
+simulated_settings still_hand() {
+  simulated_settings c;
   c.motion.depth_m = 0.0;
   c.hand.tremor_m = 0.0;
   return c;
@@ -69,8 +69,8 @@ TEST(simulated_device, is_deflected_as_hand_and_force_say) {
 // Free plant without damping: a force held for t moves it by F t^2 / 2m.
 // What went in is in the dampers, in the plant's motion, or was taken out by the implicit step: nothing else.
 TEST(simulated_device, closes_the_energy_book_of_its_plant) {
-  for (const hand_config& hand : {soft_hand(), hand_config{}, firm_hand()}) {
-    simulated_config c;
+  for (const hand_settings& hand : {soft_hand(), hand_settings{}, firm_hand()}) {
+    simulated_settings c;
     c.motion = {.kind = motion_kind::free, .amplitude_m = 0.02, .amplitude_rad = 0.5, .frequency_hz = 3.0};
     c.hand = hand;
     simulated_device d = armed(c);
@@ -90,7 +90,7 @@ TEST(simulated_device, closes_the_energy_book_of_its_plant) {
 }
 
 TEST(simulated_device, moves_as_newton_says) {
-  simulated_config c = still_hand();
+  simulated_settings c = still_hand();
   c.hand = {0.0, 0.0, 0.0, 0.0, 0.0};
   c.plant = {.mass_kg = 0.2, .damping_n_s_per_m = 0.0, .inertia_kg_m2 = 1e-3, .damping_n_m_s_per_rad = 0.0};
   simulated_device d = armed(c);
@@ -143,7 +143,7 @@ TEST(simulated_device, faults_on_a_command_that_no_gate_would_send) {
 
 // What no gate would send is cut down to what the device states of itself, force and torque apart, direction kept.
 TEST(simulated_device, puts_out_no_more_than_it_states) {
-  simulated_config c = still_hand();
+  simulated_settings c = still_hand();
   c.capabilities.peak_force_n = 5.0;
   c.capabilities.peak_torque_n_m = 0.5;
   simulated_device d = armed(c);
@@ -160,7 +160,7 @@ TEST(simulated_device, puts_out_no_more_than_it_states) {
 }
 
 TEST(simulated_device, quantises_and_delays) {
-  simulated_config c;
+  simulated_settings c;
   c.motion = {.direction_d = {1, 0, 0}, .depth_m = 0.1};
   c.measurement = {.position_resolution_m = 1e-4, .delay_ns = 5 * ms};
   simulated_device d = armed(c);
@@ -175,11 +175,11 @@ TEST(simulated_device, quantises_and_delays) {
 }
 
 TEST(simulated_device, repeats_itself_to_the_bit) {
-  simulated_config c;
+  simulated_settings c;
   c.motion = {.kind = motion_kind::free};
   c.measurement.jitter_ns = 3 * ms;
-  const auto trace = [](const simulated_config& config) {
-    simulated_device d = armed(config);
+  const auto trace = [](const simulated_settings& settings) {
+    simulated_device d = armed(settings);
     device_sample s;
     double sum = 0.0;
     for (int i = 0; i < 1000; ++i) {
@@ -196,7 +196,7 @@ TEST(simulated_device, repeats_itself_to_the_bit) {
 }
 
 TEST(simulated_device, leaves_its_bus_and_comes_back_unarmed) {
-  simulated_config c = still_hand();
+  simulated_settings c = still_hand();
   c.faults = {{device_fault::depart, 10 * ms, 11 * ms}};
   simulated_device d = armed(c);
   device_sample s;
@@ -212,9 +212,9 @@ TEST(simulated_device, leaves_its_bus_and_comes_back_unarmed) {
 }
 
 TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
-  simulated_config config;
-  config.actuator = {.peak_force_n = 3.0, .force_slew_n_per_s = 1000.0};
-  simulated_device dev = armed(config);
+  simulated_settings settings;
+  settings.actuator = {.peak_force_n = 3.0, .force_slew_n_per_s = 1000.0};
+  simulated_device dev = armed(settings);
   vec3 before{0.0};
   for (std::int64_t t = 0; t < 20'000'000; t += 50'000) {  // every step of the plant
     device_sample in;
@@ -228,9 +228,9 @@ TEST(simulated_device, motors_hold_their_own_limits_and_slew) {
 }
 
 TEST(simulated_device, motors_hold_their_own_torque_and_its_slew) {
-  simulated_config config = still_hand();
-  config.actuator = {.peak_torque_n_m = 0.03, .torque_slew_n_m_per_s = 10.0};
-  simulated_device dev = armed(config);
+  simulated_settings settings = still_hand();
+  settings.actuator = {.peak_torque_n_m = 0.03, .torque_slew_n_m_per_s = 10.0};
+  simulated_device dev = armed(settings);
   vec3 before{0.0};
   for (std::int64_t t = 0; t < 20'000'000; t += 50'000) {
     device_sample in;
@@ -245,9 +245,9 @@ TEST(simulated_device, motors_hold_their_own_torque_and_its_slew) {
 }
 
 TEST(simulated_device, motors_warm_up_and_derate) {
-  simulated_config config;
-  config.actuator = {.peak_force_n = 10.0, .continuous_force_n = 4.0, .thermal_time_s = 0.5};
-  simulated_device dev = armed(config);
+  simulated_settings settings;
+  settings.actuator = {.peak_force_n = 10.0, .continuous_force_n = 4.0, .thermal_time_s = 0.5};
+  simulated_device dev = armed(settings);
   double at_first = 0.0, least = 10.0;
   device_sample in;
   std::int64_t t = 0;
@@ -263,8 +263,8 @@ TEST(simulated_device, motors_warm_up_and_derate) {
   EXPECT_LT(dev.actuator().warmth(), 2.0);
   EXPECT_EQ(dev.state(), device_state::active);
 
-  config.actuator.derate_from = 1.99;  // a device without foresight
-  simulated_device careless = armed(config);
+  settings.actuator.derate_from = 1.99;  // a device without foresight
+  simulated_device careless = armed(settings);
   for (t = 0; t < 5'000'000'000 && careless.read(t, in) == status::ok; t += 1'000'000) {
     static_cast<void>(careless.write(t, push({10, 0, 0}, t + 20 * ms)));
   }
@@ -272,9 +272,10 @@ TEST(simulated_device, motors_warm_up_and_derate) {
 }
 
 TEST(simulated_device, motors_that_burn_end_in_a_fault) {
-  simulated_config config = still_hand();
-  config.actuator = {.continuous_force_n = 4.0, .thermal_time_s = 0.5};  // no peak of their own that could fall in time
-  simulated_device dev = armed(config);
+  simulated_settings settings = still_hand();
+  settings.actuator = {.continuous_force_n = 4.0,
+                       .thermal_time_s = 0.5};  // no peak of their own that could fall in time
+  simulated_device dev = armed(settings);
   device_sample in;
   std::int64_t t = 0;
   for (; t < 5'000 * ms && dev.read(t, in) == status::ok; t += ms) {
@@ -296,9 +297,9 @@ TEST(simulated_device, motors_that_burn_end_in_a_fault) {
 }
 
 TEST(simulated_device, loses_measurements_and_says_how_many) {
-  simulated_config config;
-  config.measurement.loss = 0.25;
-  simulated_device dev = armed(config);
+  simulated_settings settings;
+  settings.measurement.loss = 0.25;
+  simulated_device dev = armed(settings);
   std::uint64_t news = 0, last = 0, gaps = 0;
   device_sample in;
   for (std::int64_t t = 0; t < 4000; ++t) {
@@ -314,10 +315,10 @@ TEST(simulated_device, loses_measurements_and_says_how_many) {
 }
 
 TEST(simulated_device, one_axis_sticks_and_the_others_go_on) {
-  simulated_config config;
-  config.motion = {.kind = motion_kind::scrub, .depth_m = 0.05, .approach_s = 0.05, .amplitude_m = 0.02};
-  config.faults = {{device_fault::stuck_encoder, 500'000'000, 800'000'000}};
-  simulated_device dev = armed(config);
+  simulated_settings settings;
+  settings.motion = {.kind = motion_kind::scrub, .depth_m = 0.05, .approach_s = 0.05, .amplitude_m = 0.02};
+  settings.faults = {{device_fault::stuck_encoder, 500'000'000, 800'000'000}};
+  simulated_device dev = armed(settings);
   device_sample in, at_begin;
   double x_range = 0.0;
   for (std::int64_t t = 0; t < 1000; ++t) {
@@ -332,9 +333,9 @@ TEST(simulated_device, one_axis_sticks_and_the_others_go_on) {
 }
 
 TEST(simulated_device, answers_slowly) {
-  simulated_config config;
-  config.faults = {{device_fault::slow_reply, 100'000'000, 200'000'000}};
-  simulated_device dev = armed(config);
+  simulated_settings settings;
+  settings.faults = {{device_fault::slow_reply, 100'000'000, 200'000'000}};
+  simulated_device dev = armed(settings);
   std::uint64_t last = 0;
   int news = 0;
   for (std::int64_t t = 0; t < 200; ++t) {
@@ -347,9 +348,9 @@ TEST(simulated_device, answers_slowly) {
 }
 
 TEST(simulated_device, returns_under_another_path_and_unarmed) {
-  simulated_config config;
-  config.faults = {{device_fault::depart, 5'000'000, 6'000'000}};
-  simulated_device dev(config);
+  simulated_settings settings;
+  settings.faults = {{device_fault::depart, 5'000'000, 6'000'000}};
+  simulated_device dev(settings);
   ASSERT_TRUE(dev.open());
   EXPECT_EQ(dev.path(), "simulated:0");
   device_sample in;

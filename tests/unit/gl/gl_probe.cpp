@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace asperity;
-  gl::context_options options;
+  gl::context_settings options;
   const std::string dialect = argc > 1 ? argv[1] : "automatic";
   options.dialect = dialect == "core" ? gl::dialect::core : dialect == "es" ? gl::dialect::es : gl::dialect::automatic;
   if (argc > 2) options.egl_library = argv[2];

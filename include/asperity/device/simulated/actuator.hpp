@@ -12,7 +12,7 @@ namespace asperity {
 
 /// Limits of the motors themselves, which hold whatever a host sends. The defaults are none: the motors put out what
 /// they are told, at once.
-struct actuator_config {
+struct actuator_settings {
   static constexpr double none = std::numeric_limits<double>::infinity();
   double peak_force_n = none;
   double peak_torque_n_m = none;
@@ -31,28 +31,31 @@ struct actuator_config {
 /// @rt safe
 class simulated_actuator {
  public:
-  explicit simulated_actuator(const actuator_config& config = {}) noexcept
-      : config_(config),
-        limited_(config.peak_force_n < none || config.peak_torque_n_m < none || config.force_slew_n_per_s < none ||
-                 config.torque_slew_n_m_per_s < none || config.continuous_force_n < none) {}
+  explicit simulated_actuator(const actuator_settings& settings = {}) noexcept
+      : settings_(settings),
+        limited_(settings.peak_force_n < none || settings.peak_torque_n_m < none ||
+                 settings.force_slew_n_per_s < none || settings.torque_slew_n_m_per_s < none ||
+                 settings.continuous_force_n < none) {}
 
   /// What the motors put out over the next h seconds.
   [[nodiscard]] wrench follow(const wrench& told, double h) noexcept {
     if (!limited_) return told;
-    const double left = std::clamp((config_.burns_at - warmth_) / (config_.burns_at - config_.derate_from), 0.0, 1.0);
-    out_ = {bounded(told.force, out_.force, config_.peak_force_n, left, config_.force_slew_n_per_s * h),
-            bounded(told.torque, out_.torque, config_.peak_torque_n_m, left, config_.torque_slew_n_m_per_s * h)};
-    const double share = glm::dot(out_.force, out_.force) / (config_.continuous_force_n * config_.continuous_force_n);
-    warmth_ += h / config_.thermal_time_s * (share - warmth_);
+    const double left =
+        std::clamp((settings_.burns_at - warmth_) / (settings_.burns_at - settings_.derate_from), 0.0, 1.0);
+    out_ = {bounded(told.force, out_.force, settings_.peak_force_n, left, settings_.force_slew_n_per_s * h),
+            bounded(told.torque, out_.torque, settings_.peak_torque_n_m, left, settings_.torque_slew_n_m_per_s * h)};
+    const double share =
+        glm::dot(out_.force, out_.force) / (settings_.continuous_force_n * settings_.continuous_force_n);
+    warmth_ += h / settings_.thermal_time_s * (share - warmth_);
     return out_;
   }
 
   /// Temperature above the air's, in that of the continuous force held for ever.
   [[nodiscard]] double warmth() const noexcept { return warmth_; }
-  [[nodiscard]] bool burnt() const noexcept { return warmth_ >= config_.burns_at; }
+  [[nodiscard]] bool burnt() const noexcept { return warmth_ >= settings_.burns_at; }
 
  private:
-  static constexpr double none = actuator_config::none;
+  static constexpr double none = actuator_settings::none;
   static constexpr double most = 1e6;  // N or N m: bound_vector's largest limit stands for none
 
   [[nodiscard]] static vec3 bounded(const vec3& told, const vec3& before, double peak, double left,
@@ -61,7 +64,7 @@ class simulated_actuator {
     return bound_vector(told, before, {limit, left * limit, change}, true).value;
   }
 
-  actuator_config config_;
+  actuator_settings settings_;
   bool limited_;
   double warmth_ = 0.0;
   wrench out_{};

@@ -21,7 +21,7 @@ enum class motion_kind : std::uint8_t {
 };
 
 /// One motion of the hand, in the device's base frame. Times count from the script's beginning.
-struct motion_config {
+struct motion_settings {
   motion_kind kind = motion_kind::press;
   pose T_dh{};                       ///< pose at the beginning
   vec3 direction_d{0.0, 0.0, -1.0};  ///< of the approach; unit
@@ -42,21 +42,21 @@ struct hand_target {
 /// Target of the hand as a function of time: smooth, without state, the same for the same seed.
 class motion_script {
  public:
-  explicit motion_script(const motion_config& config = {}, std::uint64_t seed = 0) : config_(config) {
+  explicit motion_script(const motion_settings& settings = {}, std::uint64_t seed = 0) : settings_(settings) {
     std::mt19937_64 bits(seed);
     for (wave& w : waves_) {
       // Rates around the typical one, without a common period within a session.
-      w.rate_rad_per_s = two_pi * config.frequency_hz * (0.5 + unit(bits));
+      w.rate_rad_per_s = two_pi * settings.frequency_hz * (0.5 + unit(bits));
       w.phase_rad = two_pi * unit(bits);
     }
   }
 
   /// @rt safe
   [[nodiscard]] hand_target at(double t_s) const noexcept {
-    return config_.kind == motion_kind::free ? wander(t_s) : approach_and_move(t_s);
+    return settings_.kind == motion_kind::free ? wander(t_s) : approach_and_move(t_s);
   }
 
-  [[nodiscard]] const motion_config& config() const noexcept { return config_; }
+  [[nodiscard]] const motion_settings& settings() const noexcept { return settings_; }
 
  private:
   struct wave {
@@ -71,29 +71,30 @@ class motion_script {
   }
 
   [[nodiscard]] hand_target approach_and_move(double t_s) const noexcept {
-    const double x = t_s / config_.approach_s;
+    const double x = t_s / settings_.approach_s;
     hand_target out;
-    out.T_dh = config_.T_dh;
-    out.T_dh.position += config_.depth_m * smoothstep(x) * config_.direction_d;
-    out.velocity_d.linear = config_.depth_m * smoothstep_slope(x) / config_.approach_s * config_.direction_d;
+    out.T_dh = settings_.T_dh;
+    out.T_dh.position += settings_.depth_m * smoothstep(x) * settings_.direction_d;
+    out.velocity_d.linear = settings_.depth_m * smoothstep_slope(x) / settings_.approach_s * settings_.direction_d;
 
-    const double since = t_s - config_.approach_s;
-    if (config_.kind == motion_kind::press || since <= 0.0) return out;
+    const double since = t_s - settings_.approach_s;
+    if (settings_.kind == motion_kind::press || since <= 0.0) return out;
     const double grown = smoothstep(since / ramp_s);
-    if (config_.kind == motion_kind::tap) {
+    if (settings_.kind == motion_kind::tap) {
       add_taps(since, grown, out);
       return out;
     }
-    const double w = two_pi * config_.frequency_hz;
+    const double w = two_pi * settings_.frequency_hz;
     const double sway = grown * std::sin(w * since);
     const double rate =
         grown * w * std::cos(w * since) + smoothstep_slope(since / ramp_s) / ramp_s * std::sin(w * since);
-    if (config_.kind == motion_kind::scrub) {
-      out.T_dh.position += config_.amplitude_m * sway * config_.sideways_d;
-      out.velocity_d.linear += config_.amplitude_m * rate * config_.sideways_d;
+    if (settings_.kind == motion_kind::scrub) {
+      out.T_dh.position += settings_.amplitude_m * sway * settings_.sideways_d;
+      out.velocity_d.linear += settings_.amplitude_m * rate * settings_.sideways_d;
     } else {
-      out.T_dh.rotation = exp_rotation(config_.amplitude_rad * sway * config_.direction_d) * config_.T_dh.rotation;
-      out.velocity_d.angular = config_.amplitude_rad * rate * config_.direction_d;
+      out.T_dh.rotation =
+          exp_rotation(settings_.amplitude_rad * sway * settings_.direction_d) * settings_.T_dh.rotation;
+      out.velocity_d.angular = settings_.amplitude_rad * rate * settings_.direction_d;
     }
     return out;
   }
@@ -104,26 +105,26 @@ class motion_script {
     constexpr double uneven_rad = 0.8;
     const wave& sway = waves_[0];
     const double slow = 0.5 * sway.rate_rad_per_s * since + sway.phase_rad;
-    const double beat = two_pi * config_.frequency_hz * since + uneven_rad * std::sin(slow);
-    const double beat_rate = two_pi * config_.frequency_hz + uneven_rad * 0.5 * sway.rate_rad_per_s * std::cos(slow);
+    const double beat = two_pi * settings_.frequency_hz * since + uneven_rad * std::sin(slow);
+    const double beat_rate = two_pi * settings_.frequency_hz + uneven_rad * 0.5 * sway.rate_rad_per_s * std::cos(slow);
     const double lift = 0.5 * (1.0 - std::cos(beat));
     const double rate = smoothstep_slope(since / ramp_s) / ramp_s * lift + grown * 0.5 * std::sin(beat) * beat_rate;
-    out.T_dh.position -= config_.amplitude_m * grown * lift * config_.direction_d;
-    out.velocity_d.linear -= config_.amplitude_m * rate * config_.direction_d;
+    out.T_dh.position -= settings_.amplitude_m * grown * lift * settings_.direction_d;
+    out.velocity_d.linear -= settings_.amplitude_m * rate * settings_.direction_d;
   }
 
   [[nodiscard]] hand_target wander(double t_s) const noexcept {
-    const double grown = smoothstep(t_s / config_.approach_s);
-    const double growth = smoothstep_slope(t_s / config_.approach_s) / config_.approach_s;
+    const double grown = smoothstep(t_s / settings_.approach_s);
+    const double growth = smoothstep_slope(t_s / settings_.approach_s) / settings_.approach_s;
     vec6 way;
     vec6 rate;
     for (std::size_t i = 0; i < 6; ++i) {
-      const double amplitude = i < 3 ? config_.amplitude_m : config_.amplitude_rad;
+      const double amplitude = i < 3 ? settings_.amplitude_m : settings_.amplitude_rad;
       const double angle = waves_[i].rate_rad_per_s * t_s + waves_[i].phase_rad;
       way[i] = amplitude * grown * std::sin(angle);
       rate[i] = amplitude * (growth * std::sin(angle) + grown * waves_[i].rate_rad_per_s * std::cos(angle));
     }
-    const pose T{exp_rotation(way.angular) * config_.T_dh.rotation, config_.T_dh.position + way.linear};
+    const pose T{exp_rotation(way.angular) * settings_.T_dh.rotation, settings_.T_dh.position + way.linear};
     return {T, {rate.linear, angular_velocity(way.angular, rate.angular)}};
   }
 
@@ -137,7 +138,7 @@ class motion_script {
     return rate + first * turned + second * glm::cross(phi, turned);
   }
 
-  motion_config config_;
+  motion_settings settings_;
   std::array<wave, 6> waves_{};
 };
 

@@ -15,7 +15,7 @@
 #include "asperity/device/device.hpp"
 #include "asperity/device/simulated/actuator.hpp"
 #include "asperity/device/simulated/motion_script.hpp"
-#include "asperity/device/simulated/simulated_config.hpp"
+#include "asperity/device/simulated/simulated_settings.hpp"
 
 namespace asperity {
 
@@ -38,12 +38,12 @@ class simulated_device {
  public:
   using policy_tag = device_tag;
 
-  explicit simulated_device(simulated_config config = {})
-      : config_(std::move(config)),
-        motion_(config_.motion, config_.seed),
-        bits_(config_.seed ^ 0x9e3779b97f4a7c15ULL),
-        luck_(config_.seed ^ 0x6c6f7373ULL),
-        actuator_(config_.actuator) {
+  explicit simulated_device(simulated_settings settings = {})
+      : settings_(std::move(settings)),
+        motion_(settings_.motion, settings_.seed),
+        bits_(settings_.seed ^ 0x9e3779b97f4a7c15ULL),
+        luck_(settings_.seed ^ 0x6c6f7373ULL),
+        actuator_(settings_.actuator) {
     for (tremor_wave& w : tremor_) {
       w.rate_rad_per_s = 2.0 * 3.141592653589793 * (8.0 + 4.0 * unit());
       w.phase_rad = 2.0 * 3.141592653589793 * unit();
@@ -53,7 +53,7 @@ class simulated_device {
     past_.fill({plant_, 0});
   }
 
-  [[nodiscard]] const device_capabilities& capabilities() const noexcept { return config_.capabilities; }
+  [[nodiscard]] const device_capabilities& capabilities() const noexcept { return settings_.capabilities; }
   [[nodiscard]] device_state state() const noexcept { return machine_.state(); }
 
   [[nodiscard]] result<void> open() {
@@ -118,8 +118,8 @@ class simulated_device {
     const bool zero = is_zero(out.on_hand);
     machine_.apply(zero ? device_event::released : device_event::engaged);
     command_ = out;
-    command_.on_hand = {saturated(out.on_hand.force, config_.capabilities.peak_force_n),
-                        saturated(out.on_hand.torque, config_.capabilities.peak_torque_n_m)};
+    command_.on_hand = {saturated(out.on_hand.force, settings_.capabilities.peak_force_n),
+                        saturated(out.on_hand.torque, settings_.capabilities.peak_torque_n_m)};
     return status::ok;
   }
 
@@ -156,10 +156,10 @@ class simulated_device {
   /// Kinetic energy of the plant, J.
   [[nodiscard]] double kinetic_j() const noexcept {
     const twist& v = plant_.velocity_d;
-    return 0.5 * (config_.plant.mass_kg * glm::dot(v.linear, v.linear) +
-                  config_.plant.inertia_kg_m2 * glm::dot(v.angular, v.angular));
+    return 0.5 * (settings_.plant.mass_kg * glm::dot(v.linear, v.linear) +
+                  settings_.plant.inertia_kg_m2 * glm::dot(v.angular, v.angular));
   }
-  [[nodiscard]] const simulated_config& config() const noexcept { return config_; }
+  [[nodiscard]] const simulated_settings& settings() const noexcept { return settings_; }
 
  private:
   static constexpr std::int64_t plant_step_ns = 50'000;
@@ -184,7 +184,7 @@ class simulated_device {
   [[nodiscard]] bool measures() const noexcept { return asperity::measures(machine_.state()); }
 
   [[nodiscard]] bool fault_at(device_fault kind, std::int64_t now_ns) const noexcept {
-    for (const scripted_fault& f : config_.faults) {
+    for (const scripted_fault& f : settings_.faults) {
       if (f.kind == kind && now_ns >= f.from_ns && now_ns < f.until_ns) return true;
     }
     return false;
@@ -212,7 +212,7 @@ class simulated_device {
     if (newest_.host_time_ns == now_ns) return false;  // asked again: one instant has one measurement
     if (fault_at(device_fault::stale, now_ns)) return false;
     if (fault_at(device_fault::slow_reply, now_ns) && now_ns < newest_.host_time_ns + slow_reply_ns) return false;
-    const double loss = fault_at(device_fault::loss, now_ns) ? 0.9 : config_.measurement.loss;
+    const double loss = fault_at(device_fault::loss, now_ns) ? 0.9 : settings_.measurement.loss;
     if (!(loss > 0.0) || static_cast<double>(luck_() >> 11) * 0x1.0p-53 >= loss) return true;
     ++sequence_;
     ++lost_;
@@ -248,8 +248,8 @@ class simulated_device {
     const double h = static_cast<double>(plant_step_ns) * 1e-9;
     const double t = static_cast<double>(plant_ns_ - origin_ns_) * 1e-9;
     const hand_target hand = motion_.at(t);
-    const hand_config& g = config_.hand;
-    const plant_config& p = config_.plant;
+    const hand_settings& g = settings_.hand;
+    const plant_settings& p = settings_.plant;
     const wrench put_out = put_out_ =
         actuator_.follow(plant_ns_ <= command_.valid_until_ns ? command_.on_hand : wrench{}, h);
 
@@ -275,8 +275,8 @@ class simulated_device {
 
   // `pull` is the hand's wrench before its damper took part in the step.
   void book(double h, const twist& before, const wrench& put_out, const wrench& pull) noexcept {
-    const hand_config& g = config_.hand;
-    const plant_config& p = config_.plant;
+    const hand_settings& g = settings_.hand;
+    const plant_settings& p = settings_.plant;
     const twist& v = plant_.velocity_d;
     const double v2 = glm::dot(v.linear, v.linear);
     const double w2 = glm::dot(v.angular, v.angular);
@@ -294,11 +294,11 @@ class simulated_device {
     for (std::size_t i = 0; i < tremor_.size(); ++i) {
       out[static_cast<int>(i % 3)] += std::sin(tremor_[i].rate_rad_per_s * t_s + tremor_[i].phase_rad);
     }
-    return config_.hand.tremor_m * out;
+    return settings_.hand.tremor_m * out;
   }
 
   void measure(std::int64_t now_ns) noexcept {
-    const measurement_config& m = config_.measurement;
+    const measurement_settings& m = settings_.measurement;
     const std::int64_t delay = m.delay_ns + static_cast<std::int64_t>(unit() * static_cast<double>(m.jitter_ns));
     const std::size_t back = std::min<std::size_t>(
         static_cast<std::size_t>(std::max<std::int64_t>(0, delay) / plant_step_ns), past_size - 1);
@@ -317,7 +317,7 @@ class simulated_device {
     const auto grid = [](vec3 v, double q) {
       return q > 0.0 ? vec3(q * std::round(v.x / q), q * std::round(v.y / q), q * std::round(v.z / q)) : v;
     };
-    const measurement_config& m = config_.measurement;
+    const measurement_settings& m = settings_.measurement;
     pose out{T.rotation, grid(T.position, m.position_resolution_m)};
     if (m.rotation_resolution_rad > 0.0) {
       out.rotation = exp_rotation(grid(log_rotation(T.rotation), m.rotation_resolution_rad));
@@ -334,7 +334,7 @@ class simulated_device {
     if (fault_at(device_fault::jump, now_ns)) s.T_dh.position.z += 0.5;
   }
 
-  simulated_config config_;
+  simulated_settings settings_;
   motion_script motion_;
   std::mt19937_64 bits_;
   std::mt19937_64 luck_;  // of its own, so that a loss leaves delays and tremor as they are

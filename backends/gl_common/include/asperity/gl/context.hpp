@@ -28,7 +28,7 @@ enum class dialect : std::uint8_t {
   es,         ///< OpenGL ES, 3.2 or 3.1
 };
 
-struct context_options {
+struct context_settings {
   /// Empty: the first device that works, real ones before software. Otherwise the index or a part of the name of a
   /// device of list_devices().
   std::string device{};
@@ -57,7 +57,7 @@ using context_ptr = std::shared_ptr<context>;
 /// Opens a context; it is current in no thread yet.
 /// @return unsupported, with the step that failed - loading EGL, finding a vendor, starting a driver, a new enough
 ///         OpenGL - and how to mend it | invalid_argument where no device has the name that was asked for
-[[nodiscard]] result<context_ptr> open_context(const context_options& options = {});
+[[nodiscard]] result<context_ptr> open_context(const context_settings& settings = {});
 
 class context : public std::enable_shared_from_this<context> {
  public:

@@ -34,7 +34,7 @@ enum class arithmetic : std::uint8_t {
 };
 
 /// What a compute_depth takes memory for, and how it calculates.
-struct compute_options {
+struct compute_settings {
   /// Most contacts of one call; 1 to 65535.
   std::size_t contacts = 16;
   /// Most coarse triangles of all patches of one call.
@@ -80,14 +80,14 @@ class compute_depth {
   /// @return what cpu_depth says about settings and scene | invalid_argument | unsupported | limit_exceeded
   [[nodiscard]] static result<compute_depth> make(context_ptr context, const scene& s,
                                                   const depth_settings& settings = {},
-                                                  const compute_options& options = {});
+                                                  const compute_settings& gpu_settings = {});
   compute_depth(compute_depth&&) noexcept;
   compute_depth& operator=(compute_depth&&) noexcept;
   ~compute_depth();
 
   /// Depth of every contact, as cpu_depth::measure.
   /// @pre the context is current in no other thread
-  /// @return ok | not_ready, not_finite (as cpu_depth) | capacity_reached (more contacts or triangles than the options
+  /// @return ok | not_ready, not_finite (as cpu_depth) | capacity_reached (more contacts or triangles than the settings
   ///         say) | backend_failed (the device did not answer, or is lost); all but ok leave zeros behind
   /// @rt no allocation, lock, throw, print or clock of ours; one wait for the device, and whatever its driver does
   [[nodiscard]] status measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept;

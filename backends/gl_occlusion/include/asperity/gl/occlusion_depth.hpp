@@ -35,7 +35,7 @@ enum class moved_heights : std::uint8_t {
 };
 
 /// What an occlusion_depth takes memory for, and how it draws.
-struct occlusion_options {
+struct occlusion_settings {
   std::size_t contacts = 16;      ///< most of one call; 1 to 256
   std::size_t triangles = 4096;   ///< most coarse triangles in all windows of one call
   std::uint32_t depth_bits = 16;  ///< 16, as the paper's, or 24
@@ -98,17 +98,17 @@ class occlusion_depth {
   /// Uploads the scene's models, or shares them where another backend of the context has them; compiles the shaders.
   /// Leaves the context current in no thread: the first measure() takes it for its own.
   /// @return what cpu_depth says about settings and scene | invalid_argument (settings other than the paper's,
-  ///         see paper_depth_settings; options) | unsupported | limit_exceeded
+  ///         see paper_depth_settings; gpu_settings) | unsupported | limit_exceeded
   [[nodiscard]] static result<occlusion_depth> make(context_ptr context, const scene& s,
                                                     const depth_settings& settings = paper_depth_settings(),
-                                                    const occlusion_options& options = {});
+                                                    const occlusion_settings& gpu_settings = {});
   occlusion_depth(occlusion_depth&&) noexcept;
   occlusion_depth& operator=(occlusion_depth&&) noexcept;
   ~occlusion_depth();
 
   /// Depth of every contact. A depth outside the range is told as its limit, with depth_flag::saturated.
   /// @pre the context is current in no other thread
-  /// @return ok | not_ready, not_finite (as cpu_depth) | capacity_reached (more contacts or triangles than the options
+  /// @return ok | not_ready, not_finite (as cpu_depth) | capacity_reached (more contacts or triangles than the settings
   ///         say) | backend_failed (the device is lost, or its driver reports an error); all but ok leave zeros behind
   /// @rt no allocation, lock, throw, print or clock of ours; waits for the device as counters() tells, and whatever its
   ///     driver does
@@ -125,7 +125,7 @@ class occlusion_depth {
   [[nodiscard]] result<std::vector<occlusion_tiles>> read_tiles();
 
   [[nodiscard]] const depth_settings& settings() const noexcept;
-  [[nodiscard]] const occlusion_options& options() const noexcept;
+  [[nodiscard]] const occlusion_settings& gpu_settings() const noexcept;
   [[nodiscard]] const occlusion_counters& counters() const noexcept;
   [[nodiscard]] const context_ptr& owner() const noexcept;
   /// Memory of this backend on the device beyond the models, bytes; context::device_bytes() has everything.

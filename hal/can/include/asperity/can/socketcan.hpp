@@ -19,7 +19,7 @@ struct id_filter {
   bool extended = false;  ///< frames with 29 bits; without, frames with 11
 };
 
-struct socketcan_options {
+struct socketcan_settings {
   /// Sends and receives CAN FD as well. The interface has to be set up for it.
   bool fd = false;
   /// Frames that pass one of these are received; all, where there are none. Error frames always are.
@@ -49,7 +49,7 @@ struct socketcan_options {
 ///         invalid_argument: no such interface, or it is not CAN, or it is down | io_failed: anything else; the message
 ///         says how to mend it
 [[nodiscard]] result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface,
-                                                              const socketcan_options& options = {});
+                                                              const socketcan_settings& settings = {});
 
 /// One CAN interface of this machine.
 struct interface_state {

@@ -14,7 +14,7 @@ namespace asperity::can {
 
 /// open_socketcan() with a kernel of one's own. @pre `calls` outlives what is returned
 [[nodiscard]] result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface,
-                                                              const socketcan_options& options, socket_calls& calls);
+                                                              const socketcan_settings& settings, socket_calls& calls);
 
 /// check_support() with a kernel of one's own.
 [[nodiscard]] result<void> check_support(socket_calls& calls);

@@ -19,7 +19,7 @@ namespace asperity::hid {
 /// open() says so and takes neither.
 class spacemouse_driver final : public device_driver {
  public:
-  explicit spacemouse_driver(const spacemouse_config& config = {}) : config_(config) {}
+  explicit spacemouse_driver(const spacemouse_settings& settings = {}) : settings_(settings) {}
 
   [[nodiscard]] std::string_view name() const noexcept override { return "spacemouse"; }
   [[nodiscard]] driver_maturity maturity() const noexcept override { return driver_maturity::protocol_tested; }
@@ -31,12 +31,12 @@ class spacemouse_driver final : public device_driver {
   [[nodiscard]] result<spacemouse_device> make_spacemouse(const device_listing& which);
 
  private:
-  spacemouse_config config_;
+  spacemouse_settings settings_;
 };
 
 /// The listed interface as the driver shows it; nothing where it is no SpaceMouse.
 [[nodiscard]] std::optional<device_listing> as_spacemouse(const hid_listing& which,
-                                                          const spacemouse_config& config = {});
+                                                          const spacemouse_settings& settings = {});
 
 /// Which of several interfaces a device remembered by identity and last path is now.
 /// @return io_failed where it is not there, or where two could be it

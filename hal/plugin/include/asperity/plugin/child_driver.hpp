@@ -17,7 +17,7 @@ namespace asperity::plugin {
 
 /// How a tick and the driver's process go together.
 enum class child_pace : std::uint8_t {
-  /// For a session on CLOCK_MONOTONIC. read() waits for its measurement for child_options::wait_ns, twice at the most,
+  /// For a session on CLOCK_MONOTONIC. read() waits for its measurement for child_settings::wait_ns, twice at the most,
   /// and gives the last one again where none came; write() and disarm() hand over and go on.
   paced,
   /// For a virtual clock: every call waits until the driver has answered, so that a session has the same bits as in
@@ -26,7 +26,7 @@ enum class child_pace : std::uint8_t {
 };
 
 /// Times of a driver's process. The defaults are those that docs/explanation/plugin-threats.md states.
-struct child_options {
+struct child_settings {
   child_pace pace = child_pace::paced;
   std::int64_t wait_ns = 150'000;                   ///< one wait of a paced read(): 15 % of a tick of 1 ms
   std::int64_t silence_ns = 20'000'000;             ///< session time without an answer (and 3 reads) that makes a fault
@@ -49,14 +49,14 @@ class child_driver final : public device_driver {
  public:
   /// Judges the file, starts a process and loads the driver there. @return how that ended where it did not succeed
   [[nodiscard]] static result<std::unique_ptr<child_driver>> load(const std::filesystem::path& file,
-                                                                  child_options options = {},
+                                                                  child_settings settings = {},
                                                                   file_trust trust = file_trust::owner_only);
   ~child_driver() override;
 
   /// As its table says; it cannot be told before it was loaded once.
   [[nodiscard]] std::string_view name() const noexcept override;
   [[nodiscard]] driver_maturity maturity() const noexcept override;
-  /// Within child_options::list_patience_ns, whatever the driver does.
+  /// Within child_settings::list_patience_ns, whatever the driver does.
   [[nodiscard]] result<std::vector<device_listing>> list() override;
   [[nodiscard]] result<any_device> make(const device_listing& which) override;
   /// As make(), with the type kept.

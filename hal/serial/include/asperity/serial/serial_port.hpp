@@ -10,7 +10,7 @@
 
 namespace asperity::serial {
 
-struct serial_options {
+struct serial_settings {
   std::uint32_t bits_per_s = 115'200;  ///< any rate that the line's hardware can make, not only the usual ones
 };
 
@@ -23,7 +23,7 @@ struct serial_options {
 ///         user, in use, or the hardware cannot make the rate | io_failed: anything else; the message says how to mend
 ///         it
 [[nodiscard]] result<std::unique_ptr<byte_link>> open_serial(const std::string& path,
-                                                             const serial_options& options = {});
+                                                             const serial_settings& settings = {});
 
 /// Takes an open terminal or stream socket, as it is; it will not block from here on, and is closed with the link.
 /// On an error it stays the caller's.

@@ -14,7 +14,7 @@
 
 namespace asperity::bake {
 
-struct bake_options {
+struct bake_settings {
   std::string name;                     ///< name of the model, kept in the file
   std::size_t triangles = 600;          ///< coarse triangles to aim for; ignored where `coarse` is given
   std::optional<triangle_mesh> coarse;  ///< a coarse mesh to use instead of simplifying
@@ -45,6 +45,6 @@ struct bake_options {
 /// @return bad_mesh | bad_texture (relief) | invalid_argument | limit_exceeded | cancelled, with the fault, its place
 /// and
 ///         the mend
-[[nodiscard]] result<textured_model> bake(triangle_mesh full, const bake_options& options);
+[[nodiscard]] result<textured_model> bake(triangle_mesh full, const bake_settings& settings);
 
 }  // namespace asperity::bake

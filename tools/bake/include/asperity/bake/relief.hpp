@@ -19,7 +19,7 @@ struct relief_point {
   vec2 uv{0.0};                ///< texture coordinates there; zero where the mesh has none
 };
 
-/// Heights over a mesh, to be added by a bake (bake_options::relief).
+/// Heights over a mesh, to be added by a bake (bake_settings::relief).
 struct relief {
   /// Height in metres at right angles to the triangle, outwards positive. Called from several threads at once; finite,
   /// and the same for the same point.

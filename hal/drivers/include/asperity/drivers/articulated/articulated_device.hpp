@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "asperity/device/device.hpp"
-#include "asperity/drivers/articulated/articulated_config.hpp"
+#include "asperity/drivers/articulated/articulated_settings.hpp"
 #include "asperity/drivers/articulated/drive_group.hpp"
 
 namespace asperity {
@@ -34,9 +34,9 @@ class articulated_device {
  public:
   using policy_tag = device_tag;
 
-  [[nodiscard]] static result<articulated_device> make(articulated_config config) {
-    if (result<void> good = check(config); !good) return good.error();
-    return articulated_device(std::move(config));
+  [[nodiscard]] static result<articulated_device> make(articulated_settings settings) {
+    if (result<void> good = check(settings); !good) return good.error();
+    return articulated_device(std::move(settings));
   }
 
   articulated_device(articulated_device&&) = default;
@@ -44,7 +44,7 @@ class articulated_device {
   articulated_device(const articulated_device&) = delete;
   articulated_device& operator=(const articulated_device&) = delete;
   ~articulated_device() {
-    if (!config_.joints.empty()) close();  // not moved from
+    if (!settings_.joints.empty()) close();  // not moved from
   }
 
   [[nodiscard]] const device_capabilities& capabilities() const noexcept { return capabilities_; }
@@ -71,21 +71,21 @@ class articulated_device {
   [[nodiscard]] const shared_torques& torques() const noexcept { return torques_; }
   /// Largest wrench in any direction at the present angles.
   [[nodiscard]] wrench_room room() const noexcept {
-    const chain_pose at = forward(config_.chain, angles_rad_);
-    return room_for_wrench(config_.chain, at, own_torques(at, 1.0), limits_n_m_);
+    const chain_pose at = forward(settings_.chain, angles_rad_);
+    return room_for_wrench(settings_.chain, at, own_torques(at, 1.0), limits_n_m_);
   }
-  [[nodiscard]] const articulated_config& config() const noexcept { return config_; }
+  [[nodiscard]] const articulated_settings& settings() const noexcept { return settings_; }
 
  private:
-  explicit articulated_device(articulated_config config)
-      : config_(std::move(config)), drives_(config_.joints, config_.buses) {
-    capabilities_ = capabilities_of(config_);
+  explicit articulated_device(articulated_settings settings)
+      : settings_(std::move(settings)), drives_(settings_.joints, settings_.buses) {
+    capabilities_ = capabilities_of(settings_);
     for (std::size_t i = 0; i < size(); ++i) {
-      limits_n_m_[i] = torque_limit_n_m(config_.joints[i], config_.chain.joints[i]);
+      limits_n_m_[i] = torque_limit_n_m(settings_.joints[i], settings_.chain.joints[i]);
     }
   }
 
-  [[nodiscard]] std::size_t size() const noexcept { return config_.joints.size(); }
+  [[nodiscard]] std::size_t size() const noexcept { return settings_.joints.size(); }
   [[nodiscard]] bool measures() const noexcept { return asperity::measures(machine_.state()); }
 
   void silence() noexcept;
@@ -105,8 +105,8 @@ class articulated_device {
   [[nodiscard]] result<void> refused(const char* what) const;
   [[nodiscard]] error failed(const char* what) const;
 
-  articulated_config config_;
-  drive_group drives_;  // looks at joints and buses of config_, which stay where they are when the device moves
+  articulated_settings settings_;
+  drive_group drives_;  // looks at joints and buses of settings_, which stay where they are when the device moves
   device_capabilities capabilities_{};
   joint_vector limits_n_m_{};
   device_state_machine machine_{};
@@ -154,13 +154,13 @@ inline bool articulated_device::supervise() noexcept {
     rates_rad_per_s_[i] = r.has_velocity ? r.velocity_rad_per_s : 0.0;
     if (!measures()) continue;
 
-    const chain_joint& j = config_.chain.joints[i];
-    if (now_ns_ - r.host_time_ns > config_.reading_limit_ns) return wrong("the joint's reading is too old", i);
-    if (angles_rad_[i] < j.lower_rad - config_.stop.overrun_rad ||
-        angles_rad_[i] > j.upper_rad + config_.stop.overrun_rad) {
+    const chain_joint& j = settings_.chain.joints[i];
+    if (now_ns_ - r.host_time_ns > settings_.reading_limit_ns) return wrong("the joint's reading is too old", i);
+    if (angles_rad_[i] < j.lower_rad - settings_.stop.overrun_rad ||
+        angles_rad_[i] > j.upper_rad + settings_.stop.overrun_rad) {
       return wrong("the joint is beyond its limits: its zero is wrong, or its stop is broken", i);
     }
-    if (std::fabs(rates_rad_per_s_[i]) > config_.joints[i].max_speed_rad_per_s) {
+    if (std::fabs(rates_rad_per_s_[i]) > settings_.joints[i].max_speed_rad_per_s) {
       return wrong("the joint is faster than its limit", i);
     }
     if (may_put_out(machine_.state()) && d.state() != drive_state::enabled) {
@@ -172,23 +172,25 @@ inline bool articulated_device::supervise() noexcept {
 
 inline joint_vector articulated_device::own_torques(const chain_pose& at, double gravity) const noexcept {
   joint_vector own{};
-  if (config_.gravity_compensation) own = torques_against_gravity(config_.chain, at);
+  if (settings_.gravity_compensation) own = torques_against_gravity(settings_.chain, at);
   for (std::size_t i = 0; i < size(); ++i) {
-    own[i] = with_stop(gravity * own[i], config_.stop, config_.chain.joints[i], angles_rad_[i], rates_rad_per_s_[i]);
+    own[i] =
+        with_stop(gravity * own[i], settings_.stop, settings_.chain.joints[i], angles_rad_[i], rates_rad_per_s_[i]);
   }
   return own;
 }
 
 inline double articulated_device::gravity_share() const noexcept {
-  if (config_.gravity_ramp_ns <= 0) return 1.0;
-  return std::clamp(static_cast<double>(now_ns_ - armed_ns_) / static_cast<double>(config_.gravity_ramp_ns), 0.0, 1.0);
+  if (settings_.gravity_ramp_ns <= 0) return 1.0;
+  return std::clamp(static_cast<double>(now_ns_ - armed_ns_) / static_cast<double>(settings_.gravity_ramp_ns), 0.0,
+                    1.0);
 }
 
 /// @pre may_put_out(state())
 inline bool articulated_device::put_out(const wrench& on_hand) noexcept {
-  const chain_pose at = forward(config_.chain, angles_rad_);
+  const chain_pose at = forward(settings_.chain, angles_rad_);
   torques_ =
-      share_torques(size(), own_torques(at, gravity_share()), torques_for(config_.chain, at, on_hand), limits_n_m_);
+      share_torques(size(), own_torques(at, gravity_share()), torques_for(settings_.chain, at, on_hand), limits_n_m_);
   if (!torques_.finite) {
     fail("the joint torques of the wrench are not finite");
     return false;
@@ -207,14 +209,14 @@ inline status articulated_device::read(std::int64_t now_ns, device_sample& in) n
 
   // A measurement is complete when every joint has moved on.
   if (drives_.measured_anew()) {
-    const chain_pose at = forward(config_.chain, angles_rad_);
+    const chain_pose at = forward(settings_.chain, angles_rad_);
     const std::int64_t oldest_ns = drives_.oldest_reading_ns(now_ns_);
     newest_.host_time_ns = oldest_ns;
     newest_.device_time_ns = oldest_ns;
     ++newest_.sequence;
     newest_.lost = drives_.lost();
     newest_.T_dh = at.T_dh;
-    newest_.velocity_d = handle_velocity(config_.chain, at, rates_rad_per_s_);
+    newest_.velocity_d = handle_velocity(settings_.chain, at, rates_rad_per_s_);
     newest_.valid = sample_field::position | sample_field::rotation | sample_field::linear_velocity |
                     sample_field::angular_velocity;
   }
@@ -249,14 +251,14 @@ inline status articulated_device::write(std::int64_t now_ns, const device_comman
 // Ticks until done(); false where a fault came, of which one is that time ran out.
 template <class Done>
 inline bool articulated_device::tick_until(std::int64_t limit_ns, Done&& done, const char* late) noexcept {
-  io_clock& clock = *config_.clock;
+  io_clock& clock = *settings_.clock;
   advance(clock.now_ns());
   const std::int64_t end_ns = now_ns_ + limit_ns;
   while (now_ns_ < end_ns) {
     if (!well(drives_.drain(now_ns_)) || !supervise()) return false;
     if (done()) return true;
     if (!well(drives_.step(now_ns_))) return false;
-    clock.wait_until_ns(now_ns_ + config_.period_ns);
+    clock.wait_until_ns(now_ns_ + settings_.period_ns);
     advance(clock.now_ns());
   }
   fail(late);
@@ -279,10 +281,10 @@ inline result<void> articulated_device::open() {
   if (!machine_.apply(device_event::opened)) return refused("open");
   has_fault_ = false;
   fault_ = {};
-  advance(config_.clock->now_ns());
+  advance(settings_.clock->now_ns());
   drives_.start(now_ns_);
   const auto idle = [this] { return drives_.all_idle(); };
-  if (!tick_until(config_.open_limit_ns, idle, "the drives did not all become idle in time")) return failed("open");
+  if (!tick_until(settings_.open_limit_ns, idle, "the drives did not all become idle in time")) return failed("open");
   machine_.apply(device_event::prepared);
   if (!supervise()) return failed("open");
   newest_.valid = sample_field::none;
@@ -291,13 +293,13 @@ inline result<void> articulated_device::open() {
 
 inline result<void> articulated_device::arm() {
   if (machine_.state() != device_state::ready) return refused("arm");
-  advance(config_.clock->now_ns());
+  advance(settings_.clock->now_ns());
   // After a disarm() the drives are on their way to idle for some periods.
   const auto idle = [this] { return drives_.all_idle(); };
   const auto enabled = [this] { return drives_.all_enabled(); };
-  if (!tick_until(config_.arm_limit_ns, idle, "the drives did not all become idle in time")) return failed("arm");
+  if (!tick_until(settings_.arm_limit_ns, idle, "the drives did not all become idle in time")) return failed("arm");
   if (!well(drives_.enable(now_ns_))) return failed("arm");
-  if (!tick_until(config_.arm_limit_ns, enabled, "the drives were not all enabled in time")) return failed("arm");
+  if (!tick_until(settings_.arm_limit_ns, enabled, "the drives were not all enabled in time")) return failed("arm");
   armed_ns_ = now_ns_;
   command_ = {};
   machine_.apply(device_event::armed);
@@ -306,7 +308,7 @@ inline result<void> articulated_device::arm() {
 
 inline result<void> articulated_device::clear_fault() {
   if (!machine_.apply(device_event::cleared)) return refused("clear_fault");
-  advance(config_.clock->now_ns());
+  advance(settings_.clock->now_ns());
   drives_.clear_faults(now_ns_);
   return {};
 }
@@ -325,9 +327,9 @@ inline void articulated_device::close() noexcept {
   machine_.apply(device_event::disarmed);
   silence();
   // The drives switch their power sections off before their supervision of us ends.
-  io_clock& clock = *config_.clock;
+  io_clock& clock = *settings_.clock;
   for (int k = 0; k < most_ticks && !drives_.none_on(); ++k) {
-    clock.wait_until_ns(clock.now_ns() + config_.period_ns);
+    clock.wait_until_ns(clock.now_ns() + settings_.period_ns);
     advance(clock.now_ns());
     drives_.wind_down(now_ns_);
   }

@@ -9,7 +9,7 @@
 #include <span>
 #include <string>
 
-#include "asperity/drivers/articulated/articulated_config.hpp"
+#include "asperity/drivers/articulated/articulated_settings.hpp"
 
 namespace asperity {
 
@@ -45,7 +45,7 @@ struct arm_fault {
 class drive_group {
  public:
   /// @param joints @param buses keep their places in memory as long as this is used
-  /// @pre check(articulated_config) of the arm they are from
+  /// @pre check(articulated_settings) of the arm they are from
   drive_group(std::span<const arm_joint> joints, std::span<const arm_bus> buses) noexcept
       : joints_(joints), buses_(buses) {}
 

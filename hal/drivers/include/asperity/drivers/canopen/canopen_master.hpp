@@ -9,9 +9,9 @@
 
 namespace asperity {
 
-struct canopen_master_config {
-  std::uint8_t node = 127;                      ///< cia402_config::host_node of every drive on the bus
-  std::int64_t heartbeat_every_ns = 5'000'000;  ///< several within cia402_config::host_silence_ms
+struct canopen_master_settings {
+  std::uint8_t node = 127;                      ///< cia402_settings::host_node of every drive on the bus
+  std::int64_t heartbeat_every_ns = 5'000'000;  ///< several within cia402_settings::host_silence_ms
   bool reset_when_finished = true;  ///< reset the communication of every node on the bus at the end of a session
 };
 
@@ -21,12 +21,12 @@ struct canopen_master_config {
 /// @rt safe
 class canopen_master final : public bus_service {
  public:
-  explicit canopen_master(const canopen_master_config& config = {}) noexcept : config_(config) {}
+  explicit canopen_master(const canopen_master_settings& settings = {}) noexcept : settings_(settings) {}
 
   [[nodiscard]] io_status step(std::int64_t now_ns, can_bus& bus) noexcept override {
     const io_status synced = bus.send(now_ns, canopen::encode_sync());
-    if (beaten_ && now_ns - beat_ns_ < config_.heartbeat_every_ns) return synced;
-    const io_status beat = bus.send(now_ns, canopen::encode_heartbeat(config_.node, canopen::nmt_state::operational));
+    if (beaten_ && now_ns - beat_ns_ < settings_.heartbeat_every_ns) return synced;
+    const io_status beat = bus.send(now_ns, canopen::encode_heartbeat(settings_.node, canopen::nmt_state::operational));
     if (beat == io_status::ok) {
       beaten_ = true;
       beat_ns_ = now_ns;
@@ -37,12 +37,12 @@ class canopen_master final : public bus_service {
   /// Ends the supervision of our heartbeat, which would otherwise find the end of a session to be a fault.
   void finish(std::int64_t now_ns, can_bus& bus) noexcept override {
     beaten_ = false;
-    if (!config_.reset_when_finished) return;
+    if (!settings_.reset_when_finished) return;
     static_cast<void>(bus.send(now_ns, canopen::encode_nmt(canopen::nmt_command::reset_communication, 0)));
   }
 
  private:
-  canopen_master_config config_;
+  canopen_master_settings settings_;
   bool beaten_ = false;
   std::int64_t beat_ns_ = 0;
 };

@@ -24,13 +24,13 @@ namespace asperity {
 /// @rt safe after construction
 class cia402_drive final : public joint_drive {
  public:
-  explicit cia402_drive(const cia402_config& config)
-      : config_(config),
-        setup_(config),
-        limit_permille_(canopen::torque_limit_permille(config)),
-        rad_per_count_((config.reversed ? -1.0 : 1.0) * 6.283185307179586 /
-                       (config.counts_per_turn * config.gear_ratio)) {
-    const double per_permille_n_m = config.rated_torque_n_m * config.gear_ratio / 1000.0;
+  explicit cia402_drive(const cia402_settings& settings)
+      : settings_(settings),
+        setup_(settings),
+        limit_permille_(canopen::torque_limit_permille(settings)),
+        rad_per_count_((settings.reversed ? -1.0 : 1.0) * 6.283185307179586 /
+                       (settings.counts_per_turn * settings.gear_ratio)) {
+    const double per_permille_n_m = settings.rated_torque_n_m * settings.gear_ratio / 1000.0;
     facts_ = {.protocol = "CiA 402, cyclic synchronous torque",
               .peak_torque_n_m = limit_permille_ * per_permille_n_m,
               .torque_resolution_n_m = per_permille_n_m,
@@ -57,14 +57,14 @@ class cia402_drive final : public joint_drive {
   [[nodiscard]] bool enable(std::int64_t now_ns) noexcept override {
     if (phase_ != phase::idle) return false;
     torque_n_m_ = 0.0;
-    enter(phase::switch_on, now_ns, config_.state_limit_ns);
+    enter(phase::switch_on, now_ns, settings_.state_limit_ns);
     return true;
   }
   void disable(std::int64_t now_ns) noexcept override {
     torque_n_m_ = 0.0;
     if (phase_ != phase::switch_on && phase_ != phase::enabled) return;
     zero_sent_ = false;
-    enter(phase::wind_down, now_ns, config_.state_limit_ns);
+    enter(phase::wind_down, now_ns, settings_.state_limit_ns);
   }
   /// Leads the drive to idle anew, as start() does.
   [[nodiscard]] bool clear_fault(std::int64_t now_ns) noexcept override {
@@ -110,7 +110,7 @@ class cia402_drive final : public joint_drive {
     last_emergency_ = 0;
     reset_step_ = 0;
     setup_.restart();
-    enter(phase::boot, now_ns, config_.boot_limit_ns);
+    enter(phase::boot, now_ns, settings_.boot_limit_ns);
     repeat_ns_ = now_ns;
   }
   void enter(phase p, std::int64_t now_ns, std::int64_t limit_ns) noexcept {
@@ -136,7 +136,7 @@ class cia402_drive final : public joint_drive {
   [[nodiscard]] canopen::torque_command command() noexcept;
   [[nodiscard]] bool send(std::int64_t now_ns, can_bus& bus, const can_frame& frame, io_status& answer) noexcept;
 
-  cia402_config config_;
+  cia402_settings settings_;
   canopen::setup_dialogue setup_;
   std::int16_t limit_permille_;
   double rad_per_count_;
@@ -179,7 +179,7 @@ inline drive_state cia402_drive::state() const noexcept {
 }
 
 inline bool cia402_drive::take(std::int64_t now_ns, const can_frame& frame) noexcept {
-  const std::uint8_t node = config_.node;
+  const std::uint8_t node = settings_.node;
   if (!canopen::is_plain(frame)) return false;
   switch (frame.id - node) {
     case canopen::heartbeat_id:
@@ -228,8 +228,8 @@ inline void cia402_drive::take_status(std::int64_t now_ns, const canopen::torque
   status_ = status;
   has_status_ = true;
   data_ns_ = now_ns;
-  reading_.torque_n_m = (config_.reversed ? -1.0 : 1.0) * config_.gear_ratio *
-                        canopen::decode_torque(status.torque_permille, config_.rated_torque_n_m);
+  reading_.torque_n_m = (settings_.reversed ? -1.0 : 1.0) * settings_.gear_ratio *
+                        canopen::decode_torque(status.torque_permille, settings_.rated_torque_n_m);
   reading_.has_torque = true;
   judge_power();
 }
@@ -239,7 +239,7 @@ inline void cia402_drive::take_motion(const can_frame& frame, const canopen::mot
   has_motion_ = true;
   reading_.host_time_ns = frame.host_time_ns;
   ++reading_.sequence;
-  reading_.position_rad = config_.zero_offset_rad + rad_per_count_ * counts.position;
+  reading_.position_rad = settings_.zero_offset_rad + rad_per_count_ * counts.position;
   reading_.velocity_rad_per_s = rad_per_count_ * counts.velocity_per_s;
   reading_.has_velocity = true;
 }
@@ -248,7 +248,7 @@ inline void cia402_drive::take_answer(std::int64_t now_ns, const canopen::sdo_re
   if (phase_ != phase::configure) return;
   if (const auto wrong = setup_.take(answer)) return fail(wrong->what, wrong->code);
   if (setup_.done()) {
-    enter(phase::start_node, now_ns, config_.state_limit_ns);
+    enter(phase::start_node, now_ns, settings_.state_limit_ns);
     repeat_ns_ = now_ns;
   }
 }
@@ -274,10 +274,10 @@ inline void cia402_drive::judge_power() noexcept {
 
 inline void cia402_drive::check_limits(std::int64_t now_ns) noexcept {
   if (phase_ == phase::off || phase_ == phase::fault) return;
-  if (exchanges_data() && now_ns - heartbeat_ns_ > config_.drive_silence_ns) {
+  if (exchanges_data() && now_ns - heartbeat_ns_ > settings_.drive_silence_ns) {
     return fail("the drive's heartbeat stopped", 0);
   }
-  if (exchanges_data() && now_ns - data_ns_ > config_.drive_silence_ns) {
+  if (exchanges_data() && now_ns - data_ns_ > settings_.drive_silence_ns) {
     return fail("the drive's process data stopped", 0);
   }
   if (phase_ == phase::idle || phase_ == phase::enabled || now_ns <= due_ns_) return;
@@ -303,7 +303,7 @@ inline void cia402_drive::check_limits(std::int64_t now_ns) noexcept {
 inline void cia402_drive::move_on(std::int64_t now_ns) noexcept {
   using canopen::power_state;
   if (phase_ == phase::start_node && operational_ && has_status_ && has_motion_) {
-    enter(phase::lead, now_ns, config_.state_limit_ns);
+    enter(phase::lead, now_ns, settings_.state_limit_ns);
   }
   if ((phase_ == phase::lead || (phase_ == phase::wind_down && zero_sent_)) &&
       power() == power_state::ready_to_switch_on) {
@@ -356,8 +356,8 @@ inline canopen::torque_command cia402_drive::command() noexcept {
       break;
     case phase::enabled: {
       c.control_word = control::enable_operation;
-      const double at_motor_n_m = (config_.reversed ? -1.0 : 1.0) * torque_n_m_ / config_.gear_ratio;
-      c.torque_permille = canopen::encode_torque(at_motor_n_m, config_.rated_torque_n_m, limit_permille_);
+      const double at_motor_n_m = (settings_.reversed ? -1.0 : 1.0) * torque_n_m_ / settings_.gear_ratio;
+      c.torque_permille = canopen::encode_torque(at_motor_n_m, settings_.rated_torque_n_m, limit_permille_);
       break;
     }
     case phase::wind_down:
@@ -367,7 +367,7 @@ inline canopen::torque_command cia402_drive::command() noexcept {
       zero_sent_ = true;
       break;
     default:
-      c.control_word = config_.quick_stop_on_fault ? control::quick_stop : control::disable_voltage;
+      c.control_word = settings_.quick_stop_on_fault ? control::quick_stop : control::disable_voltage;
   }
   return c;
 }
@@ -408,7 +408,7 @@ inline io_status cia402_drive::step(std::int64_t now_ns, can_bus& bus) noexcept 
       return answer;
     case phase::boot:
       if (now_ns >= repeat_ns_ &&
-          send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::reset_communication, config_.node), answer)) {
+          send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::reset_communication, settings_.node), answer)) {
         repeat_ns_ = now_ns + repeat_reset_ns;
       }
       return answer;
@@ -416,7 +416,7 @@ inline io_status cia402_drive::step(std::int64_t now_ns, can_bus& bus) noexcept 
       return send_configuration(now_ns, bus);
     case phase::start_node:
       if (now_ns >= repeat_ns_ &&
-          send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::start, config_.node), answer)) {
+          send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::start, settings_.node), answer)) {
         repeat_ns_ = now_ns + repeat_start_ns;
         was_started_ = true;
         heartbeat_ns_ = data_ns_ = now_ns;
@@ -426,7 +426,7 @@ inline io_status cia402_drive::step(std::int64_t now_ns, can_bus& bus) noexcept 
       if (!was_started_) return answer;
       if (!operational_ && resets_sent_ < most_resets) {
         // It hears no process data, and may still hold a torque: only NMT reaches it.
-        if (send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::reset_node, config_.node), answer)) {
+        if (send(now_ns, bus, canopen::encode_nmt(canopen::nmt_command::reset_node, settings_.node), answer)) {
           ++resets_sent_;
         }
         return answer;
@@ -435,7 +435,7 @@ inline io_status cia402_drive::step(std::int64_t now_ns, can_bus& bus) noexcept 
     default:
       break;
   }
-  static_cast<void>(send(now_ns, bus, canopen::encode(config_.node, command()), answer));
+  static_cast<void>(send(now_ns, bus, canopen::encode(settings_.node, command()), answer));
   return answer;
 }
 

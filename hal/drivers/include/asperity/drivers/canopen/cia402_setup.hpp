@@ -12,7 +12,7 @@
 namespace asperity {
 
 /// One drive and the motor, gear and encoder behind it. What stands here without a default has to be known.
-struct cia402_config {
+struct cia402_settings {
   std::uint8_t node = 1;          ///< 1 to 127
   std::uint8_t host_node = 127;   ///< the number under which our own heartbeat is sent; no drive has it
   double rated_torque_n_m = 0.0;  ///< of the motor: object 6076; a drive that says another is refused
@@ -51,7 +51,7 @@ struct setup_step {
 using setup_steps = fixed_vector<setup_step, 64>;
 
 /// Largest command of a drive, thousandths of its rated torque; 0 where the configuration makes no sense.
-[[nodiscard]] inline std::int16_t torque_limit_permille(const cia402_config& c) noexcept {
+[[nodiscard]] inline std::int16_t torque_limit_permille(const cia402_settings& c) noexcept {
   if (!(c.rated_torque_n_m > 0.0) || !(c.gear_ratio > 0.0) || !(c.peak_torque_n_m > 0.0)) return 0;
   // 3 N m of 1.5 N m rated is 2000, not the 1999 that rounding can make of it.
   const double permille = std::floor(c.peak_torque_n_m / c.gear_ratio / c.rated_torque_n_m * 1000.0 * (1.0 + 1e-12));
@@ -77,7 +77,7 @@ inline void add_pdo(setup_steps& to, std::uint16_t communication, std::uint32_t 
 
 /// The whole configuration, in the order in which it is written. Zero torque comes before everything that could let a
 /// torque through, and what stops the drive when the host falls silent is read back.
-[[nodiscard]] inline setup_steps setup_of(const cia402_config& c) {
+[[nodiscard]] inline setup_steps setup_of(const cia402_settings& c) {
   constexpr std::uint32_t off = 0x80000000U;
   constexpr std::uint32_t no_remote = 0x40000000U;  // a TPDO that answers no remote frames: many drives insist
   using enum setup_step::kind;

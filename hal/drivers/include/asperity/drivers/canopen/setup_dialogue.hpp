@@ -16,12 +16,12 @@ namespace asperity::canopen {
 /// @rt safe after construction
 class setup_dialogue {
  public:
-  explicit setup_dialogue(const cia402_config& config)
-      : steps_(setup_of(config)),
-        rated_m_n_m_(config.rated_torque_n_m * 1000.0),
-        answer_limit_ns_(config.answer_limit_ns),
-        most_tries_(config.answer_tries),
-        node_(config.node) {}
+  explicit setup_dialogue(const cia402_settings& settings)
+      : steps_(setup_of(settings)),
+        rated_m_n_m_(settings.rated_torque_n_m * 1000.0),
+        answer_limit_ns_(settings.answer_limit_ns),
+        most_tries_(settings.answer_tries),
+        node_(settings.node) {}
 
   void restart() noexcept {
     next_ = 0;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "asperity/core/status.hpp"
-#include "asperity/drivers/falcon/falcon_config.hpp"
 #include "asperity/drivers/falcon/falcon_firmware.hpp"
+#include "asperity/drivers/falcon/falcon_settings.hpp"
 #include "asperity/drivers/falcon/falcon_wire.hpp"
 #include "asperity/transport/io_clock.hpp"
 
@@ -18,8 +18,8 @@ namespace asperity {
 class falcon_bring_up {
  public:
   /// @param wire attached @param path of the device, for errors
-  falcon_bring_up(falcon_wire& wire, io_clock& clock, const falcon_config& config, const std::string& path)
-      : wire_(wire), clock_(clock), config_(config), path_(path) {}
+  falcon_bring_up(falcon_wire& wire, io_clock& clock, const falcon_settings& settings, const std::string& path)
+      : wire_(wire), clock_(clock), settings_(settings), path_(path) {}
 
   [[nodiscard]] result<void> run() {
     result<bool> answers = is_awake();
@@ -58,7 +58,7 @@ class falcon_bring_up {
     io_status s = apply_ftdi(*wire_.link(), falcon_normal_settings, falcon_control_timeout_ns);
     if (s != io_status::ok) return lost("setting its line up", s);
     const std::uint64_t before = wire_.reports();
-    const std::int64_t due_ns = clock_.now_ns() + config_.wake_ns;
+    const std::int64_t due_ns = clock_.now_ns() + settings_.wake_ns;
     while (wire_.reports() == before && clock_.now_ns() < due_ns) {
       s = exchange(falcon_light::red, false);
       if (s != io_status::ok) return lost("waiting for its first report", s);
@@ -68,16 +68,16 @@ class falcon_bring_up {
 
   // Loads the image until the firmware answers. Published experience: it does not always do so the first time.
   [[nodiscard]] result<void> wake() {
-    if (config_.firmware_path.empty()) {
+    if (settings_.firmware_path.empty()) {
       return error{error_code::invalid_argument,
                    "the Falcon at " + path_ +
                        " has no firmware yet and no image was given: name your copy of Novint's image as its firmware "
                        "path; asperity ships none, because its licence is Novint's own and noncommercial"};
     }
-    const auto image = read_falcon_image(config_.firmware_path);
+    const auto image = read_falcon_image(settings_.firmware_path);
     if (!image) return image.error();
     result<void> loaded;
-    for (int i = 0; i < config_.firmware_attempts; ++i) {
+    for (int i = 0; i < settings_.firmware_attempts; ++i) {
       loaded = load_falcon_firmware(*wire_.link(), clock_, *image);
       if (!loaded) continue;
       const result<bool> answers = is_awake();
@@ -86,11 +86,11 @@ class falcon_bring_up {
     }
     if (!loaded) return loaded;
     return error{error_code::io_failed, "the Falcon at " + path_ + " took the firmware image '" +
-                                            config_.firmware_path + "' and does not answer; is it the right image?"};
+                                            settings_.firmware_path + "' and does not answer; is it the right image?"};
   }
 
   [[nodiscard]] result<void> home() {
-    const std::int64_t due_ns = clock_.now_ns() + config_.homing_timeout_ns;
+    const std::int64_t due_ns = clock_.now_ns() + settings_.homing_timeout_ns;
     while (wire_.homed() != falcon_all_homed) {
       if (clock_.now_ns() >= due_ns) {
         return error{error_code::io_failed, "the Falcon at " + path_ +
@@ -106,8 +106,8 @@ class falcon_bring_up {
   [[nodiscard]] result<void> settle() {
     wire_.demand_homing(true);
     wire_.forget_encoders();
-    const std::uint64_t enough = wire_.positions() + static_cast<std::uint64_t>(std::max(config_.settle_reports, 1));
-    const std::int64_t due_ns = clock_.now_ns() + config_.wake_ns;
+    const std::uint64_t enough = wire_.positions() + static_cast<std::uint64_t>(std::max(settings_.settle_reports, 1));
+    const std::int64_t due_ns = clock_.now_ns() + settings_.wake_ns;
     while (wire_.positions() < enough) {
       if (clock_.now_ns() >= due_ns) {
         return error{error_code::io_failed,
@@ -121,7 +121,7 @@ class falcon_bring_up {
 
   falcon_wire& wire_;
   io_clock& clock_;
-  const falcon_config& config_;
+  const falcon_settings& settings_;
   const std::string& path_;
   std::int64_t last_frame_ns_ = 0;
 };

@@ -25,8 +25,8 @@ class falcon_device {
   using policy_tag = device_tag;
 
   /// @param finder,clock outlive the device
-  falcon_device(usb_finder& finder, io_clock& clock, usb_listing which, falcon_config config = {})
-      : finder_(&finder), clock_(&clock), which_(std::move(which)), config_(std::move(config)) {}
+  falcon_device(usb_finder& finder, io_clock& clock, usb_listing which, falcon_settings settings = {})
+      : finder_(&finder), clock_(&clock), which_(std::move(which)), settings_(std::move(settings)) {}
   falcon_device(falcon_device&&) noexcept = default;
   falcon_device& operator=(falcon_device&&) = delete;
   falcon_device(const falcon_device&) = delete;
@@ -55,7 +55,7 @@ class falcon_device {
     command_ = {};
     busy_ = 0;
     wrote_ = false;
-    falcon_bring_up bring_up(wire_, *clock_, config_, which_.path);
+    falcon_bring_up bring_up(wire_, *clock_, settings_, which_.path);
     result<void> ready = bring_up.run();
     if (!ready) {
       close();
@@ -106,8 +106,8 @@ class falcon_device {
     const io_status s = wire_.receive(now_ns);
     if (wire_.fresh()) measure();
     if (s != io_status::ok) return stop(now_ns, s);
-    if (wire_.silence_ns(now_ns) > config_.silent_after_ns) return stop(now_ns, falcon_fault::silent);
-    if (wire_.doubted_in_a_row() >= config_.doubt_limit) {
+    if (wire_.silence_ns(now_ns) > settings_.silent_after_ns) return stop(now_ns, falcon_fault::silent);
+    if (wire_.doubted_in_a_row() >= settings_.doubt_limit) {
       const bool homing = wire_.doubt() == falcon_doubt::not_homed;
       return stop(now_ns, homing ? falcon_fault::homing_lost : falcon_fault::not_believable);
     }
@@ -194,16 +194,16 @@ class falcon_device {
     falcon_command frame{.light = falcon_light::blue};
     if (may_put_out(machine_.state())) {
       frame.light = falcon_light::green;
-      const bool placed = now_ns - wire_.report_ns() <= config_.silent_after_ns;
+      const bool placed = now_ns - wire_.report_ns() <= settings_.silent_after_ns;
       if (placed && force_d != vec3(0.0)) {
-        frame.motor_counts = falcon_counts_for(wire_.grip_d(), wire_.angles(), force_d, config_.limit_counts);
+        frame.motor_counts = falcon_counts_for(wire_.grip_d(), wire_.angles(), force_d, settings_.limit_counts);
       }
     } else if (machine_.state() == device_state::fault) {
       frame.light = falcon_light::red;
     }
     wrote_ = true;
     const io_status s = wire_.send(now_ns, frame);
-    if (s == io_status::busy && ++busy_ <= config_.busy_limit) return status::ok;
+    if (s == io_status::busy && ++busy_ <= settings_.busy_limit) return status::ok;
     if (s != io_status::ok) return stop(now_ns, s);
     busy_ = 0;
     return status::ok;
@@ -231,7 +231,7 @@ class falcon_device {
   usb_finder* finder_;
   io_clock* clock_;
   usb_listing which_;
-  falcon_config config_;
+  falcon_settings settings_;
   device_capabilities capabilities_ = falcon_capabilities();
   device_state_machine machine_{};
   falcon_wire wire_{};

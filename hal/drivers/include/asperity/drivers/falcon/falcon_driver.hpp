@@ -15,8 +15,8 @@ namespace asperity {
 class falcon_driver final : public device_driver {
  public:
   /// @param finder,clock outlive the driver and its devices
-  falcon_driver(usb_finder& finder, io_clock& clock, falcon_config config = {})
-      : finder_(&finder), clock_(&clock), config_(std::move(config)) {}
+  falcon_driver(usb_finder& finder, io_clock& clock, falcon_settings settings = {})
+      : finder_(&finder), clock_(&clock), settings_(std::move(settings)) {}
 
   [[nodiscard]] std::string_view name() const noexcept override { return "falcon"; }
   [[nodiscard]] driver_maturity maturity() const noexcept override { return driver_maturity::protocol_tested; }
@@ -49,7 +49,7 @@ class falcon_driver final : public device_driver {
       return error{error_code::io_failed,
                    "no Falcon with the identity '" + which.identity + "' is plugged in; list again"};
     }
-    return any_device(falcon_device(*finder_, *clock_, *match, config_));
+    return any_device(falcon_device(*finder_, *clock_, *match, settings_));
   }
 
  private:
@@ -57,7 +57,7 @@ class falcon_driver final : public device_driver {
 
   usb_finder* finder_;
   io_clock* clock_;
-  falcon_config config_;
+  falcon_settings settings_;
 };
 
 }  // namespace asperity

@@ -10,7 +10,7 @@
 namespace asperity {
 
 /// Options that do not depend on the protocol. All times are counted on the session's clock.
-struct joint_drive_options {
+struct joint_drive_settings {
   joint_scale scale{};
   double peak_torque_n_m = 1.0;              ///< at the joint; what is over it never reaches the wire
   double fastest_rad_per_s = 100.0;          ///< of the joint: a position that jumps further than that is a fault
@@ -111,11 +111,12 @@ class can_joint_drive : public joint_drive {
  protected:
   enum class phase : std::uint8_t { off, seeking, leading, idle, arming, enabled, leaving, faulted };
 
-  explicit can_joint_drive(const joint_drive_options& options) noexcept : options_(options), usable_(options.usable()) {
-    if (!usable_) options_ = joint_drive_options{};
+  explicit can_joint_drive(const joint_drive_settings& settings) noexcept
+      : options_(settings), usable_(settings.usable()) {
+    if (!usable_) options_ = joint_drive_settings{};
     facts_.peak_torque_n_m = options_.peak_torque_n_m;
   }
-  void refuse_options() noexcept { usable_ = false; }
+  void refuse_settings() noexcept { usable_ = false; }
 
   // The frames of this period, by phase. What is not `enabled` sends no torque but zero.
   virtual void send_due(std::int64_t now_ns, can_bus& bus) noexcept = 0;
@@ -124,7 +125,7 @@ class can_joint_drive : public joint_drive {
 
   [[nodiscard]] phase at() const noexcept { return phase_; }
   [[nodiscard]] std::int64_t since_ns() const noexcept { return since_ns_; }
-  [[nodiscard]] const joint_drive_options& options() const noexcept { return options_; }
+  [[nodiscard]] const joint_drive_settings& settings() const noexcept { return options_; }
   [[nodiscard]] const joint_scale& scale() const noexcept { return options_.scale; }
   [[nodiscard]] drive_facts& facts_to_fill() noexcept { return facts_; }
 
@@ -210,7 +211,7 @@ class can_joint_drive : public joint_drive {
     heard_ns_ = now_ns;
     enter(phase::leading, now_ns);
     begin_lead(clearing);
-    if (!usable_) fail("options of this drive are outside their ranges: gear ratio, torque, id or times", 0, now_ns);
+    if (!usable_) fail("settings of this drive are outside their ranges: gear ratio, torque, id or times", 0, now_ns);
   }
 
   void watch(std::int64_t now_ns) noexcept {
@@ -285,7 +286,7 @@ class can_joint_drive : public joint_drive {
     }
   }
 
-  joint_drive_options options_;
+  joint_drive_settings options_;
   drive_facts facts_{};
   drive_fault fault_{};
   joint_reading reading_{};

@@ -11,8 +11,8 @@
 
 namespace asperity {
 
-struct mit_options {
-  joint_drive_options joint{};
+struct mit_settings {
+  joint_drive_settings joint{};
   std::uint32_t motor_id = 1;            ///< id of the frames it takes, 11 bits; its low byte begins every answer
   std::uint32_t master_id = 0;           ///< id of the frames that it answers with
   mit::ranges ranges = mit::ak80_9;      ///< as set in the drive; check them, nothing on the wire tells them
@@ -26,11 +26,12 @@ struct mit_options {
 /// @rt safe
 class mit_drive final : public can_joint_drive {
  public:
-  explicit mit_drive(const mit_options& options) noexcept
-      : can_joint_drive(options.joint),
-        mit_(options.ranges.usable() ? options : defaults(options)),
+  explicit mit_drive(const mit_settings& settings) noexcept
+      : can_joint_drive(settings.joint),
+        mit_(settings.ranges.usable() ? settings : defaults(settings)),
         position_(mit_.ranges.position_rad, 16),
-        torque_(mit_.ranges.torque_n_m, 12, static_cast<double>(scale().shaft_limit(this->options().peak_torque_n_m))) {
+        torque_(mit_.ranges.torque_n_m, 12,
+                static_cast<double>(scale().shaft_limit(this->settings().peak_torque_n_m))) {
     drive_facts& f = facts_to_fill();
     const double gear = scale().gear_ratio;
     f.protocol = "MIT";
@@ -40,8 +41,8 @@ class mit_drive final : public can_joint_drive {
     f.position_resolution_rad = 2.0 * position_.half_step() / gear;
     f.drive_side_watchdog = mit_.watchdog_set;
     const bool ids = mit_.motor_id <= 0x7ff && mit_.master_id <= 0x7ff;
-    if (!options.ranges.usable() || !ids || torque_.largest() * gear > this->options().peak_torque_n_m) {
-      refuse_options();
+    if (!settings.ranges.usable() || !ids || torque_.largest() * gear > this->settings().peak_torque_n_m) {
+      refuse_settings();
     }
   }
 
@@ -70,7 +71,7 @@ class mit_drive final : public can_joint_drive {
   static constexpr int repeats = 3;
   static constexpr std::int64_t old_error_ns = 100'000'000;
 
-  [[nodiscard]] static mit_options defaults(mit_options o) noexcept {
+  [[nodiscard]] static mit_settings defaults(mit_settings o) noexcept {
     o.ranges = mit::ak80_9;
     return o;
   }
@@ -199,7 +200,7 @@ class mit_drive final : public can_joint_drive {
     return taken;
   }
 
-  mit_options mit_;
+  mit_settings mit_;
   mit::symmetric_field position_;
   mit::symmetric_field torque_;
   stage stage_ = stage::zero;

@@ -13,8 +13,8 @@
 
 namespace asperity {
 
-struct moteus_options {
-  joint_drive_options joint{};    ///< the gear is what lies behind the output that moteus itself counts
+struct moteus_settings {
+  joint_drive_settings joint{};   ///< the gear is what lies behind the output that moteus itself counts
   std::uint32_t id = 1;           ///< 1-127
   std::uint32_t host_id = 0;      ///< 0-127
   std::int32_t register_map = 5;  ///< version of the registers that the firmware has to have
@@ -29,8 +29,10 @@ struct moteus_options {
 /// @rt safe
 class moteus_drive final : public can_joint_drive {
  public:
-  explicit moteus_drive(const moteus_options& options) noexcept
-      : can_joint_drive(options.joint), moteus_(options), limit_(scale().shaft_limit(this->options().peak_torque_n_m)) {
+  explicit moteus_drive(const moteus_settings& settings) noexcept
+      : can_joint_drive(settings.joint),
+        moteus_(settings),
+        limit_(scale().shaft_limit(this->settings().peak_torque_n_m)) {
     drive_facts& f = facts_to_fill();
     constexpr double float_step = 1.0 / 8388608.0;
     f.protocol = "moteus";
@@ -38,8 +40,8 @@ class moteus_drive final : public can_joint_drive {
     f.position_resolution_rad = 2.0 * std::numbers::pi * float_step / scale().gear_ratio;
     f.drive_side_watchdog = true;
     f.needs_fd = true;
-    const bool ids = options.id >= 1 && options.id <= 127 && options.host_id <= 127;
-    if (!ids || options.watchdog_ms < 1 || options.watchdog_ms > 32767) refuse_options();
+    const bool ids = settings.id >= 1 && settings.id <= 127 && settings.host_id <= 127;
+    if (!ids || settings.watchdog_ms < 1 || settings.watchdog_ms > 32767) refuse_settings();
   }
 
   bool take(std::int64_t now_ns, const can_frame& frame) noexcept override {
@@ -294,7 +296,7 @@ class moteus_drive final : public can_joint_drive {
   static constexpr std::int32_t unknown = -1;
   static constexpr int repeats = 3;
 
-  moteus_options moteus_;
+  moteus_settings moteus_;
   float limit_;
   std::int32_t mode_ = unknown;  // as last heard
   int stops_ = 0;                // sent on this way to idle, up to `repeats`

@@ -9,9 +9,9 @@
 
 namespace asperity {
 
-struct odrive_options {
+struct odrive_settings {
   /// Estimates of the encoder come every 10 ms unless you set the drive to less, so quiet is longer than elsewhere.
-  joint_drive_options joint{.quiet_ns = 30'000'000};
+  joint_drive_settings joint{.quiet_ns = 30'000'000};
   std::uint32_t node = 0;  ///< 0-63
   enum class version : std::uint8_t { ask, v0_5, v0_6 } firmware = version::ask;
   bool ask_estimates = true;  ///< 0.5: ask for them in every period; false where the drive sends them often
@@ -25,16 +25,18 @@ struct odrive_options {
 /// @rt safe
 class odrive_drive final : public can_joint_drive {
  public:
-  explicit odrive_drive(const odrive_options& options) noexcept
-      : can_joint_drive(options.joint), odrive_(options), limit_(scale().shaft_limit(this->options().peak_torque_n_m)) {
+  explicit odrive_drive(const odrive_settings& settings) noexcept
+      : can_joint_drive(settings.joint),
+        odrive_(settings),
+        limit_(scale().shaft_limit(this->settings().peak_torque_n_m)) {
     drive_facts& f = facts_to_fill();
     constexpr double float_step = 1.0 / 8388608.0;
     f.protocol = "ODrive CANSimple";
     f.torque_resolution_n_m = f.peak_torque_n_m * float_step;
     f.position_resolution_rad = turn * float_step / scale().gear_ratio;
-    f.drive_side_watchdog = options.watchdog_set;
-    const bool constant = options.torque_constant_n_m_per_a >= 0.0 && options.torque_constant_n_m_per_a < 1e3;
-    if (options.node > odrive::most_node || options.heartbeat_ns <= 0 || !constant) refuse_options();
+    f.drive_side_watchdog = settings.watchdog_set;
+    const bool constant = settings.torque_constant_n_m_per_a >= 0.0 && settings.torque_constant_n_m_per_a < 1e3;
+    if (settings.node > odrive::most_node || settings.heartbeat_ns <= 0 || !constant) refuse_settings();
   }
 
   /// Which table is spoken; what was asked for, once the drive leads to idle.
@@ -97,8 +99,8 @@ class odrive_drive final : public can_joint_drive {
     has_estimate_ = false;
     beat_ = false;
     first_ = true;
-    known_ = odrive_.firmware != odrive_options::version::ask;
-    firmware_ = odrive_.firmware == odrive_options::version::v0_6 ? odrive::firmware::v0_6 : odrive::firmware::v0_5;
+    known_ = odrive_.firmware != odrive_settings::version::ask;
+    firmware_ = odrive_.firmware == odrive_settings::version::v0_6 ? odrive::firmware::v0_6 : odrive::firmware::v0_5;
   }
 
   void take_version(std::int64_t now_ns, const odrive::version& v) noexcept {
@@ -265,7 +267,7 @@ class odrive_drive final : public can_joint_drive {
   }
   bool send(std::int64_t now_ns, can_bus& bus, const can_frame& f) noexcept { return put(now_ns, bus, f); }
 
-  odrive_options odrive_;
+  odrive_settings odrive_;
   float limit_;
   odrive::firmware firmware_ = odrive::firmware::v0_5;
   std::int64_t paced_ns_ = 0;

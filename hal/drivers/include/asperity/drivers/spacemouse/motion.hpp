@@ -22,7 +22,7 @@ enum class spacemouse_control : std::uint8_t {
 /// Device axes are x right, y towards the person, z down, for shifts and for turns; turns are right handed about them.
 /// The base frame d is x right, y away from the person, z up: both are right handed, half a turn about x apart, so one
 /// rotation maps shifts and turns alike. This follows published recordings and has not been seen on a device.
-struct spacemouse_motion_config {
+struct spacemouse_motion_settings {
   spacemouse_control control = spacemouse_control::rate;
   double max_speed_m_per_s = 0.1;   ///< rate: at full displacement; position: the fastest that the pose follows
   double max_turn_rad_per_s = 1.0;  ///< likewise
@@ -43,19 +43,21 @@ struct spacemouse_motion_config {
 /// @rt safe after construction
 class spacemouse_motion {
  public:
-  explicit spacemouse_motion(const spacemouse_motion_config& config = {}) noexcept : config_(sane(config)) { reset(); }
+  explicit spacemouse_motion(const spacemouse_motion_settings& settings = {}) noexcept : settings_(sane(settings)) {
+    reset();
+  }
 
   /// Back to the start, at rest.
   void reset() noexcept {
-    T_dh_ = config_.T_dh_start;
-    T_dh_.position = glm::clamp(T_dh_.position, config_.workspace_low_d, config_.workspace_high_d);
+    T_dh_ = settings_.T_dh_start;
+    T_dh_.position = glm::clamp(T_dh_.position, settings_.workspace_low_d, settings_.workspace_high_d);
     velocity_d_ = {};
     wanted_n_ = {};
   }
 
   /// Where the cap is, as shares of full displacement in device axes. More than one counts as one, NaN as none.
   void displace(const std::array<double, 6>& share) noexcept {
-    for (std::size_t i = 0; i < 6; ++i) wanted_n_[i] = config_.gain[i] * beyond_dead_zone(share[i]);
+    for (std::size_t i = 0; i < 6; ++i) wanted_n_[i] = settings_.gain[i] * beyond_dead_zone(share[i]);
   }
 
   /// Whether the cap asks for nothing.
@@ -65,26 +67,26 @@ class spacemouse_motion {
 
   /// The time that has gone by. Less than none counts as none.
   void advance(std::int64_t step_ns) noexcept {
-    const double dt = static_cast<double>(std::clamp<std::int64_t>(step_ns, 0, config_.longest_step_ns)) * 1e-9;
+    const double dt = static_cast<double>(std::clamp<std::int64_t>(step_ns, 0, settings_.longest_step_ns)) * 1e-9;
     velocity_d_ = {};
     if (!(dt > 0.0)) return;
-    const vec3 shift_d = config_.R_dn * wanted_n_.linear;
-    const vec3 turn_d = config_.R_dn * wanted_n_.angular;
+    const vec3 shift_d = settings_.R_dn * wanted_n_.linear;
+    const vec3 turn_d = settings_.R_dn * wanted_n_.angular;
     vec3 way;
     vec3 turn;
-    if (config_.control == spacemouse_control::rate) {
-      way = (dt * config_.max_speed_m_per_s) * shift_d;
-      turn = (dt * config_.max_turn_rad_per_s) * turn_d;
+    if (settings_.control == spacemouse_control::rate) {
+      way = (dt * settings_.max_speed_m_per_s) * shift_d;
+      turn = (dt * settings_.max_turn_rad_per_s) * turn_d;
     } else {
-      const pose& rest = config_.T_dh_start;
-      way = rest.position + config_.reach_m * shift_d - T_dh_.position;
-      const quat wanted = exp_rotation(config_.reach_rad * turn_d) * rest.rotation;
+      const pose& rest = settings_.T_dh_start;
+      way = rest.position + settings_.reach_m * shift_d - T_dh_.position;
+      const quat wanted = exp_rotation(settings_.reach_rad * turn_d) * rest.rotation;
       turn = log_rotation(wanted * glm::conjugate(T_dh_.rotation));
     }
-    way = no_longer_than(way, dt * config_.max_speed_m_per_s);
-    turn = no_longer_than(turn, dt * config_.max_turn_rad_per_s);
+    way = no_longer_than(way, dt * settings_.max_speed_m_per_s);
+    turn = no_longer_than(turn, dt * settings_.max_turn_rad_per_s);
     const vec3 before = T_dh_.position;
-    T_dh_.position = glm::clamp(before + way, config_.workspace_low_d, config_.workspace_high_d);
+    T_dh_.position = glm::clamp(before + way, settings_.workspace_low_d, settings_.workspace_high_d);
     T_dh_.rotation = glm::normalize(exp_rotation(turn) * T_dh_.rotation);
     velocity_d_ = {(T_dh_.position - before) / dt, turn / dt};
   }
@@ -92,11 +94,11 @@ class spacemouse_motion {
   [[nodiscard]] const pose& T_dh() const noexcept { return T_dh_; }
   /// Over the last step.
   [[nodiscard]] const twist& velocity_d() const noexcept { return velocity_d_; }
-  [[nodiscard]] const spacemouse_motion_config& config() const noexcept { return config_; }
+  [[nodiscard]] const spacemouse_motion_settings& settings() const noexcept { return settings_; }
 
  private:
   // A number that makes no sense becomes the one that moves nothing.
-  [[nodiscard]] static spacemouse_motion_config sane(spacemouse_motion_config c) noexcept {
+  [[nodiscard]] static spacemouse_motion_settings sane(spacemouse_motion_settings c) noexcept {
     for (double* x : {&c.max_speed_m_per_s, &c.max_turn_rad_per_s, &c.reach_m, &c.reach_rad}) {
       *x = *x > 0.0 ? std::min(*x, 1e3) : 0.0;
     }
@@ -116,8 +118,8 @@ class spacemouse_motion {
   }
 
   [[nodiscard]] double beyond_dead_zone(double share) const noexcept {
-    if (!(std::fabs(share) > config_.dead_zone)) return 0.0;  // NaN as well
-    const double size = (std::min(std::fabs(share), 1.0) - config_.dead_zone) / (1.0 - config_.dead_zone);
+    if (!(std::fabs(share) > settings_.dead_zone)) return 0.0;  // NaN as well
+    const double size = (std::min(std::fabs(share), 1.0) - settings_.dead_zone) / (1.0 - settings_.dead_zone);
     return std::copysign(std::max(0.0, size), share);
   }
 
@@ -126,7 +128,7 @@ class spacemouse_motion {
     return n > limit ? (limit / n) * v : v;
   }
 
-  spacemouse_motion_config config_;
+  spacemouse_motion_settings settings_;
   pose T_dh_{};
   twist velocity_d_{};
   vec6 wanted_n_{};

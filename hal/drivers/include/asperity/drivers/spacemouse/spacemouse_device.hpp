@@ -42,9 +42,9 @@ enum class spacemouse_fault : std::uint8_t {
   return "unknown fault";
 }
 
-struct spacemouse_config {
+struct spacemouse_settings {
   std::string_view name = "SpaceMouse";  ///< outlives the device
-  spacemouse_motion_config motion{};
+  spacemouse_motion_settings motion{};
   /// A cap that is pushed reports every 8 or 16 ms. After this time without a report the sample is left to grow old.
   std::int64_t silence_limit_ns = 100'000'000;
   /// A wrench up to this passes the gate and is kept in shown(), for a picture of it. Zero, as the device puts out
@@ -73,7 +73,7 @@ struct spacemouse_counts {
 ///   report or two does not lead here.
 ///   What cannot be told from rest: a wireless device that is out of range, and one that hangs, with the cap at rest.
 /// - Nothing is actuated. write() keeps to the contract - states, frames, faults - and the wrench goes to shown() only.
-///   Limits are zero, so the output gate lets none through, unless spacemouse_config says what may be shown.
+///   Limits are zero, so the output gate lets none through, unless spacemouse_settings says what may be shown.
 /// - `lost` counts axis reports that could not be used, and on classic devices one for every report 1 that follows on a
 ///   report 1 (or 2 on 2), for they take turns.
 /// - Unplugged while ready: absent, and open() looks for it again, wherever it is by then. While armed: a fault.
@@ -84,8 +84,8 @@ class spacemouse_device {
   /// Finds the device where it is now and opens it. Called in open().
   using link_opener = std::function<result<std::unique_ptr<hid_link>>()>;
 
-  explicit spacemouse_device(link_opener opener, const spacemouse_config& config = {})
-      : opener_(std::move(opener)), config_(config), motion_(config.motion), machine_(device_state::present) {
+  explicit spacemouse_device(link_opener opener, const spacemouse_settings& settings = {})
+      : opener_(std::move(opener)), settings_(settings), motion_(settings.motion), machine_(device_state::present) {
     describe();
   }
 
@@ -268,7 +268,7 @@ class spacemouse_device {
   }
 
   void judge_silence(std::int64_t now_ns) noexcept {
-    if (silent_ || motion_.at_rest() || now_ns - last_report_ns_ <= config_.silence_limit_ns) return;
+    if (silent_ || motion_.at_rest() || now_ns - last_report_ns_ <= settings_.silence_limit_ns) return;
     silent_ = true;
     ++counts_.silences;
   }
@@ -285,16 +285,16 @@ class spacemouse_device {
   }
 
   void describe() noexcept {
-    const spacemouse_motion_config& m = motion_.config();
+    const spacemouse_motion_settings& m = motion_.settings();
     capabilities_ = {};
-    capabilities_.name = config_.name;
+    capabilities_.name = settings_.name;
     capabilities_.maturity = driver_maturity::protocol_tested;
     capabilities_.sensed = format_.axes();
     capabilities_.actuated = no_axes;
-    capabilities_.continuous_force_n = capabilities_.peak_force_n = config_.shown_force_n;
-    capabilities_.continuous_torque_n_m = capabilities_.peak_torque_n_m = config_.shown_torque_n_m;
-    capabilities_.force_slew_n_per_s = 1e3 * config_.shown_force_n;
-    capabilities_.torque_slew_n_m_per_s = 1e3 * config_.shown_torque_n_m;
+    capabilities_.continuous_force_n = capabilities_.peak_force_n = settings_.shown_force_n;
+    capabilities_.continuous_torque_n_m = capabilities_.peak_torque_n_m = settings_.shown_torque_n_m;
+    capabilities_.force_slew_n_per_s = 1e3 * settings_.shown_force_n;
+    capabilities_.torque_slew_n_m_per_s = 1e3 * settings_.shown_torque_n_m;
     capabilities_.workspace_low_d = m.workspace_low_d;
     capabilities_.workspace_high_d = m.workspace_high_d;
     capabilities_.nominal_rate_hz = 125.0;
@@ -302,7 +302,7 @@ class spacemouse_device {
   }
 
   link_opener opener_;
-  spacemouse_config config_;
+  spacemouse_settings settings_;
   spacemouse_motion motion_;
   device_state_machine machine_;
   device_capabilities capabilities_{};

@@ -34,7 +34,7 @@ struct arm_joint {
   double reflected_inertia_kg_m2 = 0.0;  ///< of the rotor, seen from the joint
 };
 
-struct articulated_config {
+struct articulated_settings {
   std::string_view name = "articulated device";  ///< outlives the device
   driver_maturity maturity = driver_maturity::protocol_tested;
   serial_chain chain{};
@@ -75,7 +75,7 @@ struct articulated_config {
 }
 
 /// Whether an arm can be made of this: the error says which joint or bus is wrong, and how.
-[[nodiscard]] inline result<void> check(const articulated_config& c) {
+[[nodiscard]] inline result<void> check(const articulated_settings& c) {
   if (result<void> good = check(c.chain); !good) return good;
   const auto wrong = [](std::string what) { return error{error_code::invalid_argument, std::move(what)}; };
   const std::size_t n = c.chain.joints.size();
@@ -116,7 +116,7 @@ struct articulated_config {
 /// the torques is for a force, half for a torque, so that both peaks are possible at once in any direction.
 /// The soft stops are not counted.
 /// @pre check(c)
-[[nodiscard]] inline device_capabilities capabilities_of(const articulated_config& c) noexcept {
+[[nodiscard]] inline device_capabilities capabilities_of(const articulated_settings& c) noexcept {
   const std::size_t n = c.chain.joints.size();
   const chain_bounds bounds = bounds_of(c.chain);
   device_capabilities out;

@@ -69,7 +69,7 @@ enum class falcon_fault : std::uint8_t {
   return "unknown fault";
 }
 
-struct falcon_config {
+struct falcon_settings {
   std::string firmware_path{};                      ///< the user's copy of the image; needed after each power-on
   std::int16_t limit_counts = falcon_counts_limit;  ///< of each motor; a lower one is obeyed, a higher one is not
   int firmware_attempts = 3;

@@ -16,15 +16,15 @@
 namespace asperity {
 
 /// Everything that the device loop can be told. The defaults are those of science, section 8.
-struct control_config {
-  probe_config probe{};
-  coupling_config coupling{};
+struct control_settings {
+  probe_settings probe{};
+  coupling_settings coupling{};
   contact_law contact{};  ///< of support planes, see check(); a linear contact brings its own stiffness
-  guard_config guard{};
+  guard_settings guard{};
   contact_ageing ageing{};  ///< how old a contact may be felt
   rate_limits rates{};      ///< how late the loops may be
   workspace_map map{};
-  sample_check_config samples{};
+  sample_check_settings samples{};
   gate_limits limits{.peak_force_n = 1e6,
                      .continuous_force_n = 1e6,
                      .force_slew_n_per_s = 1e6,
@@ -39,9 +39,9 @@ struct control_config {
 };
 
 /// The same with the nominal period of a session, where the caller has stated none.
-[[nodiscard]] inline control_config with_period(control_config config, std::int64_t device_period_ns) noexcept {
-  if (config.rates.period_ns == 0) config.rates.period_ns = device_period_ns;
-  return config;
+[[nodiscard]] inline control_settings with_period(control_settings settings, std::int64_t device_period_ns) noexcept {
+  if (settings.rates.period_ns == 0) settings.rates.period_ns = device_period_ns;
+  return settings;
 }
 
 }  // namespace asperity

@@ -34,7 +34,7 @@ struct scripted_fault {
 };
 
 /// The hand as a spring and damper to where it wants to be, and a tremor.
-struct hand_config {
+struct hand_settings {
   double stiffness_n_per_m = 300.0;
   double damping_n_s_per_m = 4.0;
   double stiffness_n_m_per_rad = 2.0;
@@ -45,7 +45,7 @@ struct hand_config {
 /// A relaxed grip, two fingers and a thumb: gives way, damps little.
 /// Measured hands differ by more than a factor of two at the same grip. These presets are the two ends of the range in
 /// which measured fingers and wrists lie, not a model of anybody.
-[[nodiscard]] inline hand_config soft_hand() noexcept {
+[[nodiscard]] inline hand_settings soft_hand() noexcept {
   return {.stiffness_n_per_m = 150.0,
           .damping_n_s_per_m = 2.0,
           .stiffness_n_m_per_rad = 0.6,
@@ -54,7 +54,7 @@ struct hand_config {
 }
 
 /// A firm grip with a stiff wrist; see soft_hand(). Tremor grows with grip force.
-[[nodiscard]] inline hand_config firm_hand() noexcept {
+[[nodiscard]] inline hand_settings firm_hand() noexcept {
   return {.stiffness_n_per_m = 1200.0,
           .damping_n_s_per_m = 10.0,
           .stiffness_n_m_per_rad = 5.0,
@@ -63,7 +63,7 @@ struct hand_config {
 }
 
 /// A light arm with six free axes, gravity balanced.
-struct plant_config {
+struct plant_settings {
   double mass_kg = 0.15;
   double damping_n_s_per_m = 1.0;
   double inertia_kg_m2 = 2e-4;
@@ -71,7 +71,7 @@ struct plant_config {
 };
 
 /// How the measurement reaches the host.
-struct measurement_config {
+struct measurement_settings {
   double position_resolution_m = 1e-6;    ///< 0 for none
   double rotation_resolution_rad = 1e-5;  ///< of each component of the rotation vector; 0 for none
   std::int64_t delay_ns = 0;              ///< age of a measurement when the host receives it; at most 20 ms with jitter
@@ -107,13 +107,13 @@ struct measurement_config {
           .device_side_watchdog = true};
 }
 
-struct simulated_config {
+struct simulated_settings {
   std::uint64_t seed = 1;
-  motion_config motion{};
-  hand_config hand{};
-  plant_config plant{};
-  measurement_config measurement{};
-  actuator_config actuator{};
+  motion_settings motion{};
+  hand_settings hand{};
+  plant_settings plant{};
+  measurement_settings measurement{};
+  actuator_settings actuator{};
   device_capabilities capabilities = simulated_capabilities();
   std::vector<scripted_fault> faults{};
 };

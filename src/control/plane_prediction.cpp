@@ -1,0 +1,140 @@
+#include "asperity/control/plane_prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "control/rest_of.hpp"
+
+namespace asperity {
+
+void rest_prediction::complete(const plane_source& planes_near, const coupling_pull& pull, const pose& T_wc,
+                               support_planes& planes) noexcept {
+  const bool known = known_;
+  known_ = false;
+  if (!planes_near || planes.empty()) return;
+  if (!(pull.stiffness_n_per_m > 0.0) || !(pull.stiffness_n_m_per_rad > 0.0) || !is_finite(pull.on_probe_w)) return;
+  pull_ = pull;
+  if (!begin(planes_near, known, known ? pose_difference(rest_T_wc_, T_wc) : vec6{})) return;
+  search(planes_near);
+  rest_T_wc_ = {glm::normalize(exp_rotation(here_.moved.angular) * T_wc.rotation), T_wc.position + here_.moved.linear};
+  known_ = true;
+  if (come_near(planes_near)) tell(planes);
+}
+
+double rest_prediction::depth_at(const support_plane& told_at_0, const vec6& moved) noexcept {
+  return told_at_0.depth_m + dot(told_at_0.gradient, moved);
+}
+
+bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, place& out) noexcept {
+  const status answer = planes_near(moved, -gap_m, out.planes);
+  if (answer != status::ok && answer != status::capacity_reached) return false;
+  out.all = answer == status::ok;
+  out.moved = moved;
+  const vec6 f = to_vec6(pull_.on_probe_w);
+  double energy_j = -dot(f, moved);
+  energy_j += 0.5 * pull_.stiffness_n_per_m * glm::dot(moved.linear, moved.linear) +
+              0.5 * pull_.stiffness_n_m_per_rad * glm::dot(moved.angular, moved.angular);
+  for (support_plane& p : out.planes) {
+    if (!is_finite(p)) return false;
+    energy_j += 0.5 * stiffness_n_per_m_ * std::max(0.0, p.depth_m) * std::max(0.0, p.depth_m);
+  }
+  out.energy_j = energy_j;
+  return std::isfinite(energy_j);
+}
+
+bool rest_prediction::begin(const plane_source& planes_near, bool known, const vec6& rest) noexcept {
+  constexpr double here_share = 0.02;
+  const double share = detail::share_of_furthest(rest);
+  if (known && share < here_share) return look(planes_near, rest, here_);
+  if (!look(planes_near, {}, here_)) return false;
+  if (!known || share > detail::most_ways) return true;
+  if (!look(planes_near, rest, there_)) return false;
+  if (there_.energy_j < here_.energy_j) std::swap(here_, there_);
+  return true;
+}
+
+const support_plane* rest_prediction::same_in(const place& at, const support_plane& p) noexcept {
+  const support_plane* const found = std::find_if(at.planes.begin(), at.planes.end(),
+                                                  [&](const support_plane& q) { return detail::same_point(p, q); });
+  return found == at.planes.end() ? nullptr : found;
+}
+
+support_plane rest_prediction::as_from_here(const support_plane& p, const vec6& from) noexcept {
+  support_plane out = p;
+  out.depth_m -= dot(p.gradient, from);
+  return out;
+}
+
+void rest_prediction::search(const plane_source& planes_near) noexcept {
+  constexpr int most_trials = 6;
+  constexpr double still_m = 5e-8, still_rad = 2.5e-6;
+  double reach = 1.0;
+  cuts_.clear();
+  for (int trial = 0; trial < most_trials; ++trial) {
+    all_.clear();
+    for (const support_plane& p : here_.planes) static_cast<void>(all_.push_back(as_from_here(p, here_.moved)));
+    for (const support_plane& p : cuts_) static_cast<void>(all_.push_back(p));
+    const vec6 way = detail::rest_of(pull_, all_) - here_.moved;
+    const double share = detail::share_of_furthest(way);
+    if (share * detail::furthest_rest_m < still_m && share * detail::furthest_rest_rad < still_rad) return;
+    const vec6 step = share > reach ? (reach / share) * way : way;
+    if (!look(planes_near, here_.moved + step, there_)) return;
+    if (there_.energy_j < here_.energy_j) {
+      go_there();
+    } else if (!add_cuts()) {
+      reach = 0.25 * std::min(reach, share);
+    }
+  }
+}
+
+void rest_prediction::go_there() noexcept {
+  cuts_.clear();
+  for (const support_plane& p : all_) {
+    const support_plane* const now = same_in(there_, p);
+    const double said_m = depth_at(p, there_.moved);
+    if (now != nullptr && said_m > -gap_m && said_m < now->depth_m - kink_m) keep(p);
+  }
+  std::swap(here_, there_);
+}
+
+bool rest_prediction::add_cuts() noexcept {
+  bool added = false;
+  for (const support_plane& p : there_.planes) {
+    const support_plane from_here = as_from_here(p, there_.moved);
+    const support_plane* const now = same_in(here_, p);
+    const double most_m = now != nullptr ? now->depth_m + agrees_m : -gap_m;
+    if (depth_at(from_here, here_.moved) > most_m) continue;
+    if (now != nullptr && depth_at(as_from_here(*now, here_.moved), there_.moved) > p.depth_m - kink_m) continue;
+    added = keep(from_here) || added;
+  }
+  return added;
+}
+
+bool rest_prediction::keep(const support_plane& p) noexcept {
+  if (cuts_.size() == most_cuts) return false;
+  return cuts_.push_back(p);
+}
+
+bool rest_prediction::come_near(const plane_source& planes_near) noexcept {
+  const double ways = detail::share_of_furthest(here_.moved);
+  if (!(ways > 1.0)) return true;
+  cuts_.clear();
+  return look(planes_near, (1.0 / ways) * here_.moved, here_);
+}
+
+void rest_prediction::tell(support_planes& planes) noexcept {
+  all_.clear();
+  std::swap(all_, planes);  // the planes of the probe's pose
+  for (const support_plane& p : here_.planes) static_cast<void>(planes.push_back(as_from_here(p, here_.moved)));
+  for (const support_plane& p : cuts_) static_cast<void>(planes.push_back(p));
+  for (const support_plane& p : all_) {
+    const double said_m = depth_at(p, here_.moved);
+    const support_plane* const now = same_in(here_, p);
+    const double most_m = now != nullptr ? std::min(0.0, now->depth_m - agrees_m) : -gap_m;
+    const bool replaced = said_m > most_m && (now != nullptr || (here_.all && p.sample != 0));
+    if (!replaced) static_cast<void>(planes.push_back(p));
+  }
+}
+
+}  // namespace asperity
