@@ -139,7 +139,8 @@ TEST(catalogue, names_the_line_of_a_fault) {
 // The list fits the sources: every bug's function and element is there, and planting it changes the text.
 TEST(catalogue, can_be_planted_in_the_sources_as_they_are) {
   const std::string root = ASPERITY_SOURCE_DIR;
-  for (const auto& [folder, least] : {std::pair{"/tests/mutation/catalogue", 60U}, {"/tests/simulation/catalogue", 8U}}) {
+  for (const auto& [folder, least] :
+       {std::pair{"/tests/mutation/catalogue", 60U}, {"/tests/simulation/catalogue", 8U}}) {
     const result<std::vector<bug>> bugs = read_catalogues(root + folder);
     ASSERT_TRUE(bugs) << bugs.error().message;
     EXPECT_GE(bugs->size(), least);

@@ -24,10 +24,10 @@ group_digest() {
 recorded() { grep -qs "^$1 $(group_digest "$1") " "$nightly_record"; }
 recorded_on() { awk -v group="$1" '$1 == group { print $3 }' "$nightly_record"; }
 
-# record GROUP: notes that the group has passed with the files that are here.
+# record GROUP DIGEST: notes that the group has passed with the files of that digest.
 record() {
   local line others
-  line="$1 $(group_digest "$1") $(date -u +%Y-%m-%d)"
+  line="$1 $2 $(date -u +%Y-%m-%d)"
   others=$(grep -sv "^$1 " "$nightly_record" || true)
   printf '%s\n' ${others:+"$others"} "$line" | LC_ALL=C sort > "$nightly_record.new"
   mv "$nightly_record.new" "$nightly_record"
@@ -41,14 +41,17 @@ complete() { awk -F '\t' '{ n[$1]++ } END { exit !(n["passed"] > 0 && n["passed"
 # step's.
 run_nightly_groups() {
   local name=$1 group status=0
+  local -A digests
   shift
+  # What passes is what was built, even where somebody edits files meanwhile.
+  for group in "$@"; do digests[$group]=$(group_digest "$group"); done
   configure release
   build release all asperity_nightly_programs || return
   for group in "$@"; do
     step "nightly tests: $group"
     run_ctest release -L "^nightly_$group\$" || status=1
     cat build/release/test-results >> "build/check/$name.results"
-    if complete build/release/test-results; then record "$group"; fi
+    if complete build/release/test-results; then record "$group" "${digests[$group]}"; fi
   done
   return "$status"
 }
