@@ -65,6 +65,13 @@ half a line[       OK ] suite.second (0 ms)
 LOG
 is "a lost case" "$(read_sorted)" "$(printf 'failed\tmuddled\t2 cases ran, and the log names 1\npassed\tmuddled suite.first\t')"
 
+# Somebody took the log away while the tests ran.
+fresh
+entry whole "Passed" <<< "fine"
+entry lost "Passed" <<< "fine"
+sed -i '/Testing: lost/,$d' log
+is "a lost log" "$(read_sorted)" "$(printf 'failed\tlost\tit is not in the log of CTest\npassed\twhole\t')"
+
 # A skip's reason is not the next one's.
 fresh
 entry program "Passed" << 'LOG'

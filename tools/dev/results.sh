@@ -7,7 +7,8 @@
 # read_results CONSOLE LOG: results from CTest's console output (the verdict of each entry) and its log (the cases
 # inside). A GoogleTest program is read case by case, so that a case that skipped itself is not hidden by its neighbours.
 # A program that failed without a failed case (it died, or ran too long) is one failed test, and so is one whose log
-# does not name as many cases as it says it ran: a case that cannot be seen must not count as none.
+# does not name as many cases as it says it ran, and an entry that passed and is not in the log: a case that cannot be
+# seen must not count as none.
 read_results() {
   awk '
     function tell(verdict, what, why) { printf "%s\t%s\t%s\n", verdict, what, why }
@@ -22,7 +23,7 @@ read_results() {
       next
     }
     # Second file: the output of one entry after the other.
-    /^[0-9]+\/[0-9]+ Testing: /             { name = $3; reason = "" }
+    /^[0-9]+\/[0-9]+ Testing: /             { name = $3; reason = ""; logged[name] = 1 }
     /^SKIPPED: /                            { reason = substr($0, 10); why[name] = reason }
     take_reason                             { reason = $0; take_reason = 0 }
     /: Skipped$/                            { take_reason = 1 }
@@ -34,6 +35,7 @@ read_results() {
     END {
       for (name in verdict) {
         if (verdict[name] == "failed" && !bad[name]) tell("failed", name, "")
+        else if (verdict[name] == "passed" && !logged[name]) tell("failed", name, "it is not in the log of CTest")
         else if (told[name] < ran[name]) tell("failed", name, ran[name] " cases ran, and the log names " told[name] + 0)
         else if (counted[name] || verdict[name] == "failed") continue
         else if (verdict[name] == "skipped") tell("skipped", name, name in why ? why[name] : "no reason given")
