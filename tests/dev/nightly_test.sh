@@ -2,20 +2,12 @@
 # nightly_test.sh SOURCE-FOLDER: which groups of nightly tests ./dev check runs, and which it notes as passed, in a
 # repository made for this, with results that are planted.
 set -uo pipefail
+source "$1/tests/dev/is.sh"
 source "$1/tools/dev/results.sh"
 source "$1/tools/dev/check.sh"
 source "$1/tools/dev/nightly.sh"
 cd "$(mktemp -d)" || exit
 trap 'rm -rf "$PWD"' EXIT
-failed=0
-
-# is WHAT FOUND WANTED
-is() {
-  [[ $2 == "$3" ]] && return
-  printf 'nightly_test: %s\n--- wanted\n%s\n--- found\n%s\n' "$1" "$3" "$2"
-  failed=1
-}
-
 # In place of ./dev and of builds: run_ctest notes the group it was asked for, and leaves what is planted for it.
 say() { printf '%s\n' "$*"; }
 step() { :; }

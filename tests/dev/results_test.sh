@@ -1,19 +1,11 @@
 #!/usr/bin/env bash
 # results_test.sh SOURCE-FOLDER: what tools/dev/results.sh makes of planted consoles and logs of CTest.
 set -uo pipefail
+source "$1/tests/dev/is.sh"
 source "$1/tools/dev/results.sh"
 source "$1/tools/dev/nightly.sh"
 cd "$(mktemp -d)" || exit
 trap 'rm -rf "$PWD"' EXIT
-failed=0
-
-# is WHAT FOUND WANTED
-is() {
-  [[ $2 == "$3" ]] && return
-  printf 'results_test: %s\n--- wanted\n%s\n--- found\n%s\n' "$1" "$3" "$2"
-  failed=1
-}
-
 # entry NAME VERDICT: what the console says of one entry; its output, from the standard input, goes to the log.
 n=0
 entry() {

@@ -46,7 +46,7 @@ run_nightly_groups() {
   # What passes is what was built, even where somebody edits files meanwhile.
   for group in "$@"; do digests[$group]=$(group_digest "$group"); done
   configure release
-  build release all asperity_nightly_programs || return
+  build release all asperity_nightly_programs asperity_soak || return
   for group in "$@"; do
     step "nightly tests: $group"
     run_ctest release -L "^nightly_$group\$" || status=1
