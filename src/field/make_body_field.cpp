@@ -161,6 +161,8 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
       out.highest_relief_m = std::max(out.highest_relief_m, static_cast<double>(c));
     }
   }
+  out.most_third = detail::third_bounds(out.smooth);
+  out.most_relief = detail::relief_bounds(out.fine);
   return out;
 }
 

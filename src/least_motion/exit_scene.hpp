@@ -15,7 +15,6 @@
 #include "least_motion/make_moving_shape.hpp"
 #include "least_motion/mark_tree.hpp"
 #include "least_motion/moving_shape.hpp"
-#include "least_motion/relief_bounds.hpp"
 
 namespace asperity::exits {
 
@@ -25,7 +24,6 @@ struct exit_body {
   kept_relief relief;
   moving_shape shape;
   field_bounds bounds;
-  relief_bounds most_relief;
   mark_tree marks;
 
   /// @pre made
@@ -34,11 +32,8 @@ struct exit_body {
         relief(usual_relief(body->field, body->samples.samples())),
         shape(make_moving_shape(body->field, relief)),
         bounds(shape),
-        most_relief(body->field.fine),
         marks(body->samples.samples()) {}
-  [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(shape, bounds, most_relief, marks);
-  }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(shape, bounds, marks); }
 };
 
 using exit_body_ptr = std::shared_ptr<const exit_body>;

@@ -235,7 +235,7 @@ class posed_samples {
     const double turned = k.bend_per_m * radius_m;
     const double deep_m = std::fabs(k.at.value_m) + 1.2 * radius_m;
     const double far_m = radius_m * (1.0 + 0.7 * turned) + (1.6 * turned + 1e-3) * deep_m;
-    return m.in_y->relief.limited(m.in_y->most_relief.most_m(foot_y, far_m));
+    return m.in_y->relief.limited(m.in_y->body->field.most_relief.most_m(foot_y, far_m));
   }
 
   // No sample of a branch, moved, is deeper. Bounds from the cheap to the sharp: what was read of it for another

@@ -1,16 +1,24 @@
 #include "asperity/planes/field_depth.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
+#include <limits>
+#include <optional>
 #include <utility>
 
 #include "asperity/core/memory.hpp"
 #include "planes/field_watch.hpp"
+#include "planes/first_met.hpp"
+#include "planes/known_depths.hpp"
+#include "planes/leaf_reader.hpp"
 
 namespace asperity {
 namespace {
+
+// No depth grows faster than this with the way of its point: smooth part and relief together.
+constexpr double steepest = 3.0;
 
 void keep_deepest(const support_plane& p, plane_list& in) noexcept {
   if (in.push_back(p)) return;
@@ -19,14 +27,41 @@ void keep_deepest(const support_plane& p, plane_list& in) noexcept {
   if (least->depth_m < p.depth_m) *least = p;
 }
 
-// How far a sample whose surface looks away from the direction that it would be pushed in may count: in full up to 35
-// degrees beyond its cone, since relief leans, and not at all from 60 degrees on.
-double facing_share(double cosine, double cone_rad) noexcept {
-  constexpr double full_rad = 35.0 * std::numbers::pi / 180.0, none_rad = 60.0 * std::numbers::pi / 180.0;
-  const double full = std::cos(std::min(cone_rad + full_rad, std::numbers::pi));
-  const double none = std::cos(std::min(cone_rad + none_rad, std::numbers::pi));
-  return full > none ? smoothstep((cosine - none) / (full - none)) : 1.0;
+// What a hand does in a period T of a contact loop whose reach is 3 v T with v = 0.6 m/s: 5 rad/s and 0.1 m/s, as
+// plane_selection has it.
+trial_motions trials_within(double reach_m) noexcept {
+  const double period_s = reach_m / 1.8;
+  return {.tilt_rad = 5.0 * period_s, .slide_m = 0.1 * period_s};
 }
+
+// Readers of a pose, one for the patches of a body on either side; patches mostly come in long rows of the same two.
+class readers {
+ public:
+  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w, double sinking_m) noexcept
+      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), sinking_m_(sinking_m) {}
+
+  [[nodiscard]] const leaf_reader& of(const near_patch& patch) noexcept {
+    std::optional<leaf_reader>& out = patch.of_probe ? of_probe_ : of_fixed_;
+    if (out && out->reads(patch)) return *out;
+    const field_body &A = *bodies_->probe, &B = *bodies_->fixed[patch.body];
+    const pose &T_wa = at_->T_wa, &T_wb = at_->T_wb[patch.body];
+    if (patch.of_probe) {
+      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m_, work_);
+    } else {
+      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m_, work_);
+    }
+    return *out;
+  }
+  [[nodiscard]] const depth_work& work() const noexcept { return work_; }
+
+ private:
+  const field_scene* bodies_;
+  const scene_pose* at_;
+  vec3 c_a_w_;
+  double sinking_m_;
+  depth_work work_;
+  std::optional<leaf_reader> of_probe_, of_fixed_;
+};
 
 }  // namespace
 
@@ -34,8 +69,14 @@ field_depth::field_depth(std::shared_ptr<const field_scene> bodies, const scene&
     : bodies_(std::move(bodies)),
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
-      watch_(std::make_unique<field_watch>(*bodies_, of)) {
+      always_m_(reach_m / 18.0),
+      ways_(of.fixed.size()),
+      watch_(std::make_unique<field_watch>(*bodies_, of)),
+      met_(std::make_unique<first_met>(trials_within(reach_m))),
+      known_(std::make_unique<known_depths>(most)),
+      asked_at_(std::make_unique<vec6>()) {
   detail::reserve_resident(told_, most);
+  detail::reserve_resident(order_, most);
   constexpr double of_the_diagonal = 0.03;
   double smaller_m = of.probe->box.diagonal();
   for (const model_ptr& b : of.fixed) smaller_m = std::min(smaller_m, b->box.diagonal());
@@ -47,98 +88,120 @@ field_depth::~field_depth() = default;
 
 status field_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
+  readers reading(*bodies_, at, c_a_w, sinking_m_);
   told_.clear();
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const near_leaf& leaf = found.leaves()[i];
-    const field_body &A = *bodies_->probe, &B = *bodies_->fixed[leaf.body];
-    const pose T_ba = inverse(at.T_wb[leaf.body]) * at.T_wa;
-    out[i] = leaf.of_probe
-                 ? deepest(leaf, B.field, T_ba, at.T_wb[leaf.body].rotation, at.T_wa, 1.0, c_a_w, -reach_m_)
-                 : deepest(leaf, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[leaf.body], -1.0, c_a_w, -reach_m_);
-    if (out[i].plane.depth_m > -reach_m_ && told_.size() < told_.capacity()) told_.push_back(out[i].plane);
+  met_->clear();
+  learn_ways(at);
+  known_->begin(found, [&](const near_patch& patch) noexcept {
+    const vec3 r_w = reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
+    const double r_m = std::sqrt(glm::dot(r_w, r_w)) + patch.ball.radius_m;
+    const way& w = ways_[patch.body];
+    return steepest * (w.slid_m + w.chord * (r_m + w.slid_m));
+  });
+  // What may be near is read first: it hides what lies behind it.
+  sort_by_depth(found.patches());
+  for (const std::uint32_t i : order_) {
+    const near_patch& patch = found.patches()[i];
+    read(patch, found.leaves_of(patch), reading.of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
+  for (const near_plane& p : out) {
+    if (p.plane.depth_m > -reach_m_ && told_.size() < told_.capacity()) told_.push_back(p.plane);
+  }
+  known_->ask(found, [&](const near_patch& patch) noexcept {
+    return reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
+  });
+  *asked_at_ = {};
+  work_ = reading.work();
+  for (const near_leaf& leaf : found.leaves()) work_.listed += leaf.count;
   flags_ = watch_->look(*bodies_, at, told_, c_a_w);
   return status::ok;
 }
 
-status field_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane> read,
-                              const vec6& moved, double above_m, plane_list& out) const noexcept {
-  // No depth grows faster than this with the way of its point: smooth part and relief together.
-  constexpr double steepest = 3.0;
-  const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
-  const double slid_m = std::sqrt(glm::dot(moved.linear, moved.linear));
-  const double turned_rad = std::sqrt(glm::dot(moved.angular, moved.angular));
-  for (std::size_t i = 0; i < read.size(); ++i) {
-    const support_plane& before = read[i].plane;
-    const double way_m = slid_m + turned_rad * std::sqrt(glm::dot(before.r_w, before.r_w));
-    if (!(before.depth_m + steepest * way_m > above_m)) continue;
-    const near_leaf& leaf = found.leaves()[i];
-    const field_body &A = *bodies_->probe, &B = *bodies_->fixed[leaf.body];
-    const pose T_ba = inverse(at.T_wb[leaf.body]) * at.T_wa;
-    near_leaf one = leaf;
-    one.count = 1;
-    for (const field_sample& sample : leaf.samples()) {
-      one.first = &sample;
-      const near_plane now =
-          leaf.of_probe
-              ? deepest(one, B.field, T_ba, at.T_wb[leaf.body].rotation, at.T_wa, 1.0, c_a_w, above_m)
-              : deepest(one, A.field, inverse(T_ba), at.T_wa.rotation, at.T_wb[leaf.body], -1.0, c_a_w, above_m);
-      if (now.plane.depth_m > above_m) keep_deepest(now.plane, out);
+void field_depth::learn_ways(const scene_pose& at) noexcept {
+  for (std::size_t b = 0; b < ways_.size(); ++b) {
+    way& w = ways_[b];
+    const pose T_ba = inverse(at.T_wb[b]) * at.T_wa;
+    const vec3 slid = T_ba * centre_of_mass_a_ - w.T_ba * centre_of_mass_a_;
+    const quat turn = glm::conjugate(w.T_ba.rotation) * T_ba.rotation;
+    w = {T_ba, std::sqrt(glm::dot(slid, slid)), 2.0 * std::sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z)};
+  }
+}
+
+void field_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
+  constexpr std::size_t bins = 64;
+  std::array<std::uint32_t, bins + 1> first{};
+  const auto bin_of = [&](const near_patch& p) noexcept {
+    const double from_top = (reach_m_ - p.in_other.most_m) * static_cast<double>(bins) / (2.0 * reach_m_);
+    return static_cast<std::size_t>(std::clamp(from_top, 0.0, static_cast<double>(bins - 1)));
+  };
+  for (const near_patch& p : patches) ++first[bin_of(p) + 1];
+  for (std::size_t b = 0; b < bins; ++b) first[b + 1] += first[b];
+  order_.resize(patches.size());
+  for (std::size_t i = 0; i < patches.size(); ++i) order_[first[bin_of(patches[i])]++] = static_cast<std::uint32_t>(i);
+}
+
+void field_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
+                       std::span<near_plane> out) noexcept {
+  // Whom a patch is compared with follows from the pose alone, and so does what is told.
+  const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
+  first_met::group* const group = met_->group_of(patch.body, slope_w);
+  first_met::depths moved;
+  if (group != nullptr) met_->moved(*group, slope_w, reader.from_centre_of_mass_w(patch.ball.centre_b), moved);
+  const auto least_that_matters_m = [&]() noexcept {
+    if (group == nullptr) return -reach_m_;
+    return std::max(-reach_m_, std::min(-always_m_, first_met::least_that_matters_m(*group, moved)));
+  };
+  double above_m = least_that_matters_m();
+  const auto most_of_patch_m = leaf_reader::rounded_up(patch.in_other.most_m);
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const near_leaf& leaf = leaves[i];
+    const std::span<float> known = known_->of(patch.first_leaf + i);
+    float most_m = known.size() < leaf.count ? most_of_patch_m : -std::numeric_limits<float>::infinity();
+    for (float& m : known) {
+      m = std::min(m, most_of_patch_m);
+      most_m = std::max(most_m, m);
     }
+    out[i].plane.depth_m = -std::numeric_limits<double>::infinity();
+    if (!(static_cast<double>(most_m) > above_m)) continue;
+    const depth_bound near = reader.bound_of(leaf);
+    if (!(near.most_m > above_m)) {
+      for (float& m : known) m = std::min(m, leaf_reader::rounded_up(near.most_m));
+      continue;
+    }
+    out[i] = reader.deepest(leaf, near, above_m, known);
+    if (group == nullptr || !(out[i].plane.depth_m > above_m)) continue;
+    first_met::add(*group, moved, out[i].plane.depth_m);
+    above_m = least_that_matters_m();
+  }
+}
+
+status field_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
+                              const vec6& moved, double above_m, plane_list& out) const noexcept {
+  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, sinking_m_);
+  const vec6 step = moved - *asked_at_;
+  *asked_at_ = moved;
+  const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
+  for (std::size_t p = 0; p < found.patches().size(); ++p) {
+    known_depths::asked_patch& asked = known_->asked()[p];
+    const vec3 way_w = step.linear + glm::cross(step.angular, asked.r_w);
+    const double way_m = std::sqrt(glm::dot(way_w, way_w)) + turned_rad * asked.radius_m;
+    known_depths::grow(asked, steepest * way_m);
+    if (!(static_cast<double>(asked.most_m) > above_m)) continue;
+    const near_patch& patch = found.patches()[p];
+    const leaf_reader& reader = reading.of(patch);
+    known_->open(asked, patch);
+    for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
+      reader.each_deeper(found.leaves()[i], above_m, known_->asked_of(i),
+                         [&](const support_plane& plane) noexcept { keep_deepest(plane, out); });
+    }
+    known_->close(asked, patch);
   }
   return out.dropped() > 0 ? status::capacity_reached : status::ok;
 }
 
 std::size_t field_depth::heap_bytes() const noexcept {
-  return asperity::heap_bytes(told_) + sizeof(field_watch) + watch_->heap_bytes() + sizeof(field_scene) +
-         bodies_->heap_bytes();
-}
-
-near_plane field_depth::deepest(const near_leaf& leaf, const body_field& in_y, const pose& T_yx,
-                                const quat& rotation_wy, const pose& T_wx, double sign, const vec3& c_a_w,
-                                double above_m) const noexcept {
-  // Half way through a body no way out is shorter than another: a sample there holds nothing.
-  constexpr double least_slope = 0.05;
-  near_plane out;
-  if (leaf.count > 1) {
-    // A smooth distance grows by little more than a metre per metre.
-    constexpr double steepest = 1.2;
-    const double smooth_m = in_y.coarse(T_yx * leaf.centre_b).value_m;
-    if (smooth_m + steepest * leaf.radius_m + in_y.highest_relief_m <= above_m) return out;
-  }
-  double deepest_m = above_m;
-  const field_sample* found = nullptr;
-  vec3 slope_y(0.0), point_x(0.0);
-  const quat rotation_xy = glm::conjugate(T_yx.rotation);
-  for (const field_sample& s : leaf.samples()) {
-    const vec3 p_y = T_yx * vec3(s.position_b);
-    const coarse_reading smooth = in_y.coarse(p_y);
-    if (!(smooth.value_m + in_y.highest_relief_m > deepest_m)) continue;
-    const field_reading relief = in_y.relief(p_y, smooth);
-    const field_reading d{smooth.value_m + relief.value_m, smooth.slope + relief.slope};
-    if (!(d.value_m > deepest_m)) continue;
-    const double squared = glm::dot(d.slope, d.slope);
-    if (!(squared > least_slope * least_slope)) continue;
-    const double facing = glm::dot(vec3(s.axis_b), rotation_xy * d.slope) / std::sqrt(squared);
-    const double depth_m = d.value_m - sinking_m_ * (1.0 - facing_share(facing, static_cast<double>(s.cone_rad)));
-    if (!(depth_m > deepest_m)) continue;
-    out.plane.depth_m = deepest_m = depth_m;
-    slope_y = d.slope;
-    point_x = vec3(s.position_b);
-    found = &s;
-  }
-  const double steep = std::sqrt(glm::dot(slope_y, slope_y));
-  if (!(steep > 0.0)) return out;
-  const vec3 slope_w = sign * (rotation_wy * slope_y);
-  out.point_w = T_wx * point_x;
-  out.plane.body = leaf.body;
-  const field_body& of_x = leaf.of_probe ? *bodies_->probe : *bodies_->fixed[leaf.body];
-  const auto index = static_cast<std::uint32_t>(found - of_x.samples.samples().data());
-  out.plane.sample = 2 * index + (leaf.of_probe ? 1 : 2);
-  out.plane.r_w = out.point_w - c_a_w;
-  out.plane.gradient = {slope_w, glm::cross(out.plane.r_w, slope_w)};
-  out.plane.n_ab_w = slope_w / steep;
-  return out;
+  return asperity::heap_bytes(told_, order_, ways_) + sizeof(field_watch) + watch_->heap_bytes() + sizeof(first_met) +
+         sizeof(known_depths) + sizeof(vec6) + known_->heap_bytes() + sizeof(field_scene) + bodies_->heap_bytes();
 }
 
 }  // namespace asperity

@@ -5,23 +5,31 @@
 
 #include "asperity/core/pose.hpp"
 #include "asperity/field/field_body.hpp"
+#include "planes/ball_bound.hpp"
 
 namespace asperity {
 namespace {
 
 // Samples of X in the field of Y; T_yx takes X's frame to Y's.
-void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, const near_leaf& whose, double reach_m,
+void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, const near_patch& whose, double reach_m,
           near_samples& out) noexcept {
-  of_x.query([&](const vec3& centre_x,
-                 double radius_m) noexcept { return in_y.most_near(T_yx * centre_x, radius_m) > -reach_m; },
-             [&](const vec3& centre_x, double radius_m, std::span<const field_sample> samples) noexcept {
-               near_leaf leaf = whose;
-               leaf.first = samples.data();
-               leaf.count = static_cast<std::uint32_t>(samples.size());
-               leaf.centre_b = centre_x;
-               leaf.radius_m = radius_m;
-               static_cast<void>(out.add(leaf));
-             });
+  using answer = sample_tree::branch_answer;
+  near_patch patch = whose;
+  of_x.query(
+      [&](const sample_ball& ball, bool is_leaf) noexcept {
+        if (!(in_y.most_near(T_yx * ball.centre_b, ball.radius_m) > -reach_m)) return answer::away;
+        // Over a pitch the smooth part is nearly straight, and one reading serves all leaves of a ball.
+        if (!is_leaf && ball.radius_m > in_y.smooth.pitch_m) return answer::open;
+        patch.in_other = bound_of_ball(in_y, T_yx, ball);
+        if (!(patch.in_other.most_m > -reach_m)) return answer::away;
+        patch.ball = ball;
+        static_cast<void>(out.begin(patch));
+        return answer::taken;
+      },
+      [&](const sample_ball& ball, std::span<const field_sample> samples) noexcept {
+        static_cast<void>(
+            out.add({.first = samples.data(), .count = static_cast<std::uint32_t>(samples.size()), .ball = ball}));
+      });
 }
 
 }  // namespace

@@ -7,7 +7,9 @@
 
 #include "asperity/core/math.hpp"
 #include "asperity/field/coarse_grid.hpp"
+#include "asperity/field/relief_bounds.hpp"
 #include "asperity/field/relief_bricks.hpp"
+#include "asperity/field/third_bounds.hpp"
 
 namespace asperity {
 
@@ -38,6 +40,8 @@ struct foot_and_fade {
 struct body_field {
   detail::coarse_grid smooth;
   detail::relief_bricks fine;
+  detail::third_bounds most_third;                       ///< of the smooth part
+  detail::relief_bounds most_relief;                     ///< of the fine part
   double lowest_relief_m = 0.0, highest_relief_m = 0.0;  ///< no relief lies beyond these; at most, at least 0
   double thickness_m = 0.0;          ///< of the thinnest parts of the body; 0 where no two walls face each other
   double thinnest_resolved_m = 0.0;  ///< parts thinner than this are blurred: three pitches of the smooth part
@@ -100,7 +104,9 @@ struct body_field {
            std::max(0.0, away - radius_m);
   }
 
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return smooth.heap_bytes() + fine.heap_bytes(); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(smooth, fine, most_third, most_relief);
+  }
 
  private:
   static constexpr double fade_none = 0.4;        // |grad S|^2 from which there is some relief, far from the surface

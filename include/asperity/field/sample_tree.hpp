@@ -24,6 +24,20 @@ struct field_sample {
   float cone_rad = 0.0F;               ///< half its opening: 0 on a face
 };
 
+/// Where a few samples lie: within radius_m of a centre, and within half_m of the plane through it across an axis. On a
+/// smooth surface half_m is far below radius_m, and a slope that is known bounds a depth by it. Body frame.
+struct sample_ball {
+  vec3 centre_b{0.0}, axis_b{0.0, 0.0, 1.0};
+  double radius_m = 0.0, half_m = 0.0;
+
+  /// How much a function of this slope can grow from the centre to a sample. @rt safe
+  [[nodiscard]] double growth(const vec3& slope_b) const noexcept {
+    const double along = std::fabs(glm::dot(axis_b, slope_b));
+    const double across = glm::dot(slope_b, slope_b) - along * along;
+    return along * half_m + std::sqrt(std::max(0.0, across)) * radius_m;
+  }
+};
+
 /// Samples of one body in a binary tree of balls. A ball keeps its size however the body is turned, so a field of
 /// another body can bound what a whole branch holds by one reading. Built once, never changed.
 class sample_tree {
@@ -43,26 +57,39 @@ class sample_tree {
 
   [[nodiscard]] std::span<const field_sample> samples() const noexcept { return samples_; }
 
-  /// Calls visit(leaf) with the samples of every leaf whose ball, and all balls around it, may(centre_b, radius_m)
-  /// holds for. The order is the tree's own.
-  /// @rt safe: no allocation; may and visit must not throw
-  template <class May, class Visit>
-  void query(May&& may, Visit&& visit) const noexcept {
+  /// What a visitor says of a ball.
+  enum class branch_answer : std::uint8_t {
+    away,   ///< nothing in it counts
+    open,   ///< look at its halves
+    taken,  ///< visit all of its leaves without another look
+  };
+
+  /// Calls look(sample_ball, is_leaf), which answers a branch_answer, from the largest ball down, and
+  /// visit(sample_ball, samples) for the leaves of the balls that it takes. A leaf that it leaves open is not
+  /// visited. The order is the tree's own.
+  /// @rt safe: no allocation; look and visit must not throw
+  template <class Look, class Visit>
+  void query(Look&& look, Visit&& visit) const noexcept {
     if (balls_.empty()) return;
+    struct branch {
+      std::uint32_t first, end;
+    };
     // Median splits halve the count, so 2^31 points need 32 levels and one waiting sibling at each.
-    std::array<std::uint32_t, 64> waiting;
+    std::array<branch, 64> waiting;
     std::size_t count = 0;
-    waiting[count++] = 0;
+    waiting[count++] = {0, static_cast<std::uint32_t>(balls_.size())};
     while (count > 0) {
-      const std::uint32_t i = waiting[--count];
+      const auto [i, end] = waiting[--count];
       const ball& b = balls_[i];
-      if (!may(vec3(b.centre_b), static_cast<double>(b.radius_m))) continue;
-      if (b.right == 0) {
-        visit(vec3(b.centre_b), static_cast<double>(b.radius_m),
-              std::span<const field_sample>(samples_).subspan(b.first, b.count));
-      } else {
-        waiting[count++] = b.right;
-        waiting[count++] = i + 1;
+      const bool is_leaf = b.right == 0;
+      const branch_answer answer = look(b.told(), is_leaf);
+      if (answer == branch_answer::taken) {
+        for (std::uint32_t l = i; l < end; ++l) {
+          if (balls_[l].right == 0) visit_leaf(balls_[l], visit);
+        }
+      } else if (answer == branch_answer::open && !is_leaf) {
+        waiting[count++] = {b.right, end};
+        waiting[count++] = {i + 1, b.right};
       }
     }
   }
@@ -72,10 +99,19 @@ class sample_tree {
  private:
   // Depth-first layout: the left child follows its parent, `right` is 0 for a leaf.
   struct ball {
-    glm::vec3 centre_b{0.0F};
-    float radius_m = 0.0F;
+    glm::vec3 centre_b{0.0F}, axis_b{0.0F, 0.0F, 1.0F};
+    float radius_m = 0.0F, half_m = 0.0F;
     std::uint32_t right = 0, first = 0, count = 0;
+
+    [[nodiscard]] sample_ball told() const noexcept {
+      return {vec3(centre_b), vec3(axis_b), static_cast<double>(radius_m), static_cast<double>(half_m)};
+    }
   };
+
+  template <class Visit>
+  void visit_leaf(const ball& b, Visit& visit) const noexcept {
+    visit(b.told(), std::span<const field_sample>(samples_).subspan(b.first, b.count));
+  }
 
   void build(std::size_t first, std::size_t count) {
     const std::span<field_sample> part = std::span(samples_).subspan(first, count);
@@ -85,11 +121,9 @@ class sample_tree {
       high = glm::max(high, s.position_b);
     }
     const std::size_t self = balls_.size();
-    ball b{0.5F * (low + high), 0.0F, 0, static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(count)};
-    double far = 0.0;
-    for (const field_sample& s : part) far = std::max(far, glm::length(vec3(s.position_b) - vec3(b.centre_b)));
-    b.radius_m = std::nextafter(static_cast<float>(far), 1e30F);  // rounding down would leave a sample outside
-    balls_.push_back(b);
+    balls_.push_back(around(part, 0.5F * (low + high)));
+    balls_.back().first = static_cast<std::uint32_t>(first);
+    balls_.back().count = static_cast<std::uint32_t>(count);
     if (count <= leaf_samples) return;
     const glm::vec3 size = high - low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
@@ -106,6 +140,55 @@ class sample_tree {
     build(first, half);
     balls_[self].right = static_cast<std::uint32_t>(balls_.size());
     build(first + half, count - half);
+  }
+
+  // Rounding a radius down would leave a sample outside, so both extents are rounded up.
+  [[nodiscard]] static ball around(std::span<const field_sample> part, const glm::vec3& middle_b) noexcept {
+    ball out;
+    out.axis_b = glm::vec3(thinnest(part, vec3(middle_b)));
+    double bottom = 1e30, top = -1e30;
+    for (const field_sample& s : part) {
+      const double z = glm::dot(vec3(s.position_b) - vec3(middle_b), vec3(out.axis_b));
+      bottom = std::min(bottom, z);
+      top = std::max(top, z);
+    }
+    out.centre_b = glm::vec3(vec3(middle_b) + 0.5 * (bottom + top) * vec3(out.axis_b));
+    double far = 0.0, off = 0.0;
+    for (const field_sample& s : part) {
+      const vec3 d = vec3(s.position_b) - vec3(out.centre_b);
+      far = std::max(far, glm::length(d));
+      off = std::max(off, std::fabs(glm::dot(d, vec3(out.axis_b))));
+    }
+    out.radius_m = std::nextafter(static_cast<float>(far), 1e30F);
+    out.half_m = std::nextafter(static_cast<float>(off), 1e30F);
+    return out;
+  }
+
+  // The direction that samples spread least along, by the power method on what is left of their spread's trace. A
+  // direction that is not quite the best makes bounds a little wider, not wrong.
+  [[nodiscard]] static vec3 thinnest(std::span<const field_sample> part, const vec3& middle_b) noexcept {
+    mat3 rest(0.0);
+    vec3 sum(0.0);
+    double trace = 1e-30;
+    for (const field_sample& s : part) {
+      const vec3 d = vec3(s.position_b) - middle_b;
+      sum += d;
+      rest -= glm::outerProduct(d, d);
+      trace += glm::dot(d, d);
+    }
+    const double per_sample = 1.0 / static_cast<double>(part.size());
+    rest += per_sample * glm::outerProduct(sum, sum);
+    trace -= per_sample * glm::dot(sum, sum);
+    for (int k = 0; k < 3; ++k) rest[k][k] += trace;
+    constexpr int steps = 20;
+    vec3 axis(0.48, 0.6, 0.64);
+    for (int i = 0; i < steps; ++i) {
+      const vec3 next = rest * axis;
+      const double squared = glm::dot(next, next);
+      if (!(squared > 0.0)) break;
+      axis = next / std::sqrt(squared);
+    }
+    return axis;
   }
 
   std::vector<field_sample> samples_;

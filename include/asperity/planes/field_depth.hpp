@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -19,6 +21,9 @@
 namespace asperity {
 
 class field_watch;
+class first_met;
+class known_depths;
+class leaf_reader;
 
 /// Reads the field at every near sample and keeps the deepest of each leaf, with its slope, as a support plane. Edge
 /// across edge needs nothing of its own: the samples along one edge lie in the field of the other's body.
@@ -57,22 +62,38 @@ class ASPERITY_API field_depth {
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return told_; }
   /// What these planes do not answer.
   [[nodiscard]] tick_flag flags() const noexcept { return flags_; }
+  /// What the last measure() cost.
+  [[nodiscard]] const depth_work& work() const noexcept { return work_; }
   [[nodiscard]] const field_scene& bodies() const noexcept { return *bodies_; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept;
 
  private:
-  // The deepest sample of X in the field of Y where it is deeper than above_m. The depth grows where X's point moves
-  // along the field's slope; where X is the fixed body, the probe's motion takes the field along, and the sign turns.
-  [[nodiscard]] near_plane deepest(const near_leaf& leaf, const body_field& in_y, const pose& T_yx,
-                                   const quat& rotation_wy, const pose& T_wx, double sign, const vec3& c_a_w,
-                                   double above_m) const noexcept;
+  // What known bounds grow by: how far samples have gone since the tick before.
+  void learn_ways(const scene_pose& at) noexcept;
+  // The deepest first, roughly.
+  void sort_by_depth(std::span<const near_patch> patches) noexcept;
+  // The planes of a patch's leaves, where they can matter.
+  void read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
+            std::span<near_plane> out) noexcept;
 
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
   double reach_m_;
+  double always_m_ = 0.0;   // gaps up to this are told whatever lies before them
   double sinking_m_ = 0.0;  // of a sample that looks away
   std::vector<support_plane> told_;
+  std::vector<std::uint32_t> order_;  // of patches
+  // How the probe has moved from the tick before, seen from each body.
+  struct way {
+    pose T_ba{};
+    double slid_m = std::numeric_limits<double>::infinity(), chord = 0.0;
+  };
+  std::vector<way> ways_;
   std::unique_ptr<field_watch> watch_;
+  std::unique_ptr<first_met> met_;
+  std::unique_ptr<known_depths> known_;
+  std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
+  depth_work work_;
   tick_flag flags_ = tick_flag::none;
 };
 

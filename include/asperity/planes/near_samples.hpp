@@ -1,6 +1,7 @@
 // What the field finder reports: which samples of one body may touch the other.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -20,14 +21,48 @@ struct near_plane {
   vec3 point_w{0.0};                                                         ///< the sample, world
 };
 
-/// A few neighbouring samples of one body that may touch the other.
+/// What one reading of a depth field bounds around it: depths of points within a ball. In the field's body's frame.
+struct depth_bound {
+  static constexpr double unknown = std::numeric_limits<double>::infinity();
+
+  double most_m = unknown;        ///< no point of the ball is deeper
+  double smooth_m = 0.0;          ///< the smooth part at the ball's centre
+  vec3 slope{0.0};                ///< its slope there
+  mat3 hessian_per_m{0.0};        ///< and second derivatives
+  double third_per_m2 = unknown;  ///< no third derivative in the ball is larger
+  double relief_m = unknown;      ///< no relief in the ball is higher
+
+  /// No point of the ball is deeper at this place, seen from its centre. @rt safe
+  [[nodiscard]] double most_at(const vec3& off) const noexcept {
+    if (!(third_per_m2 < unknown)) return most_m;
+    const double far2 = glm::dot(off, off);
+    return smooth_m + glm::dot(slope + 0.5 * (hessian_per_m * off), off) + third_per_m2 * far2 * std::sqrt(far2) / 6.0 +
+           relief_m;
+  }
+};
+
+/// How many samples a tick found near, and what it took to tell which of them count.
+struct depth_work {
+  std::uint32_t listed = 0;   ///< samples within reach
+  std::uint32_t bounded = 0;  ///< leaves that a reading bounded
+  std::uint32_t quick = 0;    ///< samples that were read in single precision, to tell whether they need more
+  std::uint32_t exact = 0;    ///< samples that were read in double precision with all derivatives
+};
+
+/// A patch of one body's surface that may touch the other body: a few leaves of its sample_tree that are neighbours.
+struct near_patch {
+  std::uint32_t body = 0;  ///< index of B in scene::fixed
+  bool of_probe = false;   ///< whose samples: the probe's, met by B's field; or B's, met by the probe's
+  sample_ball ball{};      ///< around them, in the frame of the body that has them
+  depth_bound in_other{};  ///< of that ball in the other body's field
+  std::uint32_t first_leaf = 0, leaf_count = 0;  ///< in near_samples::leaves()
+};
+
+/// A few neighbouring samples of a patch.
 struct near_leaf {
-  std::uint32_t body = 0;               ///< index of B in scene::fixed
-  bool of_probe = false;                ///< whose samples: the probe's, met by B's field; or B's, met by the probe's
   const field_sample* first = nullptr;  ///< in that body's sample_tree
   std::uint32_t count = 0;
-  vec3 centre_b{0.0};  ///< of a ball around them, in the same frame
-  double radius_m = 0.0;
+  sample_ball ball{};  ///< around them, in the same frame
 
   [[nodiscard]] std::span<const field_sample> samples() const noexcept { return {first, count}; }
 };
@@ -40,7 +75,7 @@ struct near_sample_limits {
   [[nodiscard]] std::size_t readings() const noexcept { return leaves; }
 };
 
-/// The near leaves of one tick, sorted by body. All memory is taken when it is made.
+/// The near patches of one tick and their leaves, sorted by body. All memory is taken when it is made.
 /// A superset of what touches is harmless: what is too far away gives no plane.
 class near_samples {
  public:
@@ -48,13 +83,26 @@ class near_samples {
 
   explicit near_samples(near_sample_limits limits = {}) : limits_(limits) {
     detail::reserve_resident(leaves_, limits.leaves);
+    detail::reserve_resident(patches_, limits.leaves);
   }
 
   /// @rt safe
   void clear() noexcept {
     leaves_.clear();
+    patches_.clear();
     dropped_ = 0;
   }
+  /// Begins a patch; the leaves that are added next belong to it.
+  /// @return false where the limit was hit: its leaves will be dropped   @rt safe
+  bool begin(const near_patch& patch) noexcept {
+    if (leaves_.size() == limits_.leaves) return false;
+    if (!patches_.empty() && patches_.back().leaf_count == 0) patches_.pop_back();
+    patches_.push_back(patch);
+    patches_.back().first_leaf = static_cast<std::uint32_t>(leaves_.size());
+    patches_.back().leaf_count = 0;
+    return true;
+  }
+  /// @pre a patch was begun
   /// @return false where the limit was hit: the leaf is dropped and counted   @rt safe
   bool add(const near_leaf& leaf) noexcept {
     if (leaves_.size() == limits_.leaves) {
@@ -62,19 +110,25 @@ class near_samples {
       return false;
     }
     leaves_.push_back(leaf);
+    ++patches_.back().leaf_count;
     return true;
   }
 
+  [[nodiscard]] std::span<const near_patch> patches() const noexcept { return patches_; }
+  [[nodiscard]] std::span<const near_leaf> leaves_of(const near_patch& patch) const noexcept {
+    return leaves().subspan(patch.first_leaf, patch.leaf_count);
+  }
   [[nodiscard]] std::span<const near_leaf> leaves() const noexcept { return leaves_; }
   /// How many readings a depth backend makes of it: one per leaf.
   [[nodiscard]] std::size_t size() const noexcept { return leaves_.size(); }
   /// Leaves that did not fit since clear(): raise near_sample_limits.
   [[nodiscard]] std::size_t dropped() const noexcept { return dropped_; }
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(leaves_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(leaves_, patches_); }
 
  private:
   near_sample_limits limits_;
   std::vector<near_leaf> leaves_;
+  std::vector<near_patch> patches_;
   std::size_t dropped_ = 0;
 };
 

@@ -28,17 +28,26 @@ std::vector<field_sample> scattered(std::size_t count, std::mt19937_64& bits) {
 struct brought {
   std::vector<glm::vec3> inside;
   std::size_t points = 0;
+  int outside = 0;  // of their leaf's ball, or beyond its planes
 };
 
 brought query_ball(const sample_tree& tree, const vec3& centre, double radius) {
   brought out;
-  tree.query([&](const vec3& c, double r) noexcept { return glm::length(c - centre) <= r + radius; },
-             [&](const vec3&, double, std::span<const field_sample> leaf) noexcept {
-               out.points += leaf.size();
-               for (const field_sample& s : leaf) {
-                 if (glm::length(vec3(s.position_b) - centre) <= radius) out.inside.push_back(s.position_b);
-               }
-             });
+  using answer = sample_tree::branch_answer;
+  tree.query(
+      [&](const sample_ball& ball, bool is_leaf) noexcept {
+        if (glm::length(ball.centre_b - centre) > ball.radius_m + radius) return answer::away;
+        // Some balls are taken whole: their leaves come without another look.
+        return is_leaf || ball.radius_m < 0.5 * radius ? answer::taken : answer::open;
+      },
+      [&](const sample_ball& ball, std::span<const field_sample> leaf) noexcept {
+        out.points += leaf.size();
+        for (const field_sample& s : leaf) {
+          const vec3 off = vec3(s.position_b) - ball.centre_b;
+          out.outside += glm::length(off) > ball.radius_m || std::fabs(glm::dot(off, ball.axis_b)) > ball.half_m;
+          if (glm::length(vec3(s.position_b) - centre) <= radius) out.inside.push_back(s.position_b);
+        }
+      });
   return out;
 }
 
@@ -56,7 +65,9 @@ TEST(SampleTree, BringsEveryPointOfABallOnce) {
           static_cast<std::size_t>(std::count_if(points.begin(), points.end(), [&](const field_sample& s) {
             return glm::length(vec3(s.position_b) - centre) <= radius;
           }));
-      EXPECT_EQ(query_ball(tree, centre, radius).inside.size(), expected);
+      const brought found = query_ball(tree, centre, radius);
+      EXPECT_EQ(found.inside.size(), expected);
+      EXPECT_EQ(found.outside, 0);
     }
   }
 }
@@ -76,6 +87,33 @@ TEST(SampleTree, IsTheSameForTheSamePointsInAnyOrder) {
   std::shuffle(points.begin(), points.end(), bits);
   const sample_tree other(points);
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(one.samples()[i].position_b, other.samples()[i].position_b);
+}
+
+// On a plane a ball's two planes lie on each other, and a slope across them adds nothing to a bound.
+TEST(SampleTree, KnowsHowFlatALeafIs) {
+  std::mt19937_64 bits(fresh_seed("SampleTree.KnowsHowFlatALeafIs", "a plane of 2000 points, a slope per leaf"));
+  std::vector<field_sample> points = scattered(2000, bits);
+  for (field_sample& s : points) s.position_b.z = 0.25F * s.position_b.x;
+  const vec3 normal = glm::normalize(vec3(-0.25, 0.0, 1.0));
+  const sample_tree tree(points);
+  std::uniform_real_distribution<double> side(-1.0, 1.0);
+  double thickness = 0.0, growth = 0.0;
+  int leaves = 0;
+  const auto every = [](const sample_ball&, bool is_leaf) noexcept {
+    return is_leaf ? sample_tree::branch_answer::taken : sample_tree::branch_answer::open;
+  };
+  tree.query(every, [&](const sample_ball& ball, std::span<const field_sample> leaf) noexcept {
+    thickness += ball.half_m / ball.radius_m;
+    growth += ball.growth(normal) / ball.radius_m;
+    ++leaves;
+    const vec3 slope(side(bits), side(bits), side(bits));
+    double most = 0.0;
+    for (const field_sample& s : leaf) most = std::max(most, glm::dot(slope, vec3(s.position_b) - ball.centre_b));
+    EXPECT_GE(ball.growth(slope), most);
+  });
+  // An axis is found by 20 steps of the power method, which long rows of samples would need more of.
+  EXPECT_LT(thickness, 0.02 * leaves);
+  EXPECT_LT(growth, 0.1 * leaves);
 }
 
 TEST(SampleTree, OfNothingBringsNothing) {

@@ -145,7 +145,7 @@ TEST(ReliefBounds, HoldForEveryFootInABall) {
     ++small;
   }
   EXPECT_LT(mean_of_small / small, 0.5 * highest);  // and say something
-  EXPECT_EQ(relief_bounds(detail::relief_bricks{}).most_m(vec3(0.0), 1.0), 0.0);
+  EXPECT_EQ(detail::relief_bounds(detail::relief_bricks{}).most_m(vec3(0.0), 1.0), 0.0);
 }
 
 TEST(PosedSamples, GathersAllAboveALimit) {

@@ -11,7 +11,7 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/field/relief_bricks.hpp"
 
-namespace asperity::exits {
+namespace asperity::detail {
 
 /// The largest coefficients of a body's relief, by brick and by blocks of 2, 4, 8, ... bricks a side. A spline lies
 /// below the largest of its coefficients. Made once, beside the field; never changed.
@@ -20,7 +20,7 @@ class relief_bounds {
   relief_bounds() = default;
 
   /// Allocates a number per place of a brick, and a seventh more.
-  explicit relief_bounds(const detail::relief_bricks& of) : low_(of.low), pitch_m_(of.pitch_m) {
+  explicit relief_bounds(const relief_bricks& of) : low_(of.low), pitch_m_(of.pitch_m) {
     if (of.index.empty()) return;
     level first{of.bricks_along, std::vector<float>(of.index.size(), 0.0F)};
     for (std::size_t i = 0; i < of.index.size(); ++i) {
@@ -36,7 +36,7 @@ class relief_bounds {
     if (levels_.empty()) return 0.0;
     // The spline reads three nodes along each axis, up to a node and a half from its place.
     const double reach = radius_m / pitch_m_ + 1.5;
-    double size = detail::relief_bricks::side;  // of a block of the level, in nodes
+    double size = relief_bricks::side;  // of a block of the level, in nodes
     std::size_t l = 0;
     for (; l + 1 < levels_.size() && size < reach; ++l) size *= 2.0;
     const level& at = levels_[l];
@@ -91,4 +91,4 @@ class relief_bounds {
   std::vector<level> levels_;
 };
 
-}  // namespace asperity::exits
+}  // namespace asperity::detail

@@ -1,0 +1,154 @@
+// What earlier ticks know of how deep samples lie: upper bounds that grow with the way that samples have gone since.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "asperity/core/memory.hpp"
+#include "asperity/field/field_scene.hpp"
+#include "asperity/planes/near_samples.hpp"
+
+namespace asperity {
+
+/// Upper bounds of the depths of a tick's near samples. A sample that was near in the tick before brings its bound
+/// along; of the others nothing is known. Bounds spare readings and decide nothing: who is told that a sample may be
+/// deep reads it, and finds what it would have found without them. Memory goes with the limit of leaves, not with the
+/// scene.
+class known_depths {
+ public:
+  /// @param leaves most of a tick
+  explicit known_depths(std::size_t leaves) {
+    for (list* l : {&now_, &before_}) {
+      detail::reserve_resident(l->leaves, leaves);
+      detail::reserve_resident(l->most_m, leaves * sample_tree::leaf_samples);
+    }
+    detail::reserve_resident(asked_m_, leaves * sample_tree::leaf_samples);
+    detail::reserve_resident(asked_, leaves);
+  }
+
+  /// Begins a tick with these leaves. Leaves come in the order of body, whose samples they are and sample, as
+  /// field_finder lists them; what comes in another order is not known.
+  /// @param grows_m of a patch: how much deeper than in the tick before its samples can be   @rt safe
+  template <class Grows>
+  void begin(const near_samples& found, Grows&& grows_m) noexcept {
+    std::swap(now_, before_);
+    now_.leaves.clear();
+    now_.most_m.clear();
+    std::size_t last = 0;  // leaf of before_
+    for (const near_patch& patch : found.patches()) {
+      const float grown_m = static_cast<float>(grows_m(patch)) + rounding_m;
+      for (const near_leaf& leaf : found.leaves_of(patch)) {
+        const std::size_t count = std::min<std::size_t>(leaf.count, now_.most_m.capacity() - now_.most_m.size());
+        const bool complete = count == leaf.count && (now_.leaves.empty() || now_.leaves.back().complete);
+        const place at{patch.body, !patch.of_probe, leaf.first, static_cast<std::uint32_t>(now_.most_m.size()),
+                       complete};
+        now_.leaves.push_back(at);
+        now_.most_m.resize(at.offset + count, std::numeric_limits<float>::infinity());
+        while (last < before_.leaves.size() && is_before(before_.leaves[last], at)) ++last;
+        if (last == before_.leaves.size() || is_before(at, before_.leaves[last])) continue;
+        const std::size_t from = before_.leaves[last].offset;
+        for (std::size_t i = 0; i < std::min(count, before_.most_m.size() - from); ++i) {
+          now_.most_m[at.offset + i] = before_.most_m[from + i] + grown_m;
+        }
+      }
+    }
+  }
+
+  /// Bounds of a leaf's samples, m; +infinity where nothing is known. Fewer than the leaf has where a leaf is larger
+  /// than the tree's, or the list is full.
+  [[nodiscard]] std::span<float> of(std::size_t leaf) noexcept { return now_.range(leaf, std::span(now_.most_m)); }
+
+  /// What is known of a patch at the pose that was asked for last.
+  struct asked_patch {
+    vec3 r_w{0.0};          ///< from the probe's centre of mass at the tick's pose
+    double radius_m = 0.0;  ///< about it
+    float most_m = 0.0F;    ///< none of its samples is deeper
+    float grown_m = 0.0F;   ///< by what the bounds of its samples have grown since they were written
+  };
+
+  /// Ends the tick: from here on questions are for poses near by, and bounds those of the pose that was asked for last.
+  /// @param r_w of a patch, from the probe's centre of mass   @rt safe
+  template <class Place>
+  void ask(const near_samples& found, Place&& r_w) noexcept {
+    asked_m_.assign(now_.most_m.begin(), now_.most_m.end());
+    asked_.clear();
+    for (const near_patch& patch : found.patches()) {
+      asked_.push_back({.r_w = r_w(patch), .radius_m = patch.ball.radius_m});
+      close(asked_.back(), patch);
+    }
+  }
+  [[nodiscard]] std::span<asked_patch> asked() noexcept { return asked_; }
+  /// The bounds of a leaf's samples, of a patch that is open.
+  [[nodiscard]] std::span<float> asked_of(std::size_t leaf) noexcept { return now_.range(leaf, std::span(asked_m_)); }
+
+  /// The pose that is asked for has moved.
+  static void grow(asked_patch& patch, double by_m) noexcept {
+    patch.grown_m += static_cast<float>(by_m) + rounding_m;
+    patch.most_m += static_cast<float>(by_m) + rounding_m;
+  }
+  /// Brings the bounds of a patch's samples up to date.
+  void open(asked_patch& patch, const near_patch& of) noexcept {
+    for (float& m : samples_of(of)) m += patch.grown_m;
+    patch.grown_m = 0.0F;
+  }
+  /// Notes the largest of the bounds.
+  void close(asked_patch& patch, const near_patch& of) noexcept {
+    const std::span<const float> samples = samples_of(of);
+    patch.most_m = complete(of) ? -std::numeric_limits<float>::infinity() : std::numeric_limits<float>::infinity();
+    for (const float m : samples) patch.most_m = std::max(patch.most_m, m);
+  }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(now_.leaves, now_.most_m, before_.leaves, before_.most_m, asked_m_, asked_);
+  }
+
+ private:
+  static constexpr float rounding_m = 1e-9F;
+
+  struct place {
+    std::uint32_t body;
+    bool of_fixed;
+    const field_sample* first;
+    std::uint32_t offset;
+    bool complete;  // it and all before it
+  };
+  struct list {
+    std::vector<place> leaves;
+    std::vector<float> most_m;
+
+    // A leaf's part of one number per sample.
+    [[nodiscard]] std::span<float> range(std::size_t leaf, std::span<float> of_samples) const noexcept {
+      const std::size_t end = leaf + 1 < leaves.size() ? leaves[leaf + 1].offset : of_samples.size();
+      return of_samples.subspan(leaves[leaf].offset, end - leaves[leaf].offset);
+    }
+  };
+
+  [[nodiscard]] static bool is_before(const place& a, const place& b) noexcept {
+    if (a.body != b.body) return a.body < b.body;
+    if (a.of_fixed != b.of_fixed) return b.of_fixed;
+    return std::less<>{}(a.first, b.first);
+  }
+
+  [[nodiscard]] std::span<float> samples_of(const near_patch& patch) noexcept {
+    if (patch.leaf_count == 0) return {};
+    const std::span<float> first = asked_of(patch.first_leaf);
+    const std::span<float> last = asked_of(patch.first_leaf + patch.leaf_count - 1);
+    return {first.data(), static_cast<std::size_t>(last.data() + last.size() - first.data())};
+  }
+  // Whether every sample of a patch has a bound: not where leaves are larger than a tree's, and the list was full.
+  [[nodiscard]] bool complete(const near_patch& patch) const noexcept {
+    return patch.leaf_count == 0 || now_.leaves[patch.first_leaf + patch.leaf_count - 1].complete;
+  }
+
+  list now_, before_;
+  std::vector<float> asked_m_;
+  std::vector<asked_patch> asked_;
+};
+
+}  // namespace asperity

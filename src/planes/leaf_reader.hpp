@@ -1,0 +1,191 @@
+// How deep the samples of one body lie in another's depth field, and the support planes of those that are deep.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <span>
+
+#include "asperity/core/pose.hpp"
+#include "asperity/field/field_body.hpp"
+#include "asperity/planes/near_samples.hpp"
+#include "field/quick_read.hpp"
+#include "field/quick_relief.hpp"
+#include "planes/ball_bound.hpp"
+
+namespace asperity {
+
+/// Reads samples of a body X in the field of a body Y at one pose. What a sample tells is read in double precision with
+/// exact slopes; quick readings with a stated error only tell which samples need that, so they change no result.
+class leaf_reader {
+ public:
+  /// @param of_probe whether X is the probe; its motion takes Y's field along otherwise, and the slope's sign turns
+  /// @param sinking_m of a sample that looks away, see field_depth   @param work counts what is read
+  leaf_reader(const field_body& x, const pose& T_wx, const field_body& y, const pose& T_wy, std::uint32_t body,
+              bool of_probe, const vec3& c_a_w, double sinking_m, depth_work& work) noexcept
+      : x_(&x),
+        in_y_(&y.field),
+        T_wx_(T_wx),
+        T_yx_(inverse(T_wy) * T_wx),
+        rotation_xy_(glm::conjugate(T_yx_.rotation)),
+        rotation_wy_(T_wy.rotation),
+        body_(body),
+        of_probe_(of_probe),
+        c_a_w_(c_a_w),
+        sinking_m_(sinking_m),
+        work_(&work) {}
+
+  [[nodiscard]] bool reads(const near_patch& patch) const noexcept {
+    return patch.body == body_ && patch.of_probe == of_probe_;
+  }
+
+  /// A leaf's bound at this pose; the leaf may have been listed at another.
+  [[nodiscard]] depth_bound bound_of(const near_leaf& leaf) const noexcept {
+    ++work_->bounded;
+    return bound_of_ball(*in_y_, T_yx_, leaf.ball);
+  }
+
+  /// A slope of Y's field as the derivative of a depth by the probe's position.
+  [[nodiscard]] vec3 by_probe_w(const vec3& slope_y) const noexcept {
+    return (of_probe_ ? 1.0 : -1.0) * (rotation_wy_ * slope_y);
+  }
+  [[nodiscard]] vec3 from_centre_of_mass_w(const vec3& point_x) const noexcept { return T_wx_ * point_x - c_a_w_; }
+
+  /// The plane of the deepest sample that is deeper than above_m; of equals the first.
+  /// @param known upper bounds of the samples' depths, m; made sharper by what is read
+  [[nodiscard]] near_plane deepest(const near_leaf& leaf, const depth_bound& near, double above_m,
+                                   std::span<float> known) const noexcept {
+    near_plane out;
+    sample_depth best;
+    const vec3 centre_y = T_yx_ * leaf.ball.centre_b;
+    std::array<candidate, sample_tree::leaf_samples> of;
+    const std::span<const field_sample> samples = leaf.samples();
+    for (std::size_t first = 0; first < samples.size(); first += of.size()) {
+      std::size_t count = 0;
+      for (std::size_t i = first; i < std::min(samples.size(), first + of.size()); ++i) {
+        double most_m = i < known.size() ? static_cast<double>(known[i]) : depth_bound::unknown;
+        if (most_m > above_m) {
+          most_m = std::min(most_m, most_of(samples[i], centre_y, near, above_m));
+          if (i < known.size()) known[i] = rounded_up(most_m);
+        }
+        if (most_m > above_m) of[count++] = {&samples[i], most_m};
+      }
+      for (;;) {
+        candidate* next = of.data();
+        for (std::size_t i = 1; i < count; ++i) {
+          if (of[i].most_m > next->most_m) next = &of[i];
+        }
+        if (count == 0 || !(next->most_m >= above_m)) break;
+        next->most_m = -std::numeric_limits<double>::infinity();
+        const sample_depth now = exact(*next->sample);
+        const bool first_of_equals = best.sample != nullptr && now.depth_m == best.depth_m && now.sample < best.sample;
+        if (!(now.depth_m > above_m) && !first_of_equals) continue;
+        best = now;
+        above_m = now.depth_m;
+      }
+    }
+    if (best.sample != nullptr) tell(best, out);
+    return out;
+  }
+
+  /// Calls visit(plane) for every sample that is deeper than above_m.
+  /// @param known upper bounds of the samples' depths, m; made sharper by what is read
+  template <class Visit>
+  void each_deeper(const near_leaf& leaf, double above_m, std::span<float> known, Visit&& visit) const noexcept {
+    const std::span<const field_sample> samples = leaf.samples();
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      if (i < known.size() && !(static_cast<double>(known[i]) > above_m)) continue;
+      const double most_m = most_of(samples[i], vec3(0.0), depth_bound{}, above_m);
+      if (i < known.size()) known[i] = rounded_up(most_m);
+      if (!(most_m > above_m)) continue;
+      const sample_depth now = exact(samples[i]);
+      if (!(now.depth_m > above_m)) continue;
+      near_plane out;
+      tell(now, out);
+      visit(out.plane);
+    }
+  }
+
+  /// A bound as it is kept.
+  [[nodiscard]] static float rounded_up(double most_m) noexcept {
+    constexpr float rounding_m = 1e-9F;
+    return static_cast<float>(most_m) + rounding_m;
+  }
+
+ private:
+  struct candidate {
+    const field_sample* sample;
+    double most_m;
+  };
+  struct sample_depth {
+    const field_sample* sample = nullptr;
+    double depth_m = -std::numeric_limits<double>::infinity();
+    vec3 slope_y{0.0};
+  };
+
+  // A sample is no deeper than this: bounds from the cheap to the sharp, as far as they are needed.
+  [[nodiscard]] double most_of(const field_sample& s, const vec3& centre_y, const depth_bound& near,
+                               double above_m) const noexcept {
+    const vec3 p_y = T_yx_ * vec3(s.position_b);
+    const double by_leaf_m = near.most_at(p_y - centre_y);
+    if (!(by_leaf_m > above_m)) return by_leaf_m;
+    ++work_->quick;
+    const detail::quick_reading q = detail::quick_read<detail::quick_part::slope>(in_y_->smooth, p_y);
+    const double smooth_m = q.at.value_m + q.error_m;
+    const double by_highest_m = smooth_m + std::min(near.relief_m, in_y_->highest_relief_m);
+    if (!(by_highest_m > above_m)) return by_highest_m;
+    if (in_y_->smooth.clamped(p_y) != p_y) return smooth_m;
+    const foot_and_fade to = in_y_->foot(p_y, q.at);
+    if (!(to.fade > 0.0)) return smooth_m;
+    return smooth_m + q.error_m + to.fade * detail::quick_relief(in_y_->fine, to.foot_b);
+  }
+
+  [[nodiscard]] sample_depth exact(const field_sample& s) const noexcept {
+    // Half way through a body no way out is shorter than another: a sample there holds nothing.
+    constexpr double least_slope = 0.05;
+    ++work_->exact;
+    const field_reading d = in_y_->read(T_yx_ * vec3(s.position_b));
+    const double squared = glm::dot(d.slope, d.slope);
+    if (!(squared > least_slope * least_slope)) return {};
+    const double facing = glm::dot(vec3(s.axis_b), rotation_xy_ * d.slope) / std::sqrt(squared);
+    const double sunk_m = sinking_m_ * (1.0 - facing_share(facing, static_cast<double>(s.cone_rad)));
+    return {&s, d.value_m - sunk_m, d.slope};
+  }
+
+  // How far a sample whose surface looks away from the direction that it would be pushed in may count: in full up to 35
+  // degrees beyond its cone, since relief leans, and not at all from 60 degrees on.
+  [[nodiscard]] static double facing_share(double cosine, double cone_rad) noexcept {
+    constexpr double full_rad = 35.0 * std::numbers::pi / 180.0, none_rad = 60.0 * std::numbers::pi / 180.0;
+    const double full = std::cos(std::min(cone_rad + full_rad, std::numbers::pi));
+    const double none = std::cos(std::min(cone_rad + none_rad, std::numbers::pi));
+    return full > none ? smoothstep((cosine - none) / (full - none)) : 1.0;
+  }
+
+  void tell(const sample_depth& of, near_plane& out) const noexcept {
+    const vec3 slope_w = by_probe_w(of.slope_y);
+    out.point_w = T_wx_ * vec3(of.sample->position_b);
+    out.plane.depth_m = of.depth_m;
+    out.plane.body = body_;
+    const auto index = static_cast<std::uint32_t>(of.sample - x_->samples.samples().data());
+    out.plane.sample = 2 * index + (of_probe_ ? 1 : 2);
+    out.plane.r_w = out.point_w - c_a_w_;
+    out.plane.gradient = {slope_w, glm::cross(out.plane.r_w, slope_w)};
+    out.plane.n_ab_w = slope_w / std::sqrt(glm::dot(of.slope_y, of.slope_y));
+  }
+
+  const field_body* x_;
+  const body_field* in_y_;
+  pose T_wx_, T_yx_;
+  quat rotation_xy_, rotation_wy_;
+  std::uint32_t body_;
+  bool of_probe_;
+  vec3 c_a_w_;
+  double sinking_m_;
+  depth_work* work_;
+};
+
+}  // namespace asperity

@@ -1,0 +1,127 @@
+// Quick readings and what bounds a field's third derivatives, against exact readings at places drawn anew in each run.
+#include "field/quick_read.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+#include "field/quick_relief.hpp"
+#include "support/fresh_seed.hpp"
+#include "support/small_models.hpp"
+#include "unit/field/field_measures.hpp"
+
+namespace asperity {
+namespace {
+
+using namespace test_support;
+
+const std::vector<body_field>& fields() {
+  static const std::vector<body_field> made = [] {
+    std::vector<body_field> out;
+    out.push_back(built_field(make_textured_box({0.02, 0.015, 0.01}, 256, ridges(50e-6, 2e-3))).value());
+    out.push_back(built_field(make_textured_box({0.2, 0.1, 0.15}, 256, ridges(1e-3, 9e-3))).value());
+    out.push_back(built_field(make_flat_box({0.03, 0.03, 0.0005}, 128)).value());
+    return out;
+  }();
+  return made;
+}
+
+struct places {
+  std::mt19937_64 bits;
+  double unit() { return std::uniform_real_distribution<double>(0.0, 1.0)(bits); }
+  vec3 direction() {
+    std::normal_distribution<double> n;
+    return glm::normalize(vec3(n(bits), n(bits), n(bits)));
+  }
+  // In the grid and a little beyond it.
+  vec3 in(const body_field& f) {
+    const detail::coarse_grid& g = f.smooth;
+    vec3 out;
+    for (int k = 0; k < 3; ++k) {
+      const double last = static_cast<double>(g.nodes[static_cast<std::size_t>(k)]) - 1.0;
+      out[k] = g.low[k] + g.pitch_m * last * (1.1 * unit() - 0.05);
+    }
+    return out;
+  }
+};
+
+TEST(QuickRead, IsWrongByLessThanItSays) {
+  places draw{std::mt19937_64(fresh_seed("QuickRead.IsWrongByLessThanItSays", "20000 points in each of 3 fields"))};
+  for (const body_field& f : fields()) {
+    const double extent = f.smooth.pitch_m;
+    for (int i = 0; i < 20000; ++i) {
+      const vec3 p = draw.in(f);
+      const coarse_reading exact = f.coarse(p);
+      const detail::quick_reading q = detail::quick_read<detail::quick_part::bend>(f.smooth, p);
+      EXPECT_LE(std::fabs(q.at.value_m - exact.value_m), 0.1 * q.error_m);
+      EXPECT_LT(q.error_m, 1e-4 * (std::fabs(exact.value_m) + extent));
+      EXPECT_LT(glm::length(q.at.slope - exact.slope), 2e-5);
+      for (int k = 0; k < 3; ++k) {
+        EXPECT_LT(glm::length(q.at.hessian_per_m[k] - exact.hessian_per_m[k]), 1e-4 / extent);
+      }
+      const detail::quick_reading plain = detail::quick_read<detail::quick_part::slope>(f.smooth, p);
+      EXPECT_EQ(plain.at.value_m, q.at.value_m);
+      EXPECT_EQ(plain.at.slope, q.at.slope);
+      // A depth read by it, as a sample's is.
+      const field_reading relief = f.relief(p, exact);
+      const foot_and_fade to = f.foot(p, q.at);
+      const bool beyond = f.smooth.clamped(p) != p;
+      const double quick_m = beyond ? 0.0 : to.fade * detail::quick_relief(f.fine, to.foot_b);
+      EXPECT_LE(std::fabs(quick_m - relief.value_m), q.error_m + 1e-12);
+    }
+  }
+}
+
+TEST(QuickRelief, IsTheRelief) {
+  places draw{std::mt19937_64(fresh_seed("QuickRelief.IsTheRelief", "20000 points near each of 3 surfaces"))};
+  for (const body_field& f : fields()) {
+    int felt = 0;
+    for (int i = 0; i < 20000; ++i) {
+      vec3 p = draw.in(f);
+      for (int n = 0; n < 8; ++n) p = f.foot(p, f.coarse(p)).foot_b;  // to the surface
+      p += f.fine.pitch_m * draw.unit() * draw.direction();
+      const double exact = f.fine.read(p).value;
+      felt += exact != 0.0 ? 1 : 0;
+      EXPECT_NEAR(detail::quick_relief(f.fine, p), exact, 1e-6 * (f.highest_relief_m - f.lowest_relief_m));
+    }
+    EXPECT_GT(felt, 5000);
+    EXPECT_EQ(detail::quick_relief(f.fine, f.fine.low - 1.0), 0.0);
+  }
+}
+
+// The second-order expansion at a point is wrong by at most a sixth of the bound times the distance's cube.
+TEST(ThirdBounds, HoldInEveryBall) {
+  places draw{std::mt19937_64(fresh_seed("ThirdBounds.HoldInEveryBall", "20000 balls in each of 3 fields"))};
+  for (const body_field& f : fields()) {
+    int known = 0;
+    double sharpest = 0.0;
+    for (int i = 0; i < 20000; ++i) {
+      const vec3 c = draw.in(f);
+      const double radius = f.smooth.pitch_m * std::pow(10.0, -1.0 + 1.9 * draw.unit());
+      const vec3 low = c - radius, high = c + radius;
+      if (f.smooth.clamped(low) != low || f.smooth.clamped(high) != high) continue;
+      const double third = f.most_third.most_per_m2(c, radius);
+      ASSERT_TRUE(std::isfinite(third));
+      ++known;
+      const coarse_reading at = f.coarse(c);
+      for (int n = 0; n < 5; ++n) {
+        const vec3 off = radius * std::cbrt(draw.unit()) * draw.direction();
+        const double far = glm::length(off);
+        const double expanded = at.value_m + glm::dot(at.slope, off) + 0.5 * glm::dot(off, at.hessian_per_m * off);
+        const double wrong = std::fabs(f.coarse(c + off).value_m - expanded);
+        const double allowed = third * far * far * far / 6.0;
+        EXPECT_LE(wrong, allowed + 1e-12);
+        if (allowed > 1e-6 * f.smooth.pitch_m) sharpest = std::max(sharpest, wrong / allowed);
+      }
+    }
+    EXPECT_GT(known, 8000);
+    EXPECT_GT(sharpest, 0.1) << "a bound that is never near is of no use";
+    EXPECT_FALSE(std::isfinite(f.most_third.most_per_m2(f.smooth.low, 9.0 * f.smooth.pitch_m)));
+    EXPECT_FALSE(std::isfinite(f.most_third.most_per_m2(f.smooth.low - 1.0, f.smooth.pitch_m)));
+  }
+}
+
+}  // namespace
+}  // namespace asperity

@@ -1,0 +1,193 @@
+// Which planes a tick of the field renderer tells: what bounds leave out is what nobody meets, and what a renderer knows
+// from ticks before changes nothing.
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "asperity/field/field_body.hpp"
+#include "asperity/planes/field_renderer.hpp"
+#include "planes/ball_bound.hpp"
+#include "support/fresh_seed.hpp"
+#include "support/small_models.hpp"
+
+namespace asperity {
+namespace {
+
+using namespace test_support;
+
+struct bodies {
+  scene of;
+  std::shared_ptr<const field_scene> fields;
+};
+
+const bodies& ridged() {
+  static const bodies made = [] {
+    const auto probe =
+        std::make_shared<const textured_model>(make_textured_box({0.012, 0.01, 0.008}, 256, ridges(60e-6, 1.7e-3)));
+    const auto fixed =
+        std::make_shared<const textured_model>(make_textured_box({0.03, 0.03, 0.01}, 384, ridges(90e-6, 2.3e-3)));
+    const auto small = std::make_shared<const textured_model>(make_flat_box({0.006, 0.009, 0.007}, 128));
+    bodies out{{probe, {fixed, small}}, nullptr};
+    out.fields = std::make_shared<const field_scene>(make_field_scene(out.of).value());
+    return out;
+  }();
+  return made;
+}
+
+field_renderer make_ridged() { return make_field_renderer(ridged().of, ridged().fields).value(); }
+
+struct draws {
+  std::mt19937_64 bits;
+  double unit() { return std::uniform_real_distribution<double>(-1.0, 1.0)(bits); }
+  vec3 vector() { return {unit(), unit(), unit()}; }
+  quat rotation() { return glm::normalize(quat(unit(), unit(), unit(), unit())); }
+};
+
+double deepest_m(const tick& t) {
+  double out = -1.0;
+  for (const support_plane& p : t.planes) out = std::max(out, p.depth_m);
+  return out;
+}
+
+// A probe in any orientation that lies on the bodies with about this depth, between them or on one.
+pose laid_down(draws& draw, field_renderer& feel, const std::vector<pose>& T_wb, double depth_m) {
+  pose T_wa{draw.rotation(), {0.02 * draw.unit(), 0.02 * draw.unit(), 0.03}};
+  tick t;
+  for (int i = 0; i < 100; ++i) {
+    if (feel.step({T_wa, T_wb}, t) != status::ok) break;
+    const double off_m = t.planes.empty() ? -1e-3 : deepest_m(t) - depth_m;
+    if (std::fabs(off_m) < 1e-6) break;
+    T_wa.position.z += std::clamp(off_m, -1e-3, 1e-3);
+  }
+  return T_wa;
+}
+
+void expect_same(std::span<const support_plane> a, std::span<const support_plane> b, int n) {
+  ASSERT_EQ(a.size(), b.size()) << "tick " << n;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].sample, b[i].sample) << "tick " << n;
+    EXPECT_EQ(a[i].body, b[i].body);
+    EXPECT_EQ(a[i].depth_m, b[i].depth_m);
+    EXPECT_EQ(a[i].gradient.angular, b[i].gradient.angular);
+  }
+}
+
+// Steps of a slow hand, of a fast one, and leaps: a renderer that went all the way tells what a new one tells.
+TEST(ToldPlanes, DoNotDependOnTheTicksBefore) {
+  draws draw{std::mt19937_64(fresh_seed("ToldPlanes.DoNotDependOnTheTicksBefore", "40 walks of 20 ticks"))};
+  field_renderer old = make_ridged();
+  const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
+  std::size_t told = 0;
+  for (int walk = 0; walk < 40; ++walk) {
+    pose T_wa = laid_down(draw, old, T_wb, 1e-4 * draw.unit());
+    const double step_m = walk % 3 == 0 ? 1e-6 : (walk % 3 == 1 ? 5e-5 : 3e-4);
+    for (int n = 0; n < 20; ++n) {
+      T_wa.position += step_m * draw.vector();
+      T_wa.rotation = glm::normalize(exp_rotation(20.0 * step_m * draw.vector()) * T_wa.rotation);
+      field_renderer fresh = make_ridged();
+      tick a, b;
+      ASSERT_EQ(old.step({T_wa, T_wb}, a), status::ok);
+      ASSERT_EQ(fresh.step({T_wa, T_wb}, b), status::ok);
+      expect_same(a.planes, b.planes, n);
+      told += a.planes.size();
+      EXPECT_EQ(a.force.on_probe_w.force, b.force.on_probe_w.force);
+      // Questions about poses near by: the old renderer is asked for a few, the new one for the last alone.
+      vec6 moved{};
+      plane_list of_old, of_fresh;
+      for (int q = 0; q < 4; ++q) {
+        moved = {1e-4 * draw.vector(), 3e-3 * draw.vector()};
+        ASSERT_EQ(old.planes_at(moved, -1e-5, of_old) == status::invalid_pose, false);
+      }
+      static_cast<void>(fresh.planes_at(moved, -1e-5, of_fresh));
+      expect_same({of_old.data(), of_old.size()}, {of_fresh.data(), of_fresh.size()}, n);
+    }
+  }
+  EXPECT_GT(told, 10'000U);
+}
+
+// Every sample that is near has a plane beside it that is as deep, at the tick's pose and at poses that are asked for.
+TEST(ToldPlanes, HoldEverySampleThatIsNear) {
+  draws draw{std::mt19937_64(fresh_seed("ToldPlanes.HoldEverySampleThatIsNear", "60 poses"))};
+  field_renderer feel = make_ridged();
+  const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
+  const vec3 c_a = feel.scene().probe->mass.centre_of_mass;
+  int near = 0, asked_near = 0;
+  for (int n = 0; n < 60; ++n) {
+    const pose T_wa = laid_down(draw, feel, T_wb, n % 2 == 0 ? 2e-6 : 3e-4);
+    tick t;
+    ASSERT_EQ(feel.step({T_wa, T_wb}, t), status::ok);
+    const vec6 moved{5e-6 * draw.vector(), 1e-4 * draw.vector()};
+    plane_list asked;
+    const bool all_asked = feel.planes_at(moved, -1e-5, asked) == status::ok;
+    const quat turn = exp_rotation(moved.angular);
+    const vec3 c_w = T_wa * c_a;
+    const pose moved_wa{glm::normalize(turn * T_wa.rotation), c_w + moved.linear + turn * (T_wa.position - c_w)};
+    const auto look = [&](const pose& T, std::span<const support_plane> planes, double above_m, double beside_m,
+                          int& count) {
+      for (std::size_t b = 0; b < T_wb.size(); ++b) {
+        const field_body &A = *ridged().fields->probe, &B = *ridged().fields->fixed[b];
+        for (const bool of_probe : {true, false}) {
+          const field_body &x = of_probe ? A : B, &y = of_probe ? B : A;
+          const pose T_wx = of_probe ? T : T_wb[b], T_yx = inverse(of_probe ? T_wb[b] : T) * T_wx;
+          for (const field_sample& s : x.samples.samples()) {
+            const vec3 p_y = T_yx * vec3(s.position_b);
+            if (y.field.coarse(p_y).value_m + y.field.highest_relief_m < above_m) continue;
+            const field_reading d = y.field.read(p_y);
+            const double steep = glm::length(d.slope);
+            // One that looks away sinks, and holds nothing.
+            const double facing = glm::dot(T_yx.rotation * vec3(s.axis_b), d.slope) / std::max(1e-9, steep);
+            if (!(d.value_m > above_m) || !(steep > 0.06) || !(facing > 0.9)) continue;
+            ++count;
+            const vec3 r_w = T_wx * vec3(s.position_b) - T * c_a;
+            const bool held = std::any_of(planes.begin(), planes.end(), [&](const support_plane& p) {
+              return p.body == b && p.depth_m >= d.value_m && glm::length(p.r_w - r_w) <= beside_m;
+            });
+            EXPECT_TRUE(held) << "pose " << n << ", depth " << 1e6 * d.value_m << " um";
+          }
+        }
+      }
+    };
+    const double leaf_m = 0.003 * 8.0 * feel.scene().fixed[0]->box.diagonal();
+    look(T_wa, t.planes, -0.99e-4, leaf_m, near);
+    if (all_asked) look(moved_wa, {asked.data(), asked.size()}, -0.99e-5, 1e-9, asked_near);
+  }
+  EXPECT_GT(near, 1000);
+  EXPECT_GT(asked_near, 30);
+}
+
+// No sample of a ball is deeper than its bound, for balls of samples anywhere beside another body.
+TEST(ToldPlanes, BallsBoundTheirSamples) {
+  draws draw{std::mt19937_64(fresh_seed("ToldPlanes.BallsBoundTheirSamples", "30 poses"))};
+  const field_body &A = *ridged().fields->probe, &B = *ridged().fields->fixed[0];
+  int balls = 0;
+  double sum_over_m = 0.0;
+  for (int n = 0; n < 30; ++n) {
+    const pose T_ba{draw.rotation(), vec3(0.035, 0.035, 0.015) * draw.vector()};
+    A.samples.query(
+        [&](const sample_ball& ball, bool is_leaf) noexcept {
+          if (is_leaf) return sample_tree::branch_answer::taken;
+          return ball.radius_m < 1.5e-3 ? sample_tree::branch_answer::taken : sample_tree::branch_answer::open;
+        },
+        [&](const sample_ball& ball, std::span<const field_sample> samples) noexcept {
+          const depth_bound bound = bound_of_ball(B.field, T_ba, ball);
+          double most_m = -1.0;
+          for (const field_sample& s : samples) {
+            const vec3 p_b = T_ba * vec3(s.position_b);
+            const double depth_m = B.field.read(p_b).value_m;
+            most_m = std::max(most_m, depth_m);
+            EXPECT_LE(depth_m, bound.most_at(p_b - T_ba * ball.centre_b));
+          }
+          EXPECT_LE(most_m, bound.most_m);
+          ++balls;
+          sum_over_m += bound.most_m - most_m;
+        });
+  }
+  EXPECT_GT(balls, 2000);
+  EXPECT_LT(sum_over_m / balls, 1.2e-3) << "on average a bound is too large by this";
+}
+
+}  // namespace
+}  // namespace asperity
