@@ -385,8 +385,10 @@ TEST_F(documents, devices) {
 TEST_F(documents, bench) {
   const json d =
       expect_document({"bench", "--probe", block(), "--fixed", block(), "--poses", "50"}, "asperity.bench/1");
-  expect_keys(d["seconds"],
-              {"collision_query", "contact_soft", "contact_central", "tick_shared", "tick_soft", "tick_central"});
+  expect_keys(d["seconds"], {"collision_query", "contact_soft", "contact_central", "tick_planes", "every_sample",
+                             "tick_shared", "tick_soft", "tick_central"});
+  expect_keys(d["samples"], {"near", "leaves_bounded", "read_quickly", "read_exactly"});
+  EXPECT_GT(d["samples"]["near"], d["samples"]["read_exactly"]);
   for (const auto& [what, times] : d["seconds"].items()) {
     EXPECT_GT(times["p50"], 0.0) << what;
     EXPECT_GE(times["p99"], times["p50"]) << what;

@@ -52,6 +52,13 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
   const time_summary shared_tick = summarise(m.shared_tick_s);
   const time_summary soft_tick = summarise(m.soft_tick_s);
   const time_summary central_tick = summarise(m.central_tick_s);
+  const time_summary planes_tick = summarise(m.planes_tick_s);
+  const time_summary every_sample = summarise(m.every_sample_s);
+  const auto mean_of = [&](std::uint32_t depth_work::*part) {
+    double sum = 0.0;
+    for (const depth_work& w : m.planes_work) sum += static_cast<double>(w.*part);
+    return sum / static_cast<double>(m.planes_work.size());
+  };
   double contacts = 0.0;
   for (const double n : m.contacts) contacts += n / static_cast<double>(m.contacts.size());
   const double most = *std::max_element(m.contacts.begin(), m.contacts.end());
@@ -65,16 +72,25 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                   {"poses", options.motion.poses},
                   {"seed", options.motion.seed},
                   {"contacts", {{"mean", contacts}, {"max", most}}},
+                  {"samples",
+                   {{"near", mean_of(&depth_work::listed)},
+                    {"leaves_bounded", mean_of(&depth_work::bounded)},
+                    {"read_quickly", mean_of(&depth_work::quick)},
+                    {"read_exactly", mean_of(&depth_work::exact)}}},
                   {"time_is", "cpu"},
                   {"seconds",
                    {{"collision_query", to_json(query)},
                     {"contact_soft", to_json(soft)},
                     {"contact_central", to_json(central)},
+                    {"tick_planes", to_json(planes_tick)},
+                    {"every_sample", to_json(every_sample)},
                     {"tick_shared", to_json(shared_tick)},
                     {"tick_soft", to_json(soft_tick)},
                     {"tick_central", to_json(central_tick)}}},
                   {"ratios",
                    {{"contact_central_to_soft", central.p50_s / soft.p50_s},
+                    {"every_sample_to_tick_planes", every_sample.p50_s / planes_tick.p50_s},
+                    {"tick_planes_p99_to_p50", planes_tick.p99_s / planes_tick.p50_s},
                     {"tick_shared_to_soft", shared_tick.p50_s / soft_tick.p50_s},
                     {"tick_shared_to_soft_p99", shared_tick.p99_s / soft_tick.p99_s},
                     {"tick_central_to_soft", central_tick.p50_s / soft_tick.p50_s},
@@ -83,7 +99,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                     {"tick_soft_p99_to_p50", soft_tick.p99_s / soft_tick.p50_s},
                     {"tick_central_p99_to_p50", central_tick.p99_s / central_tick.p50_s}}},
                   {"rates_hz",
-                   {{"tick_shared", 1.0 / shared_tick.p50_s},
+                   {{"tick_planes", 1.0 / planes_tick.p50_s},
+                    {"tick_shared", 1.0 / shared_tick.p50_s},
                     {"tick_soft", 1.0 / soft_tick.p50_s},
                     {"tick_central", 1.0 / central_tick.p50_s}}},
                   {"units", "SI"}};
@@ -96,6 +113,13 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
   out.text += row("contact, soft maximum", to_text(soft));
   out.text +=
       row("contact, central diff.", to_text(central) + "  (" + ratio_text(central.p50_s / soft.p50_s) + " soft)");
+  out.text += row("tick, planes", to_text(planes_tick) + "  (" + brief(1.0 / planes_tick.p50_s) + " Hz)");
+  out.text += row("all near samples", to_text(every_sample) + "  (" +
+                                          ratio_text(every_sample.p50_s / planes_tick.p50_s) + " tick, planes)");
+  out.text +=
+      row("samples of that tick", brief(mean_of(&depth_work::listed)) + " near, " + brief(mean_of(&depth_work::quick)) +
+                                      " read quickly, " + brief(mean_of(&depth_work::exact)) + " exactly; " +
+                                      brief(mean_of(&depth_work::bounded)) + " leaves bounded");
   out.text += row("tick, one potential", to_text(shared_tick) + "  (" + brief(1.0 / shared_tick.p50_s) + " Hz, " +
                                              ratio_text(shared_tick.p50_s / soft_tick.p50_s) + " soft)");
   out.text += row("tick, soft maximum", to_text(soft_tick) + "  (" + brief(1.0 / soft_tick.p50_s) + " Hz, " +

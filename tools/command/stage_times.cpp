@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "approach.hpp"
+#include "asperity/field/field_body.hpp"
 #include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/planes/field_renderer.hpp"
 #include "asperity/window/paper_renderer.hpp"
 #include "cpu_clock.hpp"
 #include "interrupt.hpp"
@@ -36,6 +38,37 @@ std::vector<pose> scrubbing_path(const pose& touch, const scrubbing& motion, dou
   return path;
 }
 
+/// A pose whose deepest sample is at the surface, as a loop keeps it.
+pose lifted(field_renderer& feel, scene_pose at) {
+  pose T_wa = at.T_wa;
+  for (int i = 0; i < 4; ++i) {
+    tick found;
+    static_cast<void>(feel.step({T_wa, at.T_wb}, found));
+    double deepest_m = -1.0;
+    for (const support_plane& p : found.planes) deepest_m = std::max(deepest_m, p.depth_m);
+    if (found.planes.empty()) break;
+    T_wa.position.z += deepest_m;
+  }
+  return T_wa;
+}
+
+/// The largest depth of all samples that the last tick found near, each of them read in full.
+double deepest_of_all(field_renderer& feel, const scene_pose& at) {
+  const field_scene& fields = feel.depth().bodies();
+  double deepest_m = -1.0;
+  for (const near_patch& patch : feel.found().patches()) {
+    const pose T_ba = inverse(at.T_wb[patch.body]) * at.T_wa;
+    const pose T_yx = patch.of_probe ? T_ba : inverse(T_ba);
+    const body_field& in_y = patch.of_probe ? fields.fixed[patch.body]->field : fields.probe->field;
+    for (const near_leaf& leaf : feel.found().leaves_of(patch)) {
+      for (const field_sample& s : leaf.samples()) {
+        deepest_m = std::max(deepest_m, in_y.read(T_yx * vec3(s.position_b)).value_m);
+      }
+    }
+  }
+  return deepest_m;
+}
+
 }  // namespace
 
 result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, progress_line& progress) {
@@ -48,6 +81,9 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
   if (!soft) return soft.error();
   result<paper_renderer> central = make_paper_renderer(bodies, central_settings);
   if (!central) return central.error();
+
+  result<field_renderer> planes = make_field_renderer(bodies, {.reach_m = reach_for(1e-3)});
+  if (!planes) return planes.error();
 
   const std::vector<pose> T_wb(bodies.fixed.size());
   const step_function step = [&](const scene_pose& at, tick& found) { return soft->step(at, found); };
@@ -77,7 +113,11 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
       time(out.soft_contact_s, share, [&] { return soft->depth().measure(at, contacts, found); });
       time(out.central_contact_s, share, [&] { return central->depth().measure(at, contacts, found); });
     }
+    const scene_pose at_surface{lifted(*planes, at), T_wb};
     tick found;
+    time(out.planes_tick_s, 1.0, [&] { return planes->step(at_surface, found); });
+    out.planes_work.push_back(planes->depth().work());
+    time(out.every_sample_s, 1.0, [&] { return deepest_of_all(*planes, at_surface); });
     time(out.shared_tick_s, 1.0, [&] { return shared->step(at, found); });
     time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
     time(out.central_tick_s, 1.0, [&] { return central->step(at, found); });

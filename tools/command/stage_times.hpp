@@ -7,6 +7,7 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/planes/near_samples.hpp"
 #include "progress.hpp"
 
 namespace asperity::command {
@@ -22,10 +23,13 @@ struct stage_times {
   std::vector<double> query_s;
   std::vector<double> soft_contact_s, central_contact_s;
   std::vector<double> shared_tick_s, soft_tick_s, central_tick_s;
+  std::vector<double> planes_tick_s;   ///< of the field renderer, with the probe at the surface, as a loop keeps it
+  std::vector<double> every_sample_s;  ///< what reading all samples that such a tick finds near would take
+  std::vector<depth_work> planes_work;
   std::vector<double> contacts;
 };
 
-/// Times both formulations on the same path, which scrubs over the place where the probe first touches.
+/// Times all formulations on the same path, which scrubs over the place where the probe first touches.
 /// @return invalid_argument (nothing is touched) | cancelled | what make_renderer() says
 [[nodiscard]] result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, progress_line& progress);
 

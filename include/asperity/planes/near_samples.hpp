@@ -102,13 +102,14 @@ class near_samples {
     patches_.back().leaf_count = 0;
     return true;
   }
-  /// @pre a patch was begun
+  /// Adds a leaf to the last patch; where none was begun, to one that says nothing.
   /// @return false where the limit was hit: the leaf is dropped and counted   @rt safe
   bool add(const near_leaf& leaf) noexcept {
     if (leaves_.size() == limits_.leaves) {
       ++dropped_;
       return false;
     }
+    if (patches_.empty()) static_cast<void>(begin({}));
     leaves_.push_back(leaf);
     ++patches_.back().leaf_count;
     return true;

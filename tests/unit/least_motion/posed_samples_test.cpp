@@ -137,7 +137,7 @@ TEST(ReliefBounds, HoldForEveryFootInABall) {
     vec3 step;
     do step = draw.vector();
     while (glm::dot(step, step) > 1.0);
-    const double bound = body.most_relief.most_m(c, radius);
+    const double bound = body.body->field.most_relief.most_m(c, radius);
     ASSERT_LE(body.body->field.fine.read(c + radius * step).value, bound + 1e-12);
     highest = std::max(highest, bound);
     if (radius > 0.1 * mm) continue;

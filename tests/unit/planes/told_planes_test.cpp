@@ -2,6 +2,7 @@
 // from ticks before changes nothing.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <gtest/gtest.h>
 #include <memory>
 #include <random>
@@ -156,6 +157,46 @@ TEST(ToldPlanes, HoldEverySampleThatIsNear) {
   }
   EXPECT_GT(near, 1000);
   EXPECT_GT(asked_near, 30);
+}
+
+// A hand turns by 5 rad/s and slides by 0.1 m/s. Where it is after a period of a loop, planes of the pose before know how
+// deep it is; those that are near alone do not.
+TEST(ToldPlanes, KnowWhatMotionsMeetFirst) {
+  draws draw{std::mt19937_64(fresh_seed("ToldPlanes.KnowWhatMotionsMeetFirst", "60 poses, 20 motions each"))};
+  field_renderer feel = make_ridged();
+  const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
+  const vec3 c_a = feel.scene().probe->mass.centre_of_mass;
+  int met = 0, unknown = 0, unknown_to_near = 0;
+  for (int n = 0; n < 60; ++n) {
+    const pose T_wa = laid_down(draw, feel, T_wb, 2e-6);
+    tick t;
+    ASSERT_EQ(feel.step({T_wa, T_wb}, t), status::ok);
+    const std::vector<support_plane> before(t.planes.begin(), t.planes.end());
+    for (int m = 0; m < 20; ++m) {
+      const double turn_rad = m % 2 == 0 ? 5e-3 : 4e-2;
+      const vec6 moved{5e-5 * draw.vector(), turn_rad * glm::normalize(draw.vector())};
+      const quat turn = exp_rotation(moved.angular);
+      const vec3 c_w = T_wa * c_a;
+      const pose there{glm::normalize(turn * T_wa.rotation), c_w + moved.linear + turn * (T_wa.position - c_w)};
+      ASSERT_EQ(feel.step({there, T_wb}, t), status::ok);
+      const double true_m = deepest_m(t);
+      if (!(true_m > 2e-5)) continue;
+      double said_m = -1.0, near_said_m = -1.0;
+      for (const support_plane& p : before) {
+        const double there_m = p.depth_m + dot(p.gradient, moved);
+        said_m = std::max(said_m, there_m);
+        if (p.depth_m > -2e-5) near_said_m = std::max(near_said_m, there_m);
+      }
+      ++met;
+      unknown += said_m < 0.5 * true_m ? 1 : 0;
+      unknown_to_near += near_said_m < 0.5 * true_m ? 1 : 0;
+    }
+  }
+  std::printf("  of %d motions into a body %d were not known, and %d would not be by near planes alone\n", met, unknown,
+              unknown_to_near);
+  EXPECT_GT(met, 300);
+  EXPECT_LT(unknown, 0.02 * met);
+  EXPECT_GT(unknown_to_near, 2 * unknown + 4);
 }
 
 // No sample of a ball is deeper than its bound, for balls of samples anywhere beside another body.
