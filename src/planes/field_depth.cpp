@@ -132,7 +132,7 @@ void field_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
   std::array<std::uint32_t, bins + 1> first{};
   const auto bin_of = [&](const near_patch& p) noexcept {
     const double from_top = (reach_m_ - p.in_other.most_m) * static_cast<double>(bins) / (2.0 * reach_m_);
-    return static_cast<std::size_t>(std::clamp(from_top, 0.0, static_cast<double>(bins - 1)));
+    return from_top > 0.0 ? static_cast<std::size_t>(std::min(from_top, static_cast<double>(bins - 1))) : 0;
   };
   for (const near_patch& p : patches) ++first[bin_of(p) + 1];
   for (std::size_t b = 0; b < bins; ++b) first[b + 1] += first[b];

@@ -15,9 +15,9 @@
 
 namespace asperity::detail {
 
-/// The largest third derivative of a spline about blocks of 2, 4, 8 and 16 cells a side: how far off its second-order expansion at a
-/// point can be next to it. A cubic B-spline's third derivatives are averages of its coefficients' third differences,
-/// so the largest of these bounds them. Made once, beside the grid; never changed.
+/// The largest third derivative of a spline about blocks of 2, 4, 8 and 16 cells a side: how far off its second-order
+/// expansion at a point can be next to it. A cubic B-spline's third derivatives are averages of its coefficients'
+/// third differences, so the largest of these bounds them. Made once, beside the grid; never changed.
 class third_bounds {
  public:
   third_bounds() = default;
@@ -41,8 +41,8 @@ class third_bounds {
     for (std::size_t l = 1; l < levels_.size(); ++l) levels_[l] = coarser(levels_[l - 1]);
   }
 
-  /// No third derivative within radius_m of a point is larger (Frobenius norm), 1/m^2. Infinity where the radius is more
-  /// than eight pitches, and where the point is outside the grid.
+  /// No third derivative within radius_m of a point is larger (Frobenius norm), 1/m^2. Infinity where the radius is
+  /// more than eight pitches, and where the point is outside the grid.
   /// @pre the ball is inside the grid's clamped() region   @rt safe: one number
   [[nodiscard]] double most_per_m2(const vec3& p_b, double radius_m) const noexcept {
     constexpr double unknown = std::numeric_limits<double>::infinity();
@@ -129,7 +129,7 @@ class third_bounds {
     for (std::size_t k = 0; k < axis; ++k) step *= along[k];
     const std::size_t n = along[axis];
     for (std::size_t first = 0; first < most.size(); first += step * n) {
-      // Two rounds of a neighbour each; from the end, so that the second round's neighbour is still as the first left it.
+      // Two rounds of the next neighbour, then one of the last: each reads what its own round has not changed yet.
       for (std::size_t i = 0; i + 1 < n; ++i) raise(most.data() + first + i * step, 1, step);
       for (std::size_t i = 0; i + 1 < n; ++i) raise(most.data() + first + i * step, 1, step);
       for (std::size_t i = n - 1; i > 0; --i) raise(most.data() + first + i * step, -1, step);

@@ -11,9 +11,9 @@
 
 namespace asperity {
 
-/// Lists the leaves of samples whose depth may be more than -reach: of the probe in each fixed body's field, and of
-/// each fixed body in the probe's. It keeps nothing between ticks, and what it lists decides nothing: a leaf too many
-/// gives planes that are far from active.
+/// Lists the patches of samples whose depth may be more than -reach, with a bound of it: of the probe in each fixed
+/// body's field, and of each fixed body in the probe's. It keeps nothing between ticks, and what it lists decides
+/// nothing: a patch too many gives planes that are far from active.
 class ASPERITY_API field_finder {
  public:
   using policy_tag = collision_tag;

@@ -13,8 +13,9 @@
 
 namespace asperity {
 
-/// Tells the support planes of a pose, gaps included. A control loop that is given them cannot be pressed through a
-/// body: its device thread keeps the probe on the near side of every plane.
+/// Tells the support planes of a pose, gaps included: those that a hand can meet in a period, see field_depth. A
+/// control loop that is given them cannot be pressed through a body: its device thread keeps the probe on the near
+/// side of every plane.
 using field_renderer = basic_renderer<field_finder, field_depth, plane_springs>;
 
 /// Settings of make_field_renderer().

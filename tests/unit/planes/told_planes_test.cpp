@@ -1,5 +1,5 @@
-// Which planes a tick of the field renderer tells: what bounds leave out is what nobody meets, and what a renderer knows
-// from ticks before changes nothing.
+// Which planes a tick of the field renderer tells: what bounds leave out is what nobody meets, and what a renderer
+// knows from ticks before changes nothing.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -159,8 +159,8 @@ TEST(ToldPlanes, HoldEverySampleThatIsNear) {
   EXPECT_GT(asked_near, 30);
 }
 
-// A hand turns by 5 rad/s and slides by 0.1 m/s. Where it is after a period of a loop, planes of the pose before know how
-// deep it is; those that are near alone do not.
+// A hand turns by 5 rad/s and slides by 0.1 m/s. Where it is after a period of a loop, planes of the pose before know
+// how deep it is; those that are near alone do not.
 TEST(ToldPlanes, KnowWhatMotionsMeetFirst) {
   draws draw{std::mt19937_64(fresh_seed("ToldPlanes.KnowWhatMotionsMeetFirst", "60 poses, 20 motions each"))};
   field_renderer feel = make_ridged();
