@@ -11,7 +11,8 @@
 
 namespace asperity::detail {
 
-/// relief_bricks::read(), its value alone, at less cost: the three nodes along x lie in one row of four, or in two rows of neighbouring bricks. Wrong by less than 1e-6 of the largest coefficient.
+/// relief_bricks::read(), its value alone, at less cost: the three nodes along x lie in one row of four, or in
+/// two rows of neighbouring bricks. Wrong by less than 1e-6 of the largest coefficient.
 /// @rt safe: 27 nodes
 [[nodiscard]] inline double quick_relief(const relief_bricks& of, const vec3& p_b) noexcept {
   constexpr std::size_t side = relief_bricks::side;

@@ -13,8 +13,8 @@
 namespace asperity {
 
 /// Bounds the depth of all samples of a ball of a body X in the field of Y; T_yx takes X's frame to Y's. The smooth
-/// part grows by its second-order expansion at the centre and what its third derivatives can add; the relief is at most the
-/// highest at the feet of the ball's points, which lie next to the centre's.
+/// part grows by its second-order expansion at the centre and what its third derivatives can add; the relief is at most
+/// the highest at the feet of the ball's points, which lie next to the centre's.
 /// @rt safe
 [[nodiscard]] inline depth_bound bound_of_ball(const body_field& in_y, const pose& T_yx,
                                                const sample_ball& ball_x) noexcept {

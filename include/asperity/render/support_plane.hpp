@@ -31,8 +31,8 @@ struct support_plane {
 
 /// A stage of a renderer that knows the support planes of its last tick, gaps included. Gaps should be told up to
 /// 3 v T, v the fastest approach and T the contact loop's period: a contact is handed over a period after its pose and
-/// used for another, and what is not told by then is met by surprise. A gap behind others that every motion meets before
-/// it need not be told.
+/// used for another, and what is not told by then is met by surprise. A gap behind others that every motion meets
+/// before it need not be told.
 /// The order of the planes must not depend on addresses or time. The span lives until the next tick.
 template <class P>
 concept tells_support_planes = requires(const P& stage) {
