@@ -69,7 +69,7 @@ field_depth::field_depth(std::shared_ptr<const field_scene> bodies, const scene&
     : bodies_(std::move(bodies)),
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
-      always_m_(reach_m / 18.0),
+      always_m_(reach_m / 9.0),
       ways_(of.fixed.size()),
       watch_(std::make_unique<field_watch>(*bodies_, of)),
       met_(std::make_unique<first_met>(trials_within(reach_m))),

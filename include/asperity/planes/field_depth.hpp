@@ -32,8 +32,8 @@ class leaf_reader;
 /// can be sideways, where the bodies would not slide apart. A sample therefore sinks, by up to 3 % of the smallest
 /// body's diagonal, as the way turns from where its own surface looks: the plane leaves without a step.
 ///
-/// Surface that lies no further than an eighteenth of the reach is told in full. Of what is further away, the planes
-/// are told that a motion of a loop's period can meet first (first_met): a patch that lies behind other surface after
+/// Surface that lies no further than a ninth of the reach is told in full. Of what is further away, the planes
+/// are told that a motion of up to five periods can meet first (first_met): a patch that lies behind other surface after
 /// every such motion has none. Whether it does follows from bounds of patches and leaves, so most samples are not read;
 /// what is told has exact depths and slopes. What earlier ticks know of samples spares readings as well and changes
 /// nothing: planes follow from the pose alone.
