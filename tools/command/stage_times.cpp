@@ -52,21 +52,23 @@ pose lifted(field_renderer& feel, scene_pose at) {
   return T_wa;
 }
 
-/// The largest depth of all samples that the last tick found near, each of them read in full.
-double deepest_of_all(field_renderer& feel, const scene_pose& at) {
+/// The sum of depths and slopes of all samples that the last tick found near, each of them read in full: a number that
+/// no compiler can do without a reading for.
+double sum_of_all(field_renderer& feel, const scene_pose& at) {
   const field_scene& fields = feel.depth().bodies();
-  double deepest_m = -1.0;
+  double sum = 0.0;
   for (const near_patch& patch : feel.found().patches()) {
     const pose T_ba = inverse(at.T_wb[patch.body]) * at.T_wa;
     const pose T_yx = patch.of_probe ? T_ba : inverse(T_ba);
     const body_field& in_y = patch.of_probe ? fields.fixed[patch.body]->field : fields.probe->field;
     for (const near_leaf& leaf : feel.found().leaves_of(patch)) {
       for (const field_sample& s : leaf.samples()) {
-        deepest_m = std::max(deepest_m, in_y.read(T_yx * vec3(s.position_b)).value_m);
+        const field_reading d = in_y.read(T_yx * vec3(s.position_b));
+        sum += d.value_m + d.slope.x + d.slope.y + d.slope.z;
       }
     }
   }
-  return deepest_m;
+  return sum;
 }
 
 }  // namespace
@@ -117,7 +119,10 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
     tick found;
     time(out.planes_tick_s, 1.0, [&] { return planes->step(at_surface, found); });
     out.planes_work.push_back(planes->depth().work());
-    time(out.every_sample_s, 1.0, [&] { return deepest_of_all(*planes, at_surface); });
+    time(out.every_sample_s, 1.0, [&] {
+      out.sum_of_samples += sum_of_all(*planes, at_surface);
+      return status::ok;
+    });
     time(out.shared_tick_s, 1.0, [&] { return shared->step(at, found); });
     time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
     time(out.central_tick_s, 1.0, [&] { return central->step(at, found); });
