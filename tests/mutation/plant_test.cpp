@@ -24,7 +24,7 @@ namespace outer::inner { namespace {
 // void commented() { return; }
 struct limits { double peak = 10'000.0; int hold{20}; };
 template <class T, int n = (3 > 2)>
-class box final : public base<T> {
+class SHOWN box final : public base<T> {
  public:
   explicit box(int a, double b) : a_(a), b_{b}, c_(f({1, 2})) { if (a > 0) a_ = min(a, max(b, 1)); }
   ~box() { close(); }
@@ -148,8 +148,10 @@ TEST(catalogue, can_be_planted_in_the_sources_as_they_are) {
       const result<std::string> source = read_text(root + '/' + b.file);
       ASSERT_TRUE(source) << source.error().message;
       const result<std::string> broken = plant(*source, b);
-      ASSERT_TRUE(broken) << broken.error().message;
-      EXPECT_NE(*broken, *source) << b.name;
+      EXPECT_TRUE(broken) << broken.error().message;
+      if (broken) {
+        EXPECT_NE(*broken, *source) << b.name;
+      }
     }
   }
 }

@@ -90,11 +90,12 @@ class finder {
     return (name.empty() ? "(unnamed)" : name) + "::";
   }
 
+  // The last word before what a class begins with: words in front of it are macros, which say what a library shows.
   [[nodiscard]] std::string class_name(std::size_t i, std::size_t open) const {
     for (; i < open; ++i) {
       if (text(i) == "[" || text(i) == "(") {
         i = closing(*tokens_, i);
-      } else if (is_word(text(i)) && text(i) != "alignas") {
+      } else if (is_word(text(i)) && text(i) != "alignas" && (!is_word(text(i + 1)) || text(i + 1) == "final")) {
         return std::string(text(i));
       }
     }

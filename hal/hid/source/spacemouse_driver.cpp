@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "asperity/drivers/hid/descriptor_parser.hpp"
+#include "asperity/drivers/hid/report_descriptor.hpp"
 #include "asperity/drivers/spacemouse/products.hpp"
 
 namespace asperity::hid {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <asperity/drivers/hid/descriptor_parser.hpp>
+#include <asperity/drivers/hid/report_descriptor.hpp>
 
 #include "hal/peers/hid_items.hpp"
 #include "rt/tick_trap.hpp"

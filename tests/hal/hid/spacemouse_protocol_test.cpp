@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <asperity/drivers/hid/descriptor_parser.hpp>
+#include <asperity/drivers/hid/report_descriptor.hpp>
 #include <asperity/drivers/spacemouse/products.hpp>
 #include <asperity/drivers/spacemouse/protocol.hpp>
 

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "asperity/drivers/falcon/falcon_device.hpp"
+#include "asperity/drivers/falcon/falcon_leg.hpp"
 
 namespace {
 

@@ -1,9 +1,9 @@
 // The host on a CANopen bus: SYNC for all drives, and our own sign of life.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
+#include "asperity/core/export.hpp"
 #include "asperity/drivers/canopen/frames.hpp"
 #include "asperity/drivers/joint/bus_service.hpp"
 
@@ -19,27 +19,14 @@ struct canopen_master_settings {
 /// that stops ticking stops the heartbeat, and every drive on the bus then stops by itself (object 1016).
 /// One per bus.
 /// @rt safe
-class canopen_master final : public bus_service {
+class ASPERITY_API canopen_master final : public bus_service {
  public:
   explicit canopen_master(const canopen_master_settings& settings = {}) noexcept : settings_(settings) {}
 
-  [[nodiscard]] io_status step(std::int64_t now_ns, can_bus& bus) noexcept override {
-    const io_status synced = bus.send(now_ns, canopen::encode_sync());
-    if (beaten_ && now_ns - beat_ns_ < settings_.heartbeat_every_ns) return synced;
-    const io_status beat = bus.send(now_ns, canopen::encode_heartbeat(settings_.node, canopen::nmt_state::operational));
-    if (beat == io_status::ok) {
-      beaten_ = true;
-      beat_ns_ = now_ns;
-    }
-    return synced == io_status::ok ? beat : synced;
-  }
+  [[nodiscard]] io_status step(std::int64_t now_ns, can_bus& bus) noexcept override;
 
   /// Ends the supervision of our heartbeat, which would otherwise find the end of a session to be a fault.
-  void finish(std::int64_t now_ns, can_bus& bus) noexcept override {
-    beaten_ = false;
-    if (!settings_.reset_when_finished) return;
-    static_cast<void>(bus.send(now_ns, canopen::encode_nmt(canopen::nmt_command::reset_communication, 0)));
-  }
+  void finish(std::int64_t now_ns, can_bus& bus) noexcept override;
 
  private:
   canopen_master_settings settings_;

@@ -1,11 +1,11 @@
 // How a configuration gets into a drive: one object after another, each asked for until it is answered.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 
+#include "asperity/core/export.hpp"
 #include "asperity/drivers/canopen/cia402_setup.hpp"
 #include "asperity/drivers/canopen/frames.hpp"
 #include "asperity/drivers/joint/joint_drive.hpp"
@@ -14,20 +14,10 @@ namespace asperity::canopen {
 
 /// The requests of setup_of(), over SDO, behind the NMT command that makes the drive take them.
 /// @rt safe after construction
-class setup_dialogue {
+class ASPERITY_API setup_dialogue {
  public:
-  explicit setup_dialogue(const cia402_settings& settings)
-      : steps_(setup_of(settings)),
-        rated_m_n_m_(settings.rated_torque_n_m * 1000.0),
-        answer_limit_ns_(settings.answer_limit_ns),
-        most_tries_(settings.answer_tries),
-        node_(settings.node) {}
-
-  void restart() noexcept {
-    next_ = 0;
-    tries_ = 0;
-    asked_ = told_pre_operational_ = false;
-  }
+  explicit setup_dialogue(const cia402_settings& settings);
+  void restart() noexcept;
   [[nodiscard]] bool done() const noexcept { return next_ >= steps_.size(); }
   /// Object that is being read or written; index 0 once all are.
   [[nodiscard]] object_address object() const noexcept { return done() ? object_address{} : steps_[next_].at; }
@@ -35,29 +25,11 @@ class setup_dialogue {
   /// Whether a frame has to go out: nothing was asked yet, or its answer is overdue. @pre !done()
   [[nodiscard]] bool is_due(std::int64_t now_ns) const noexcept { return !asked_ || now_ns >= repeat_ns_; }
   /// What is wrong where a frame is due and was sent often enough. @pre is_due()
-  [[nodiscard]] std::optional<drive_fault> unanswered() const noexcept {
-    if (!told_pre_operational_ || tries_ < most_tries_) return std::nullopt;
-    return drive_fault{"the drive does not answer a request (index of the object)", object().index};
-  }
+  [[nodiscard]] std::optional<drive_fault> unanswered() const noexcept;
   /// The frame. @pre is_due(), not unanswered()
-  [[nodiscard]] can_frame frame() const noexcept {
-    using enum setup_step::kind;
-    // A drive that starts by itself takes no mapping before.
-    if (!told_pre_operational_) return encode_nmt(nmt_command::pre_operational, node_);
-    const setup_step& s = steps_[next_];
-    return s.what == write || s.what == write_if_there ? encode_download_request(node_, s.at, s.value, s.size)
-                                                       : encode_upload_request(node_, s.at);
-  }
+  [[nodiscard]] can_frame frame() const noexcept;
   /// The bus took the frame.
-  void was_sent(std::int64_t now_ns) noexcept {
-    if (!told_pre_operational_) {
-      told_pre_operational_ = true;
-      return;
-    }
-    asked_ = true;
-    ++tries_;
-    repeat_ns_ = now_ns + answer_limit_ns_;
-  }
+  void was_sent(std::int64_t now_ns) noexcept;
 
   /// Goes on to the next object where the answer is the awaited one. @return what is wrong with it
   [[nodiscard]] std::optional<drive_fault> take(const sdo_response& answer) noexcept;
@@ -74,36 +46,5 @@ class setup_dialogue {
   bool asked_ = false;
   bool told_pre_operational_ = false;
 };
-
-inline std::optional<drive_fault> setup_dialogue::take(const sdo_response& answer) noexcept {
-  using kind = sdo_response::kind;
-  using enum setup_step::kind;
-  if (!asked_ || done()) return std::nullopt;
-  const setup_step& s = steps_[next_];
-  if (answer.at != s.at) return std::nullopt;  // late, of a request that was repeated
-  if (answer.what == kind::aborted) {
-    const bool missing = answer.value == abort_code::no_object || answer.value == abort_code::no_sub;
-    if (s.what != write_if_there || !missing) {
-      return drive_fault{"the drive refused an object of its configuration (SDO abort)", answer.value};
-    }
-  } else if (s.what == write || s.what == write_if_there) {
-    if (answer.what != kind::written) return std::nullopt;
-  } else {
-    if (answer.what != kind::value) return std::nullopt;
-    if (s.what == expect && answer.value != s.value) {
-      return drive_fault{"the drive did not keep a value of its configuration (index of the object)", s.at.index};
-    }
-    if (s.what == torque_modes && (answer.value & torque_mode_supported) == 0) {
-      return drive_fault{"the drive has no cyclic synchronous torque mode (object 6502)", answer.value};
-    }
-    if (s.what == rated_torque && !(std::fabs(answer.value - rated_m_n_m_) <= 1.0 + 1e-3 * rated_m_n_m_)) {
-      return drive_fault{"the drive's rated torque (object 6076, mN m) is not the configured one", answer.value};
-    }
-  }
-  ++next_;
-  tries_ = 0;
-  asked_ = false;
-  return std::nullopt;
-}
 
 }  // namespace asperity::canopen

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "asperity/core/export.hpp"
 #include "asperity/device/capabilities.hpp"
 #include "asperity/drivers/falcon/falcon_torque.hpp"
 
@@ -15,25 +16,7 @@ inline constexpr std::uint16_t falcon_product = 0xcb48;
 /// What is known of a Falcon. Its maker published no data sheet of the motors, and the factor from counts to newtons is
 /// a guess (falcon_counts_per_n_m): all forces here are nominal, assumed and not measured. There is no torque: what a
 /// command asks of it is dropped.
-[[nodiscard]] inline device_capabilities falcon_capabilities() noexcept {
-  return {.name = "novint falcon",
-          .maturity = driver_maturity::protocol_tested,
-          .sensed = translation_axes,
-          .actuated = translation_axes,
-          .continuous_force_n = 2.0,
-          .peak_force_n = 4.0,
-          .force_slew_n_per_s = 1000.0,
-          .max_stiffness_n_per_m = 1000.0,
-          .max_stiffness_rate_hz = 1000.0,
-          .workspace_low_d = {-0.035, -0.035, 0.085},
-          .workspace_high_d = {0.035, 0.035, 0.155},
-          .position_resolution_m = 1e-4,
-          .nominal_rate_hz = 1000.0,
-          .minimum_rate_hz = 500.0,
-          .worst_latency_ns = 3'000'000,
-          .needs_homing = true,
-          .device_side_watchdog = false};
-}
+[[nodiscard]] ASPERITY_API device_capabilities falcon_capabilities() noexcept;
 
 /// Why a Falcon stopped.
 enum class falcon_fault : std::uint8_t {

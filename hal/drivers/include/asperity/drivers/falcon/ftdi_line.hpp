@@ -4,11 +4,11 @@
 // a transfer of more than one packet has two in every 64 bytes, and a packet of two bytes says that nothing came.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "asperity/core/export.hpp"
 #include "asperity/transport/usb_link.hpp"
 
 namespace asperity {
@@ -36,17 +36,8 @@ struct ftdi_setting {
 };
 
 /// Sends settings in order, until one fails. Waits for the device; never inside a tick.
-[[nodiscard]] inline io_status apply_ftdi(usb_link& link, std::span<const ftdi_setting> settings,
-                                          std::int64_t timeout_ns) noexcept {
-  for (const ftdi_setting& s : settings) {
-    std::size_t done = 0;
-    const usb_setup setup{
-        .request_type = 0x40, .request = static_cast<std::uint8_t>(s.request), .value = s.value, .index = 0};
-    const io_status answer = link.control(setup, {}, done, timeout_ns);
-    if (answer != io_status::ok) return answer;
-  }
-  return io_status::ok;
-}
+[[nodiscard]] ASPERITY_API io_status apply_ftdi(usb_link& link, std::span<const ftdi_setting> settings,
+                                                std::int64_t timeout_ns) noexcept;
 
 /// Calls `take` for every byte of payload in a transfer, one packet or several.
 /// @return packets whose status says that the line lost or spoilt a byte (overrun, parity or framing error)

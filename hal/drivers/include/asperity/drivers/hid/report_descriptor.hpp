@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "asperity/core/export.hpp"
 #include "asperity/core/fixed_vector.hpp"
 
 namespace asperity {
@@ -72,7 +73,7 @@ enum class descriptor_status : std::uint8_t {
 /// A parsed report descriptor, of any bytes whatever: memory and time are bounded, nothing is allocated.
 /// What was understood before a fault is dropped: with any status but ok and capacity there are no fields.
 /// @source HID 1.11, sections 5 and 6.2.2
-struct report_descriptor {
+struct ASPERITY_API report_descriptor {
   static constexpr std::size_t max_bytes = 4096;            ///< as in the kernel
   static constexpr std::uint32_t max_report_bits = 131072;  ///< as in the kernel
   static constexpr std::size_t max_fields = 192;
@@ -84,59 +85,25 @@ struct report_descriptor {
   descriptor_status status = descriptor_status::empty;
 
   /// The first field with this usage, or null.
-  [[nodiscard]] const hid_field* find(hid_report_kind kind, std::uint16_t page, std::uint16_t usage) const noexcept {
-    for (const hid_field& f : fields) {
-      if (f.kind == kind && f.usage_page == page && f.usage == usage && !f.array) return &f;
-    }
-    return nullptr;
-  }
+  [[nodiscard]] const hid_field* find(hid_report_kind kind, std::uint16_t page, std::uint16_t usage) const noexcept;
 
   /// Bytes of a report on the wire, its number included; 0 where there is no such report.
-  [[nodiscard]] std::size_t report_bytes(hid_report_kind kind, std::uint8_t id) const noexcept {
-    for (const hid_report_size& r : reports) {
-      if (r.kind == kind && r.report_id == id) return (r.bits + 7) / 8 + (numbered ? 1 : 0);
-    }
-    return 0;
-  }
+  [[nodiscard]] std::size_t report_bytes(hid_report_kind kind, std::uint8_t id) const noexcept;
 };
+
+/// Parses the bytes of a report descriptor. The answer has Some 10 KB: not for a small stack, and not inside a tick.
+[[nodiscard]] ASPERITY_API report_descriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) noexcept;
 
 /// Bits of a field out of a report. The report's bytes are hostile: false where they end before the field does, and
 /// `value` is then unchanged. The value may lie outside the logical range.
 /// @param report with its number, where reports are numbered
 /// @rt safe
-[[nodiscard]] constexpr bool read_field(std::span<const std::uint8_t> report, bool numbered, const hid_field& field,
-                                        std::int32_t& value) noexcept {
-  if (field.bit_size == 0 || field.bit_size > 32) return false;
-  if (field.bit_offset > report_descriptor::max_report_bits) return false;
-  const std::size_t first = std::size_t{field.bit_offset} + (numbered ? 8U : 0U);
-  if (first + field.bit_size > 8 * report.size()) return false;
-  std::uint64_t bits = 0;
-  const std::size_t byte = first / 8;
-  for (std::size_t i = 0; i < 5 && byte + i < report.size(); ++i) {
-    bits |= static_cast<std::uint64_t>(report[byte + i]) << (8 * i);
-  }
-  bits = (bits >> (first % 8)) & ((std::uint64_t{1} << field.bit_size) - 1);
-  const std::uint64_t sign = std::uint64_t{1} << (field.bit_size - 1);
-  if (field.logical_min < 0 && (bits & sign) != 0) bits |= ~(2 * sign - 1);
-  value = static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
-  return true;
-}
+[[nodiscard]] ASPERITY_API bool read_field(std::span<const std::uint8_t> report, bool numbered, const hid_field& field,
+                                           std::int32_t& value) noexcept;
 
 /// Sets the bits of a field in a report, where the report is long enough for it. @return whether it is
 /// @rt safe
-constexpr bool write_field(std::span<std::uint8_t> report, bool numbered, const hid_field& field,
-                           std::int32_t value) noexcept {
-  if (field.bit_size == 0 || field.bit_size > 32) return false;
-  if (field.bit_offset > report_descriptor::max_report_bits) return false;
-  const std::size_t first = std::size_t{field.bit_offset} + (numbered ? 8U : 0U);
-  if (first + field.bit_size > 8 * report.size()) return false;
-  for (std::size_t i = 0; i < field.bit_size; ++i) {
-    const std::size_t at = first + i;
-    const auto mask = static_cast<std::uint8_t>(1U << (at % 8));
-    const bool on = ((static_cast<std::uint32_t>(value) >> i) & 1U) != 0;
-    report[at / 8] = static_cast<std::uint8_t>(on ? report[at / 8] | mask : report[at / 8] & ~mask);
-  }
-  return true;
-}
+ASPERITY_API bool write_field(std::span<std::uint8_t> report, bool numbered, const hid_field& field,
+                              std::int32_t value) noexcept;
 
 }  // namespace asperity

@@ -76,12 +76,10 @@ class joint_drive {
   joint_drive(const joint_drive&) = delete;
   joint_drive& operator=(const joint_drive&) = delete;
   virtual ~joint_drive() = default;
-
   [[nodiscard]] virtual const drive_facts& facts() const noexcept = 0;
   [[nodiscard]] virtual drive_state state() const noexcept = 0;
   [[nodiscard]] virtual drive_fault fault() const noexcept = 0;
   [[nodiscard]] virtual const joint_reading& reading() const noexcept = 0;
-
   virtual void start(std::int64_t now_ns) noexcept = 0;
   /// @return false where the state is not idle
   [[nodiscard]] virtual bool enable(std::int64_t now_ns) noexcept = 0;

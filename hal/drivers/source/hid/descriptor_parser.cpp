@@ -1,6 +1,3 @@
-// From the bytes of a HID report descriptor to the fields of its reports.
-#pragma once
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -12,8 +9,7 @@
 #include "asperity/drivers/hid/report_descriptor.hpp"
 
 namespace asperity {
-
-namespace detail {
+namespace {
 
 // State of one run over a descriptor.
 class descriptor_parser {
@@ -296,12 +292,11 @@ class descriptor_parser {
   std::uint16_t top_usage_ = 0;
 };
 
-}  // namespace detail
+}  // namespace
 
-/// Parses a report descriptor. Some 10 KB: not for a small stack, and not inside a tick.
-[[nodiscard]] inline report_descriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) noexcept {
+report_descriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) noexcept {
   report_descriptor out;
-  const descriptor_status s = detail::descriptor_parser(bytes, out).run();
+  const descriptor_status s = descriptor_parser(bytes, out).run();
   if (s != descriptor_status::ok && s != descriptor_status::capacity) out = {};
   out.status = s;
   return out;
