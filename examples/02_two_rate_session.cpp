@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   const auto a = std::make_shared<const asperity::textured_model>(std::move(*probe));
   const auto b = std::make_shared<const asperity::textured_model>(std::move(*fixed));
   // The renderer for control loops: support planes, told as far as a loop of 2 ms has to know them.
-  auto renderer = asperity::make_field_renderer({a, {b}}, {.reach_m = asperity::reach_for(0.002)});
+  auto renderer = asperity::make_plane_renderer({a, {b}}, {.reach_m = asperity::reach_for(0.002)});
   if (!renderer) return std::puts(renderer.error().message.c_str()), 1;
 
   // The hand begins 5 mm above the fixed body, wants to be 3 mm inside it, and rubs to and fro across it. Device and

@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
 
   const asperity::scene bodies{a, {b}};
   auto depth = asperity::make_cpu_depth(bodies);
-  auto usual = asperity::make_paper_renderer(bodies);
+  auto usual = asperity::make_window_renderer(bodies);
   if (!depth || !usual) return std::puts((depth ? usual.error() : depth.error()).message.c_str()), 1;
   gentle_renderer gentle(bodies, asperity::convex_piece_finder(bodies), std::move(*depth), gentle_spring(2000.0, 1.0));
 

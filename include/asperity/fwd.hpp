@@ -15,9 +15,9 @@ class contact_set;
 struct penetration;
 struct support_plane;
 
-struct renderer_settings;
-struct field_renderer_settings;
-struct paper_settings;
+struct least_motion_renderer_settings;
+struct plane_renderer_settings;
+struct window_renderer_settings;
 class any_renderer;
 class any_depth;
 

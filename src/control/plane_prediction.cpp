@@ -19,11 +19,11 @@ void rest_prediction::complete(const plane_source& planes_near, const coupling_p
   search(planes_near);
   rest_T_wc_ = {glm::normalize(exp_rotation(here_.moved.angular) * T_wc.rotation), T_wc.position + here_.moved.linear};
   known_ = true;
-  if (come_near(planes_near)) tell(planes);
+  if (come_near(planes_near)) report(planes);
 }
 
-double rest_prediction::depth_at(const support_plane& told_at_0, const vec6& moved) noexcept {
-  return told_at_0.depth_m + dot(told_at_0.gradient, moved);
+double rest_prediction::depth_at(const support_plane& reported_at_0, const vec6& moved) noexcept {
+  return reported_at_0.depth_m + dot(reported_at_0.gradient, moved);
 }
 
 bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, place& out) noexcept {
@@ -123,7 +123,7 @@ bool rest_prediction::come_near(const plane_source& planes_near) noexcept {
   return look(planes_near, (1.0 / ways) * here_.moved, here_);
 }
 
-void rest_prediction::tell(support_planes& planes) noexcept {
+void rest_prediction::report(support_planes& planes) noexcept {
   all_.clear();
   std::swap(all_, planes);  // the planes of the probe's pose
   for (const support_plane& p : here_.planes) static_cast<void>(planes.push_back(as_from_here(p, here_.moved)));

@@ -39,6 +39,15 @@ std::size_t field_scene::heap_bytes() const noexcept {
   return bytes;
 }
 
+result<void> check_field_scene(const scene& bodies, const field_scene* made) {
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
+  bool all = bodies.probe && made != nullptr && made->probe && made->fixed.size() == bodies.fixed.size();
+  for (std::size_t b = 0; all && b < bodies.fixed.size(); ++b) all = bodies.fixed[b] && made->fixed[b];
+  if (all) return {};
+  return error{error_code::invalid_argument,
+               "the fields are not as many as the scene's bodies: make_field_scene() makes one for each"};
+}
+
 result<field_scene> make_field_scene(const scene& bodies, const field_body_settings& settings) {
   if (!bodies.probe) return error{error_code::invalid_argument, "the scene has no probe: give it a textured model"};
   const auto make = [&](const model_ptr& model) -> result<field_body_ptr> {

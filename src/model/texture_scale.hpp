@@ -12,7 +12,7 @@ namespace asperity::detail {
 
 /// Scales of one model's relief.
 struct texture_scale {
-  double relief_m = 0.0;              ///< peak to valley of the sine with the same mean square height
+  double peak_to_valley_m = 0.0;      ///< of the sine with the same mean square height
   double wavelength_m = 0.0;          ///< of the sine with the same mean square height and slope; 0 without relief
   double peak_curvature_per_m = 0.0;  ///< of that sine's peaks; at least that of a ball of half the body's diagonal
   double texel_m = 0.0;               ///< typical distance between texels on the coarse surface
@@ -68,7 +68,7 @@ struct texture_scale {
   // Relief below a millionth of the body is the rounding of float32 texels.
   if (!(variance > 1e-12 * diagonal * diagonal) || !(slope2 > 0.0)) return out;
   // Not the bake's own peak to valley: one badly fitted corner of the coarse mesh would soften the whole surface.
-  out.relief_m = 2.0 * std::numbers::sqrt2 * std::sqrt(variance);
+  out.peak_to_valley_m = 2.0 * std::numbers::sqrt2 * std::sqrt(variance);
   const double per_length = std::sqrt(slope2 / count / variance);
   out.wavelength_m = 2.0 * std::numbers::pi / per_length;
   out.peak_curvature_per_m = std::max(ball, std::sqrt(2.0 * variance) * per_length * per_length);

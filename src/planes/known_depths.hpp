@@ -33,7 +33,7 @@ class known_depths {
   }
 
   /// Begins a tick with these leaves. Leaves come in the order of body, whose samples they are and sample, as
-  /// field_finder lists them; what comes in another order is not known.
+  /// plane_finder lists them; what comes in another order is not known.
   /// @param grows_m of a patch: how much deeper than in the tick before its samples can be   @rt safe
   template <class Grows>
   void begin(const near_samples& found, Grows&& grows_m) noexcept {

@@ -24,7 +24,7 @@ namespace asperity {
 class leaf_reader {
  public:
   /// @param of_probe whether X is the probe; its motion takes Y's field along otherwise, and the slope's sign turns
-  /// @param sinking_m of a sample that looks away, see field_depth   @param work counts what is read
+  /// @param sinking_m of a sample that looks away, see plane_depth   @param work counts what is read
   leaf_reader(const field_body& x, const pose& T_wx, const field_body& y, const pose& T_wy, std::uint32_t body,
               bool of_probe, const vec3& c_a_w, double sinking_m, depth_work& work) noexcept
       : x_(&x),
@@ -88,7 +88,7 @@ class leaf_reader {
         above_m = now.depth_m;
       }
     }
-    if (best.sample != nullptr) tell(best, out);
+    if (best.sample != nullptr) report(best, out);
     return out;
   }
 
@@ -105,7 +105,7 @@ class leaf_reader {
       const sample_depth now = exact(samples[i]);
       if (!(now.depth_m > above_m)) continue;
       near_plane out;
-      tell(now, out);
+      report(now, out);
       visit(out.plane);
     }
   }
@@ -165,7 +165,7 @@ class leaf_reader {
     return full > none ? smoothstep((cosine - none) / (full - none)) : 1.0;
   }
 
-  void tell(const sample_depth& of, near_plane& out) const noexcept {
+  void report(const sample_depth& of, near_plane& out) const noexcept {
     const vec3 slope_w = by_probe_w(of.slope_y);
     out.point_w = T_wx_ * vec3(of.sample->position_b);
     out.plane.depth_m = of.depth_m;

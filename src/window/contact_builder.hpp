@@ -47,8 +47,8 @@ class contact_builder {
   /// @return false where a body has no facing triangle in the window: there is no contact
   /// @rt safe
   bool build(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
-             const finder_settings& limits, std::span<const close_pair> pairs, std::span<const std::uint32_t> members,
-             const pair_cluster& cluster, contact& out) noexcept {
+             const window_finder_settings& limits, std::span<const close_pair> pairs,
+             std::span<const std::uint32_t> members, const pair_cluster& cluster, contact& out) noexcept {
     place_window(T_wa, cluster, out.window);
     const window_projection onto_a(out.window, T_wa);
     plane_box near;
@@ -62,7 +62,7 @@ class contact_builder {
   /// The same for a contact whose direction is held; its extent takes the place of the pairs' regions.
   /// @rt safe
   bool build(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
-             const finder_settings& limits, const held_contact& held, contact& out) noexcept {
+             const window_finder_settings& limits, const held_contact& held, contact& out) noexcept {
     const pair_cluster cluster = held.cluster(T_wa, T_wb);
     place_window(T_wa, cluster, out.window);
     return complete(a, b, T_wa, T_wb, limits, held.near(out.window, T_wa, T_wb), cluster, out);
@@ -86,7 +86,8 @@ class contact_builder {
 
   /// @param near  where the bodies are near each other, about out.window's centre so far
   bool complete(const collision_body& a, const collision_body& b, const pose& T_wa, const pose& T_wb,
-                const finder_settings& limits, plane_box near, const pair_cluster& cluster, contact& out) noexcept {
+                const window_finder_settings& limits, plane_box near, const pair_cluster& cluster,
+                contact& out) noexcept {
     const double tolerance = limits.tolerance_m;
     contact_window& w = out.window;
     const double foot = glm::dot(cluster.n_ab, cluster.place);

@@ -20,7 +20,7 @@ namespace asperity {
 
 class convex_piece_finder::search {
  public:
-  search(const scene& s, const finder_settings& settings) : probe_(s.probe) {
+  search(const scene& s, const window_finder_settings& settings) : probe_(s.probe) {
     for (const model_ptr& m : s.fixed) sides_.emplace_back(probe_, m, settings);
   }
 
@@ -42,7 +42,9 @@ class convex_piece_finder::search {
   }
 
   [[nodiscard]] const finder_statistics& statistics() const noexcept { return statistics_; }
-  [[nodiscard]] const finder_settings& settings(std::size_t body) const noexcept { return sides_[body].settings; }
+  [[nodiscard]] const window_finder_settings& settings(std::size_t body) const noexcept {
+    return sides_[body].settings;
+  }
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(probe_, sides_); }
 
  private:
@@ -69,14 +71,14 @@ class convex_piece_finder::search {
   /// Everything between the probe and one fixed body.
   struct side {
     collision_body body;
-    finder_settings settings;
+    window_finder_settings settings;
     std::vector<cache_slot> cache;
     std::vector<close_pair> pairs;
     pair_clustering clustering;
     contact_builder builder;
     std::vector<track> previous, current;
 
-    side(const collision_body& probe, const model_ptr& m, const finder_settings& s)
+    side(const collision_body& probe, const model_ptr& m, const window_finder_settings& s)
         : body(m),
           settings(resolve(s, *probe.model, *m)),
           cache(slots(probe.shapes.size() * body.shapes.size())),
@@ -311,7 +313,7 @@ class convex_piece_finder::search {
   finder_statistics statistics_;
 };
 
-convex_piece_finder::convex_piece_finder(const scene& s, const finder_settings& settings)
+convex_piece_finder::convex_piece_finder(const scene& s, const window_finder_settings& settings)
     : search_(std::make_unique<search>(s, settings)) {}
 convex_piece_finder::convex_piece_finder(convex_piece_finder&&) noexcept = default;
 convex_piece_finder& convex_piece_finder::operator=(convex_piece_finder&&) noexcept = default;
@@ -319,7 +321,7 @@ convex_piece_finder::~convex_piece_finder() = default;
 
 status convex_piece_finder::find(const scene_pose& at, contact_set& out) noexcept { return search_->find(at, out); }
 const finder_statistics& convex_piece_finder::statistics() const noexcept { return search_->statistics(); }
-const finder_settings& convex_piece_finder::settings(std::size_t body) const noexcept {
+const window_finder_settings& convex_piece_finder::settings(std::size_t body) const noexcept {
   return search_->settings(body);
 }
 std::size_t convex_piece_finder::heap_bytes() const noexcept { return sizeof(search) + search_->heap_bytes(); }

@@ -41,7 +41,7 @@ result<void> check_model(const textured_model& m, const std::string& who) {
 
 class cpu_depth::grid_search {
  public:
-  grid_search(asperity::scene scene, const depth_settings& settings)
+  grid_search(asperity::scene scene, const window_depth_settings& settings)
       : scene_(std::move(scene)),
         settings_(settings),
         ready_(check(settings).has_value() && check_scene(scene_).has_value()),
@@ -72,7 +72,7 @@ class cpu_depth::grid_search {
     return status::ok;
   }
 
-  [[nodiscard]] const depth_settings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const window_depth_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] const detail::pair_scale& pair(std::size_t body) const noexcept { return pairs_[body]; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
     return asperity::heap_bytes(scene_.fixed, a_, b_, weight_, bodies_, pairs_);
@@ -241,7 +241,7 @@ class cpu_depth::grid_search {
   }
 
   asperity::scene scene_;
-  depth_settings settings_;
+  window_depth_settings settings_;
   bool ready_;
   side a_, b_;
   std::vector<double> weight_;
@@ -249,7 +249,7 @@ class cpu_depth::grid_search {
   std::vector<detail::pair_scale> pairs_;      ///< probe against each fixed body
 };
 
-cpu_depth::cpu_depth(asperity::scene scene, const depth_settings& settings)
+cpu_depth::cpu_depth(asperity::scene scene, const window_depth_settings& settings)
     : search_(std::make_unique<grid_search>(std::move(scene), settings)) {}
 cpu_depth::cpu_depth(cpu_depth&&) noexcept = default;
 cpu_depth& cpu_depth::operator=(cpu_depth&&) noexcept = default;
@@ -259,7 +259,7 @@ status cpu_depth::measure(const scene_pose& at, const contact_set& contacts, std
   return search_->measure(at, contacts, out);
 }
 
-const depth_settings& cpu_depth::settings() const noexcept { return search_->settings(); }
+const window_depth_settings& cpu_depth::settings() const noexcept { return search_->settings(); }
 double cpu_depth::tau_m(std::size_t body) const noexcept { return search_->pair(body).tau_m; }
 double cpu_depth::reference_area_m2(std::size_t body) const noexcept { return search_->pair(body).reference_area_m2; }
 double cpu_depth::difference_step_m(std::size_t body, double half_size_m) const noexcept {
@@ -278,7 +278,7 @@ result<void> cpu_depth::check_scene(const asperity::scene& scene) {
   return {};
 }
 
-result<cpu_depth> make_cpu_depth(const scene& s, const depth_settings& settings) {
+result<cpu_depth> make_cpu_depth(const scene& s, const window_depth_settings& settings) {
   if (result<void> r = check(settings); !r) return r.error();
   if (result<void> r = cpu_depth::check_scene(s); !r) return r.error();
   return cpu_depth(s, settings);

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 #include "window/patch_projection.hpp"
 
 namespace asperity::detail {
@@ -90,12 +90,12 @@ class edge_run {
 
 /// Finds the coarse triangle over each sample: of several layers the one that `which` names. Fills kind, owner and the
 /// coarse height.
-/// @pre grid.side <= depth_settings::max_grid
+/// @pre grid.side <= window_depth_settings::max_grid
 /// @rt safe   @source paper section 5.1 (orthographic projection along n)
 inline void rasterise(const patch_projection& patch, const sample_grid& grid, layer which, height_field& out) noexcept {
   std::fill_n(out.kind.begin(), grid.size(), hit::none);
   const double s = sign(which);
-  std::array<double, depth_settings::max_grid> u;  // an integer is slow to turn into a number
+  std::array<double, window_depth_settings::max_grid> u;  // an integer is slow to turn into a number
   for (std::size_t i = 0; i < grid.side; ++i) u[i] = grid.coordinate(i);
   for (std::uint32_t t = 0; t < patch.triangles().size(); ++t) {
     const projected_triangle& tri = patch.triangles()[t];

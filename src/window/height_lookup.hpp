@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "asperity/core/spatial.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 #include "model/texture_tap.hpp"
 #include "window/height_field.hpp"
 

@@ -13,7 +13,7 @@ namespace {
 using namespace asperity::command;
 using namespace std::chrono_literals;
 
-class told {
+class report_counter {
  public:
   void operator()(const std::string& what) {
     const std::lock_guard lock(mutex_);
@@ -44,10 +44,10 @@ class told {
 
 constexpr driver_limits short_limits{.tick = 150ms, .arm = 400ms, .asked = 150ms, .ending = 300ms};
 
-TEST(driver_guard, tells_of_a_call_that_does_not_return_once) {
+TEST(driver_guard, reports_once_a_call_that_does_not_return) {
   for (const driver_call which : {driver_call::read, driver_call::write, driver_call::disarm, driver_call::close}) {
     driver_watch watch;
-    told it;
+    report_counter it;
     watch.set_armed(which == driver_call::write);
     const driver_guard guard(
         watch, [&](const std::string& what) { it(what); }, short_limits);
@@ -62,7 +62,7 @@ TEST(driver_guard, tells_of_a_call_that_does_not_return_once) {
 
 TEST(driver_guard, leaves_calls_alone_that_return) {
   driver_watch watch;
-  told it;
+  report_counter it;
   const driver_guard guard(watch, [&](const std::string& what) { it(what); }, {.tick = 600ms, .ending = 300ms});
   // The same call again and again is another call each time, however long it goes on; and so is no call at all.
   for (int i = 0; i < 50; ++i) {
@@ -75,7 +75,7 @@ TEST(driver_guard, leaves_calls_alone_that_return) {
 
 TEST(driver_guard, waits_for_a_homing_and_longer_for_arm) {
   driver_watch watch;
-  told it;
+  report_counter it;
   const driver_guard guard(
       watch, [&](const std::string& what) { it(what); }, short_limits);
   {
@@ -90,7 +90,7 @@ TEST(driver_guard, waits_for_a_homing_and_longer_for_arm) {
 // No call takes long, and yet the end would not come.
 TEST(driver_guard, limits_the_end_as_a_whole) {
   driver_watch watch;
-  told it;
+  report_counter it;
   driver_guard guard(
       watch, [&](const std::string& what) { it(what); }, short_limits);
   std::atomic<bool> over{false};

@@ -279,7 +279,7 @@ TEST(picture_atlas, tells_charts_gutter_and_unused_texels) {
   EXPECT_EQ(drawn.at(0, 0), as_pixel(unused_texel));
   EXPECT_EQ(drawn.at(7, 1), as_pixel(gutter_texel));
   EXPECT_EQ(drawn.at(7, 2), as_pixel(colour_scale::about_zero().at(0.5)));
-  const texel_window window = telling_window(map, 12, {-1.0, 1.0});
+  const texel_window window = informative_window(map, 12, {-1.0, 1.0});
   EXPECT_EQ(window.left, 0U);
   EXPECT_EQ(window.top, 0U);
 }

@@ -22,13 +22,14 @@ using namespace asperity::contact_study;
 volatile std::sig_atomic_t stop_asked = 0;
 
 constexpr char usage[] =
-    "usage: asperity_contact_study [--poses N] [--seed S] [--pair PROBE] [--pose INDEX] [--shared-only] [--out DIR]\n"
+    "usage: asperity_contact_study [--poses N] [--seed S] [--pair PROBE] [--pose INDEX] [--least-motion-only] [--out "
+    "DIR]\n"
     "                              [--pictures-only]\n"
     "  --poses N        touching poses per pair (60)\n"
     "  --seed S         of the poses (1)\n"
     "  --pair PROBE     only the pair whose probe has this name: block, file, hammer or igea\n"
     "  --pose INDEX     begin at this pose of the seed; with --poses 1, that pose alone\n"
-    "  --shared-only    leave the paper's formulation out\n"
+    "  --least-motion-only  leave the paper's formulation out\n"
     "  --out DIR        where contacts.md and the pictures go (out/study)\n"
     "  --pictures-only  draw the pictures and stop\n"
     "The real meshes are taken from the folder that ASPERITY_MODELS names, or ../shared/models.\n";
@@ -43,8 +44,8 @@ struct arguments {
 bool parse(int argc, char** argv, arguments& to) {
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
-    if (name == "--shared-only") {
-      to.study.with_paper = false;
+    if (name == "--least-motion-only") {
+      to.study.with_window = false;
       continue;
     }
     if (name == "--pictures-only") {
@@ -108,8 +109,8 @@ outcome run(const pair_name& pair, const arguments& given) {
   if (!given.pictures_only) {
     study_options options = given.study;
     options.progress = [&](const pair_result& so_far) {
-      if (so_far.shared.size() % 10 == 0) {
-        std::printf("%s: %zu of %zu poses, %.0f s\n", name.c_str(), so_far.shared.size(), options.poses,
+      if (so_far.least_motion.size() % 10 == 0) {
+        std::printf("%s: %zu of %zu poses, %.0f s\n", name.c_str(), so_far.least_motion.size(), options.poses,
                     seconds_since(start));
         std::fflush(stdout);
       }

@@ -32,11 +32,11 @@ TEST_P(BakedPair, TheDefaultNeitherJumpsNorMakesWork) {
   constexpr std::size_t too_fast = 4;  // of twelve motions; measured: 3, 2 and 1
   study_options options;
   options.poses = 4;
-  options.with_paper = false;
+  options.with_window = false;
   const pair_result found = study_pair(std::string(GetParam().probe), *renderers_, options);
-  ASSERT_EQ(found.shared.size(), options.poses);
+  ASSERT_EQ(found.least_motion.size(), options.poses);
   std::size_t over = 0;
-  for (const pose_result& p : found.shared) {
+  for (const pose_result& p : found.least_motion) {
     for (const motion m : all_motions) {
       const jumps& j = p.moved[static_cast<std::size_t>(m)];
       EXPECT_TRUE(j.at_1khz.ok && j.at_10khz.ok);
@@ -50,11 +50,11 @@ TEST_P(BakedPair, TheDefaultNeitherJumpsNorMakesWork) {
 
 // Without this the test above could pass because nothing was touched, or because the measure cannot tell.
 TEST_P(BakedPair, ThePapersClustersDoBoth) {
-  const double k = renderers_->shared().force().settings().stiffness_n_per_m;
-  const feel_function feel = feel_with(renderers_->paper());
+  const double k = renderers_->least_motion().force().settings().stiffness_n_per_m;
+  const feel_function feel = feel_with(renderers_->window());
   bool jumped = false, worked = false;
   for (std::uint64_t index = 0; index < 8 && !(jumped && worked); ++index) {
-    const std::optional<touching_pose> start = find_touching_pose(renderers_->shared(), 1, index);
+    const std::optional<touching_pose> start = find_touching_pose(renderers_->least_motion(), 1, index);
     if (!start) continue;
     for (const motion m : all_motions) {
       jumped = jumped || measure_jumps(feel, *start, m, k, false).force_ratio() > 2.0 * ratio_limit;

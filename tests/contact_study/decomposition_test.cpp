@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "contact_study/study_models.hpp"
 #include "contact_study/touching_pose.hpp"
 
@@ -61,8 +61,8 @@ TEST(decomposition, the_wrench_is_the_same_however_a_model_was_cut) {
   auto baked = build_renderer(as_baked);
   auto finer = build_renderer(halves);
   auto finest = build_renderer(triangles);
-  auto paper_baked = make_paper_renderer(as_baked);
-  auto paper_finest = make_paper_renderer(triangles);
+  auto paper_baked = make_window_renderer(as_baked);
+  auto paper_finest = make_window_renderer(triangles);
   ASSERT_TRUE(baked && finer && finest && paper_baked && paper_finest);
 
   const std::array<pose, 1> T_wb{};

@@ -18,7 +18,7 @@ inline constexpr double loop_limit = 3e-5;
 struct felt {
   vec3 centre_of_mass_w{0.0};
   wrench on_probe_w{};  ///< about the centre of mass
-  status told = status::ok;
+  status answer = status::ok;
 
   [[nodiscard]] vec3 torque_about(const vec3& p_w) const noexcept {
     return on_probe_w.torque + glm::cross(centre_of_mass_w - p_w, on_probe_w.force);
@@ -34,7 +34,7 @@ template <class Renderer>
     const pose T_wb;
     tick out;
     felt here;
-    here.told = renderer.step({T_wa, {&T_wb, 1}}, out);
+    here.answer = renderer.step({T_wa, {&T_wb, 1}}, out);
     here.centre_of_mass_w = out.centre_of_mass_w;
     here.on_probe_w = out.force.on_probe_w;
     return here;
@@ -62,7 +62,7 @@ struct jump {
     const double way_m = speed_m_per_s / rate_hz * static_cast<double>(i);
     const pose T = along(start, m, way_m);
     const felt now = feel(T);
-    worst.ok = worst.ok && now.told == status::ok;
+    worst.ok = worst.ok && now.answer == status::ok;
     if (i > 0) {
       const vec3 point_w = T * point_a;
       const double turned_rad = glm::length(log_rotation(T.rotation * glm::conjugate(T_before.rotation)));

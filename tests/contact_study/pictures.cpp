@@ -37,13 +37,14 @@ trace trace_slide(const std::string& pair, pair_of_renderers& renderers, std::ui
     std::uint64_t index;
     touching_pose start;
   };
-  const double k = renderers.shared().force().settings().stiffness_n_per_m;
-  const feel_function feel_shared = feel_with(renderers.shared()), feel_paper = feel_with(renderers.paper());
+  const double k = renderers.least_motion().force().settings().stiffness_n_per_m;
+  const feel_function feel_least_motion = feel_with(renderers.least_motion()),
+                      feel_window = feel_with(renderers.window());
   std::vector<candidate> seen;
   for (std::uint64_t index = 0; seen.size() < candidates; ++index) {
-    const std::optional<touching_pose> start = find_touching_pose(renderers.shared(), seed, index);
+    const std::optional<touching_pose> start = find_touching_pose(renderers.least_motion(), seed, index);
     if (!start) continue;
-    seen.push_back({measure_jump(feel_paper, *start, motion::slide, rate_hz, k).force, index, *start});
+    seen.push_back({measure_jump(feel_window, *start, motion::slide, rate_hz, k).force, index, *start});
   }
   const auto middle = seen.begin() + candidates / 2;
   std::nth_element(seen.begin(), middle, seen.end(),
@@ -52,8 +53,8 @@ trace trace_slide(const std::string& pair, pair_of_renderers& renderers, std::ui
   out.pair = pair;
   out.pose = middle->index;
   for (std::size_t i = 0; i <= ticks; ++i) out.way_mm.push_back(1e3 * step_m * static_cast<double>(i));
-  out.shared_n = force_along(feel_shared, middle->start, ticks, step_m);
-  out.paper_n = force_along(feel_paper, middle->start, ticks, step_m);
+  out.least_motion_n = force_along(feel_least_motion, middle->start, ticks, step_m);
+  out.window_n = force_along(feel_window, middle->start, ticks, step_m);
   return out;
 }
 
@@ -68,7 +69,8 @@ result<void> draw_traces(const std::vector<trace>& traces, const std::filesystem
   page.x_label = "way, mm";
   page.x = traces.front().way_mm;
   for (const trace& t : traces) {
-    page.panels.push_back({"|F|, N", {{t.pair + ": the default", t.shared_n}, {"the paper's clusters", t.paper_n}}});
+    page.panels.push_back(
+        {"|F|, N", {{t.pair + ": the default", t.least_motion_n}, {"the paper's clusters", t.window_n}}});
   }
   return save(page, file);
 }
@@ -76,7 +78,7 @@ result<void> draw_traces(const std::vector<trace>& traces, const std::filesystem
 result<void> draw_spectra(const std::filesystem::path& file) {
   result<pair_of_renderers> renderers = pair_of_renderers::make(uniform_slide::bodies());
   if (!renderers) return renderers.error();
-  const double k = renderers->shared().force().settings().stiffness_n_per_m;
+  const double k = renderers->least_motion().force().settings().stiffness_n_per_m;
   const auto decades = [](const std::vector<double>& force_n) {
     std::vector<double> out = amplitude_spectrum(force_n);
     for (double& x : out) x = std::log10(std::max(x, 1e-10));
@@ -92,9 +94,9 @@ result<void> draw_spectra(const std::filesystem::path& file) {
   page.panels.resize(2);
   page.panels[0].y_label = page.panels[1].y_label = "log10(amplitude / N)";
   const std::vector<double> exact = decades(exact_on_slide(k));
-  page.panels[0].lines = {{"the default", decades(felt_on_slide(feel_with(renderers->shared())))},
+  page.panels[0].lines = {{"the default", decades(felt_on_slide(feel_with(renderers->least_motion())))},
                           {"spring on the exact depth", exact}};
-  page.panels[1].lines = {{"the paper's clusters", decades(felt_on_slide(feel_with(renderers->paper())))},
+  page.panels[1].lines = {{"the paper's clusters", decades(felt_on_slide(feel_with(renderers->window())))},
                           {"spring on the exact depth", exact}};
   for (std::size_t i = 0; i < exact.size(); ++i) {
     page.x.push_back(uniform_slide::rate_hz / static_cast<double>(uniform_slide::ticks) * static_cast<double>(i));

@@ -15,7 +15,7 @@ namespace asperity::contact_study {
 struct trace {
   std::string pair;
   std::uint64_t pose = 0;  ///< the seeded pose that it starts from
-  std::vector<double> way_mm, shared_n, paper_n;
+  std::vector<double> way_mm, least_motion_n, window_n;
 };
 
 /// A slide at 10 kHz. Of the first nine seeded poses, the one at which the paper's formulation has its median jump.

@@ -42,8 +42,8 @@ std::vector<row> motion_rows(const std::vector<pair_result>& pairs) {
   std::vector<row> out{header};
   for (const pair_result& p : pairs) {
     for (const motion m : all_motions) {
-      out.push_back(motion_row(p.pair, m, "shared", p.shared));
-      if (!p.paper.empty()) out.push_back(motion_row(p.pair, m, "paper", p.paper));
+      out.push_back(motion_row(p.pair, m, "least_motion", p.least_motion));
+      if (!p.window.empty()) out.push_back(motion_row(p.pair, m, "window", p.window));
     }
   }
   return out;
@@ -58,8 +58,8 @@ std::vector<row> loop_rows(const std::vector<pair_result>& pairs) {
                    formatted("%llu", static_cast<unsigned long long>(s.worst_pose))});
   };
   for (const pair_result& p : pairs) {
-    add(p.pair, "shared", p.shared);
-    if (!p.paper.empty()) add(p.pair, "paper", p.paper);
+    add(p.pair, "least_motion", p.least_motion);
+    if (!p.window.empty()) add(p.pair, "window", p.window);
   }
   return out;
 }
@@ -104,7 +104,7 @@ std::string markdown_table(const std::vector<pair_result>& pairs) {
 std::string broken_limits(const std::vector<pair_result>& pairs) {
   std::string out;
   for (const pair_result& p : pairs) {
-    for (const pose_result& r : p.shared) {
+    for (const pose_result& r : p.least_motion) {
       const auto index = static_cast<unsigned long long>(r.index);
       for (const motion m : all_motions) {
         const jumps& j = r.moved[static_cast<std::size_t>(m)];

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "contact_study/jumps.hpp"
 
 namespace asperity::contact_study {
@@ -24,7 +24,7 @@ struct pose_result {
 /// All poses of a pair. The two lists go together entry by entry.
 struct pair_result {
   std::string pair;
-  std::vector<pose_result> shared, paper;
+  std::vector<pose_result> least_motion, window;
   std::size_t passed_by = 0;  ///< seeded poses that met nothing
 };
 
@@ -32,7 +32,7 @@ struct study_options {
   std::size_t poses = 60;
   std::uint64_t seed = 1;
   std::uint64_t first_index = 0;
-  bool with_paper = true;
+  bool with_window = true;
   /// Told after each pose; returning false ends the study with what it has.
   std::function<bool(const pair_result&)> progress;
 };
@@ -49,48 +49,50 @@ struct study_options {
 }
 
 /// The paper's formulation with room for every contact: where contacts are dropped, the force jumps for that alone.
-[[nodiscard]] inline result<paper_renderer> make_roomy_paper_renderer(const scene& bodies) {
-  paper_settings settings;
+[[nodiscard]] inline result<window_renderer> make_roomy_window_renderer(const scene& bodies) {
+  window_renderer_settings settings;
   settings.limits = {.contacts = 128, .triangles = 262144};
-  return make_paper_renderer(bodies, settings);
+  return make_window_renderer(bodies, settings);
 }
 
 /// Both renderers of a pair. The fixed body is the world.
 class pair_of_renderers {
  public:
-  /// @return what make_renderer() and make_paper_renderer() refuse
+  /// @return what make_renderer() and make_window_renderer() refuse
   [[nodiscard]] static result<pair_of_renderers> make(const scene& bodies) {
-    result<renderer> shared = build_renderer(bodies);
-    if (!shared) return shared.error();
-    result<paper_renderer> paper = make_roomy_paper_renderer(bodies);
-    if (!paper) return paper.error();
-    return pair_of_renderers(std::move(shared).value(), std::move(paper).value());
+    result<least_motion_renderer> least_motion = build_renderer(bodies);
+    if (!least_motion) return least_motion.error();
+    result<window_renderer> window = make_roomy_window_renderer(bodies);
+    if (!window) return window.error();
+    return pair_of_renderers(std::move(least_motion).value(), std::move(window).value());
   }
 
-  [[nodiscard]] renderer& shared() noexcept { return shared_; }
-  [[nodiscard]] paper_renderer& paper() noexcept { return paper_; }
+  [[nodiscard]] least_motion_renderer& least_motion() noexcept { return least_motion_; }
+  [[nodiscard]] window_renderer& window() noexcept { return window_; }
 
  private:
-  pair_of_renderers(renderer shared, paper_renderer paper) : shared_(std::move(shared)), paper_(std::move(paper)) {}
+  pair_of_renderers(least_motion_renderer least_motion, window_renderer window)
+      : least_motion_(std::move(least_motion)), window_(std::move(window)) {}
 
-  renderer shared_;
-  paper_renderer paper_;
+  least_motion_renderer least_motion_;
+  window_renderer window_;
 };
 
 [[nodiscard]] inline pair_result study_pair(const std::string& name, pair_of_renderers& renderers,
                                             const study_options& options) {
   pair_result out;
   out.pair = name;
-  const feel_function feel_shared = feel_with(renderers.shared()), feel_paper = feel_with(renderers.paper());
-  const double k = renderers.shared().force().settings().stiffness_n_per_m;
-  for (std::uint64_t index = options.first_index; out.shared.size() < options.poses; ++index) {
-    const std::optional<touching_pose> start = find_touching_pose(renderers.shared(), options.seed, index);
+  const feel_function feel_least_motion = feel_with(renderers.least_motion()),
+                      feel_window = feel_with(renderers.window());
+  const double k = renderers.least_motion().force().settings().stiffness_n_per_m;
+  for (std::uint64_t index = options.first_index; out.least_motion.size() < options.poses; ++index) {
+    const std::optional<touching_pose> start = find_touching_pose(renderers.least_motion(), options.seed, index);
     if (!start) {
       ++out.passed_by;
       continue;
     }
-    out.shared.push_back(study_pose(feel_shared, *start, index, k, true));
-    if (options.with_paper) out.paper.push_back(study_pose(feel_paper, *start, index, k, false));
+    out.least_motion.push_back(study_pose(feel_least_motion, *start, index, k, true));
+    if (options.with_window) out.window.push_back(study_pose(feel_window, *start, index, k, false));
     if (options.progress && !options.progress(out)) break;
   }
   return out;

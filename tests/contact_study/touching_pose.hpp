@@ -60,7 +60,7 @@ struct touching_pose {
 /// Marches the probe, turned at random, towards the fixed body from a random side until it is touch_depth_m deep.
 /// @param index which pose: every index has a generator of its own, so that any pose can be repeated alone
 /// @return nothing where the probe passes by
-[[nodiscard]] inline std::optional<touching_pose> find_touching_pose(renderer& feel, std::uint64_t seed,
+[[nodiscard]] inline std::optional<touching_pose> find_touching_pose(least_motion_renderer& feel, std::uint64_t seed,
                                                                      std::uint64_t index) {
   seeded_numbers random(seed * 1'000'003 + index);
   const textured_model &a = *feel.scene().probe, &b = *feel.scene().fixed.front();

@@ -18,7 +18,7 @@ pair_of_renderers& renderers() {
 
 const std::vector<double>& exact_spectrum() {
   static const std::vector<double> made =
-      amplitude_spectrum(exact_on_slide(renderers().shared().force().settings().stiffness_n_per_m));
+      amplitude_spectrum(exact_on_slide(renderers().least_motion().force().settings().stiffness_n_per_m));
   return made;
 }
 
@@ -51,7 +51,7 @@ constexpr double textures_limit = 1e-4, above_limit = 3e-5;
 TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
   for (const std::uint32_t box_texture : {384U, 768U}) {
     if (box_texture == 768U && !test_support::at_length()) continue;
-    renderer made = build_renderer(uniform_slide::bodies(box_texture)).value();
+    least_motion_renderer made = build_renderer(uniform_slide::bodies(box_texture)).value();
     const excess more = excess_of(felt_on_slide(feel_with(made)));
     std::printf("box of %u texels: %.2g in the textures' band, %.2g above\n", box_texture, more.textures, more.above);
     EXPECT_LT(more.textures, textures_limit) << box_texture;
@@ -61,9 +61,9 @@ TEST(UniformSlide, AddsLittleToTheSpectrumOfTheExactDepth) {
 
 // What keeps the samples quiet is how many there are: an eighth of them in either direction rings.
 TEST(UniformSlide, FewSamplesRing) {
-  renderer_settings settings;
+  least_motion_renderer_settings settings;
   settings.bodies.sample_pitch_m = 8.0 * 0.003 * uniform_slide::bodies(384).probe->box.diagonal();
-  renderer coarse = build_renderer(uniform_slide::bodies(384), settings).value();
+  least_motion_renderer coarse = build_renderer(uniform_slide::bodies(384), settings).value();
   const excess more = excess_of(felt_on_slide(feel_with(coarse)));
   std::printf("few samples: %.2g in the textures' band, %.2g above\n", more.textures, more.above);
   EXPECT_GT(more.textures, 2.0 * textures_limit);
@@ -71,8 +71,8 @@ TEST(UniformSlide, FewSamplesRing) {
 
 // The exact depth is the measure of the above: it has to be one.
 TEST(UniformSlide, IsFeltAsDeepAsItIs) {
-  const least_motion_settings& s = renderers().shared().force().settings();
-  const feel_function feel = feel_with(renderers().shared());
+  const least_motion_settings& s = renderers().least_motion().force().settings();
+  const feel_function feel = feel_with(renderers().least_motion());
   for (std::size_t i = 0; i < uniform_slide::ticks; i += 256) {
     const pose T = uniform_slide::at(i);
     const double felt_m = feel(T).on_probe_w.force.z / s.stiffness_n_per_m, exact_m = uniform_slide::exact_depth_m(T);
@@ -83,7 +83,7 @@ TEST(UniformSlide, IsFeltAsDeepAsItIs) {
 
 // Depth by place is what a force pushes against: its direction is the slope of the exact depth.
 TEST(UniformSlide, IsFeltAlongTheSlopeOfTheExactDepth) {
-  const feel_function feel = feel_with(renderers().shared());
+  const feel_function feel = feel_with(renderers().least_motion());
   double worst_rad = 0.0, leaning_rad = 0.0;
   for (std::size_t i = 0; i < uniform_slide::ticks; i += 64) {
     const pose T = uniform_slide::at(i);
@@ -103,7 +103,7 @@ TEST(UniformSlide, IsFeltAlongTheSlopeOfTheExactDepth) {
 }
 
 TEST(Rest, FeelsTheSameBitsWhateverWasBefore) {
-  const feel_function feel = feel_with(renderers().shared());
+  const feel_function feel = feel_with(renderers().least_motion());
   const pose here = uniform_slide::at(1000);
   const wrench first = feel(here).on_probe_w;
   EXPECT_GT(first.force.z, 0.1);
@@ -117,7 +117,7 @@ TEST(Rest, FeelsTheSameBitsWhateverWasBefore) {
 
 /// A finder's or a filter's memory, as small as it may be: the force of the last pose stays in by a billionth.
 TEST(Rest, AForceThatRemembersIsFound) {
-  const feel_function feel = feel_with(renderers().shared());
+  const feel_function feel = feel_with(renderers().least_motion());
   wrench last{};
   const auto remembering = [&](const pose& T) {
     const wrench now = feel(T).on_probe_w;

@@ -99,7 +99,7 @@ void rest_at(const resting_place& place, double seconds) {
   constexpr double still_m = 5e-6, moving_m = 30e-6;
   constexpr std::int64_t period_ns = 5'000'000;
   const auto make = [&] { return make_scene_renderer(place.scene, scene_settings()); };
-  renderer feel = make();
+  least_motion_renderer feel = make();
   const vec3 centre = feel.scene().probe->mass.centre_of_mass;
   const restlessness r = rest(std::move(feel), place, centre, period_ns, seconds);
   const restlessness held = rest(test_support::held_force(make()), place, centre, period_ns, 6.0);

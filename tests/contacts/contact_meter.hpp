@@ -20,8 +20,8 @@ using test_support::build_renderer;
 inline constexpr double stiffness_n_per_m = 2000.0;
 
 /// What the acceptance numbers are stated for: this stiffness, and the softness of a loop of 1 kHz.
-[[nodiscard]] inline renderer_settings scene_settings() {
-  renderer_settings s;
+[[nodiscard]] inline least_motion_renderer_settings scene_settings() {
+  least_motion_renderer_settings s;
   s.force.stiffness_n_per_m = stiffness_n_per_m;
   return s;
 }
@@ -33,8 +33,9 @@ template <class T>
   return std::move(made).value();
 }
 
-[[nodiscard]] inline renderer make_scene_renderer(const contact_scene& s, const renderer_settings& settings,
-                                                  const model_plan& plan = {}) {
+[[nodiscard]] inline least_motion_renderer make_scene_renderer(const contact_scene& s,
+                                                               const least_motion_renderer_settings& settings,
+                                                               const model_plan& plan = {}) {
   return value_of(build_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}, settings));
 }
 
@@ -143,8 +144,8 @@ template <class Renderer>
 }
 
 /// A renderer of the scene, plain or with waves on both bodies.
-[[nodiscard]] inline renderer make_waved_renderer(const contact_scene& s, bool textured,
-                                                  const renderer_settings& settings) {
+[[nodiscard]] inline least_motion_renderer make_waved_renderer(const contact_scene& s, bool textured,
+                                                               const least_motion_renderer_settings& settings) {
   model_plan probe, fixed;
   if (textured) {
     probe.height = waves(3.7 * mm);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <vector>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "contact_meter.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
@@ -22,7 +22,7 @@ struct allowance {
 
 void expect_no_jump(const contact_scene& s, const allowance& allowed) {
   SCOPED_TRACE(s.name);
-  renderer r = make_scene_renderer(s, scene_settings());
+  least_motion_renderer r = make_scene_renderer(s, scene_settings());
   double most_n = 0.0;
   for (double t = 0.0; t <= 1.0; t += 0.05) most_n = std::max(most_n, glm::length(wrench_at(r, s.path(t)).force));
   EXPECT_GT(most_n, 0.5);  // nothing changes where nothing is felt
@@ -56,7 +56,7 @@ TEST(Continuity, FacesAndNotches) {
 // jump.
 TEST(Continuity, TexturedSlide) {
   const contact_scene s = slide();
-  renderer r = make_waved_renderer(s, true, scene_settings());
+  least_motion_renderer r = make_waved_renderer(s, true, scene_settings());
   const continuity c = measure_continuity(r, s, 20);
   std::printf("textured slide               : |dF| %6.3f at 1 kHz, %6.3f at 10 kHz; |dT| %6.3f, %6.3f\n", c.slow.force,
               c.fast.force, c.slow.torque, c.fast.torque);
@@ -74,7 +74,7 @@ continuity of_the_paper(const contact_scene& s) {
   plan.halvings = 1;
   const auto ticks = static_cast<std::size_t>(path_length(s) / slow_step_m);
   const auto at_rate = [&](std::size_t times) {
-    paper_renderer r = value_of(make_paper_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
+    window_renderer r = value_of(make_window_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
     return largest(walk(r, s, 0.0, 1.0, times * ticks));
   };
   const continuity c{at_rate(1), at_rate(10)};
@@ -96,7 +96,7 @@ TEST(Continuity, ThePapersClustersJump) {
 // A face that slides off presses no harder before it lets go.
 TEST(Continuity, SlideOffPressesNoHarder) {
   const contact_scene s = slide_off();
-  renderer r = make_scene_renderer(s, scene_settings());
+  least_motion_renderer r = make_scene_renderer(s, scene_settings());
   const double on_the_face = glm::length(wrench_at(r, s.path(0.0)).force);
   double most = 0.0;
   for (double t = 0.0; t < 1.1; t += 0.002) most = std::max(most, glm::length(wrench_at(r, s.path(t)).force));

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "asperity/window/convex_piece_finder.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "contact_meter.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/random_hulls.hpp"
@@ -71,16 +71,16 @@ struct course {
 };
 
 /// The paper's renderer with so soft a maximum that it does not see a ridge sweep over the samples.
-paper_renderer renderer_of(const press& p) {
-  paper_settings settings;
+window_renderer renderer_of(const press& p) {
+  window_renderer_settings settings;
   settings.depth.tau_m = 0.1 * mm;
-  return value_of(make_paper_renderer({p.probe, {p.fixed}}, settings));
+  return value_of(make_window_renderer({p.probe, {p.fixed}}, settings));
 }
 
 /// @param forgets  a new renderer for every pose, which has no direction to hold
 /// @param back     and back again
 course feel(const press& p, int ticks, bool forgets, bool back) {
-  paper_renderer r = renderer_of(p);
+  window_renderer r = renderer_of(p);
   course out;
   vec3 last(0.0);
   bool was_held = false;

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "contact_meter.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
@@ -53,7 +53,7 @@ TEST(Loop, ClosedLoopsDoNoWork) {
     const contact_scene& s = scenes[i];
     for (const bool textured : {false, true}) {
       SCOPED_TRACE(s.name);
-      renderer r = make_waved_renderer(s, textured, scene_settings());
+      least_motion_renderer r = make_waved_renderer(s, textured, scene_settings());
       const double part = loop_work(r, s.path(0.37), 1000);
       std::printf("%-14s %-8s loop work %.1e of the work exchanged\n", s.name.c_str(), textured ? "textured" : "plain",
                   part);
@@ -66,7 +66,7 @@ TEST(Loop, ThePapersClustersDoWorkInALoop) {
   const contact_scene s = v_groove();
   model_plan plan;
   plan.halvings = 1;
-  paper_renderer r = value_of(make_paper_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
+  window_renderer r = value_of(make_window_renderer({make_model(s.probe, plan), {make_model(s.fixed, plan)}}));
   const double part = loop_work(r, s.path(0.37), 1000);
   std::printf("%-14s the paper's: loop work %.1e\n", s.name.c_str(), part);
   EXPECT_GT(part, 1e-3);

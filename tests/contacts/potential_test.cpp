@@ -16,7 +16,7 @@ using namespace asperity::contacts_test;
 TEST(Potential, WrenchIsMinusTheGradientOfTheEnergy) {
   for (const contact_scene& s : all_scenes()) {
     SCOPED_TRACE(s.name);
-    renderer r = make_waved_renderer(s, true, scene_settings());
+    least_motion_renderer r = make_waved_renderer(s, true, scene_settings());
     const vec3 centre_b = r.scene().probe->mass.centre_of_mass;
     const auto energy = [&](const pose& T_wa) {
       static_cast<void>(wrench_at(r, T_wa));
@@ -56,7 +56,7 @@ TEST(Potential, WrenchIsMinusTheGradientOfTheEnergy) {
 // lies flat stands up to a turn: by 10 N m per rad here.
 TEST(Potential, NoiseOfThePoseIsNotAmplified) {
   const contact_scene s = slide();
-  renderer r = make_scene_renderer(s, scene_settings());
+  least_motion_renderer r = make_scene_renderer(s, scene_settings());
   std::mt19937_64 random(3);
   std::normal_distribution<double> noise;
   const double shift_m = 1e-7, turn = 1e-5;

@@ -16,7 +16,7 @@ namespace {
 using namespace asperity;
 using namespace asperity::contacts_test;
 
-double stiffness_z(renderer& r, const pose& T_wa) {
+double stiffness_z(least_motion_renderer& r, const pose& T_wa) {
   const double h = 0.002 * mm;
   pose above = T_wa, below = T_wa;
   above.position.z += h;
@@ -47,7 +47,7 @@ TEST(Stiffness, DoesNotDependOnHowFacesAreCut) {
       model_plan plan;
       plan.halvings = halvings;
       plan.texel_m = 0.4 * mm;
-      renderer r = make_scene_renderer(p.scene, scene_settings(), plan);
+      least_motion_renderer r = make_scene_renderer(p.scene, scene_settings(), plan);
       k.push_back(stiffness_z(r, p.T_wa));
       force.push_back(wrench_at(r, p.T_wa).force);
     }
@@ -76,7 +76,7 @@ struct single_contact {
 };
 
 /// @param slab_is_probe the block is fixed, and the slab moves the other way
-single_contact slide_single(renderer& r, const vec3& rotation, bool slab_is_probe) {
+single_contact slide_single(least_motion_renderer& r, const vec3& rotation, bool slab_is_probe) {
   single_contact out;
   double square = 0.0;
   const int count = 60;
@@ -107,7 +107,7 @@ void expect_exact_contacts(bool slab_is_probe) {
                              {"vertex", {0.6, 0.5, 0.3}}};
   contact_scene s = slide();
   if (slab_is_probe) std::swap(s.probe, s.fixed);
-  renderer r = make_scene_renderer(s, scene_settings());
+  least_motion_renderer r = make_scene_renderer(s, scene_settings());
   for (const attitude& a : attitudes) {
     SCOPED_TRACE(a.name);
     const single_contact c = slide_single(r, a.rotation, slab_is_probe);
@@ -131,7 +131,7 @@ constexpr double notch_error_m = 0.04 * mm;
 TEST(Stiffness, DepthAndDirectionOfAnEdgeAcrossAnEdge) {
   constexpr double crossing_error_m = 0.16 * mm;
   const contact_scene s = edge_on_edge();
-  renderer r = make_scene_renderer(s, scene_settings());
+  least_motion_renderer r = make_scene_renderer(s, scene_settings());
   const vec3 outwards = glm::normalize(vec3(1, 0, 1));
   for (double t = 0.05; t < 1.0; t += 0.1) {
     const vec3 expected = stiffness_n_per_m * mm * (0.2 + 0.6 * std::sin(std::numbers::pi * t)) * outwards;
@@ -148,7 +148,7 @@ TEST(Stiffness, AnEdgeInAGrooveIsFeltByBothFlanks) {
   s.probe = prism(outline_mm({{0, 0}, {3.64, 10}, {-3.64, 10}}), -8 * mm, 8 * mm);  // an edge of 40 degrees
   s.fixed = prism(outline_mm({{-40, -5}, {40, -5}, {40, rise}, {20, rise}, {0, 0}, {-20, rise}, {-40, rise}}), -30 * mm,
                   30 * mm);
-  renderer r = make_scene_renderer(s, scene_settings());
+  least_motion_renderer r = make_scene_renderer(s, scene_settings());
   const vec3 left(std::sin(slope), 0, std::cos(slope)), right(-std::sin(slope), 0, std::cos(slope));
   for (const double x_mm : {0.0, 0.05, 0.1}) {
     const vec3 edge = mm * vec3(x_mm, 0, -0.35);
@@ -162,7 +162,7 @@ TEST(Stiffness, AnEdgeInAGrooveIsFeltByBothFlanks) {
 
 // J is what the control loop believes between two ticks.
 TEST(Stiffness, JTellsHowTheWrenchChangesOnAFace) {
-  renderer r = make_scene_renderer(slide(), scene_settings());
+  least_motion_renderer r = make_scene_renderer(slide(), scene_settings());
   const std::array<pose, 1> fixed{};
   for (const double tilt : {0.0, 0.002, 0.004, 0.01}) {
     const pose T_wa = pose_mm({1.3, 0.7, 4.75}, {tilt, 0.75 * tilt, 0.2});
@@ -188,7 +188,7 @@ TEST(Stiffness, JTellsHowTheWrenchChangesOnAFace) {
 }
 
 TEST(Stiffness, ThreeFacesOfACornerHaveASpringEach) {
-  renderer r = make_scene_renderer(concave_corner(), scene_settings());
+  least_motion_renderer r = make_scene_renderer(concave_corner(), scene_settings());
   const vec3 depth_m = mm * vec3(0.205, 0.26, 0.32);
   const vec3 expected = stiffness_n_per_m * depth_m;
   const vec3 force = wrench_at(r, {quat(1, 0, 0, 0), mm * vec3(8, 8, 5) - depth_m}).force;

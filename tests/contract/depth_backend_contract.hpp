@@ -13,8 +13,8 @@
 // A backend that some machines cannot run adds `static std::string unavailable();`: why not here, or nothing where it
 // can. A backend without a soft maximum adds `static constexpr bool soft_maximum = false;`. Its soft depth is the
 // depth, it tells no curvature, and it is compared with the central differences alone. One that does not sample a grid
-// of the default size adds `static depth_settings reference(gradient_scheme)`: what the CPU backend needs to come near
-// it.
+// of the default size adds `static window_depth_settings reference(gradient_scheme)`: what the CPU backend needs to
+// come near it.
 #pragma once
 
 #include <array>
@@ -48,9 +48,9 @@ class DepthBackendContract : public ::testing::Test {
     return std::span(all).first(soft_maximum() ? 2 : 1);
   }
 
-  static depth_settings reference_settings(gradient_scheme scheme) {
+  static window_depth_settings reference_settings(gradient_scheme scheme) {
     if constexpr (requires { Factory::reference(scheme); }) return Factory::reference(scheme);
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = scheme;
     return settings;
   }

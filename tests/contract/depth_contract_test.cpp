@@ -7,7 +7,7 @@ namespace {
 struct cpu_factory {
   using backend = cpu_depth;
   static backend make(const scene& s, gradient_scheme scheme) {
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = scheme;
     return cpu_depth(s, settings);
   }
@@ -24,7 +24,7 @@ struct exact_factory {
   static backend make(const scene& s, gradient_scheme /*scheme*/) { return exact_depth(s); }
   // 64 x 64 samples miss up to 7 um of the suite's textures, and the slopes of their maximum are up to 0.6 off; what
   // 256 x 256 leave is the reference's own error. ExactDepth.TheGradientIsThatOfTheMaximum measures this backend's.
-  static depth_settings reference(gradient_scheme scheme) {
+  static window_depth_settings reference(gradient_scheme scheme) {
     return {.gradient = scheme, .grid = 256, .difference_step_m = 1e-5, .refine_maximum = true};
   }
   static constexpr double depth_tolerance_m = 1e-6;

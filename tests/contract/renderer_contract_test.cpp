@@ -1,8 +1,8 @@
 #include "contract/renderer_contract.hpp"
 
-#include "asperity/planes/field_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
 #include "asperity/window/any_depth.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "exact/exact_renderer.hpp"
 #include "support/kept_bodies.hpp"
 
@@ -20,13 +20,13 @@ struct default_with_planes {
 struct planes_factory {
   static any_renderer make(const scene& bodies) {
     static const auto fields = std::make_shared<const field_scene>(make_field_scene(bodies).value());
-    return any_renderer(make_field_renderer(bodies, fields).value());
+    return any_renderer(make_plane_renderer(bodies, fields).value());
   }
 };
 template <gradient_scheme Scheme>
 struct paper_factory {
   static any_renderer make(const scene& bodies) {
-    return any_renderer(make_paper_renderer(bodies, {.depth = {.gradient = Scheme}}).value());
+    return any_renderer(make_window_renderer(bodies, {.depth = {.gradient = Scheme}}).value());
   }
 };
 struct exact_factory {
@@ -47,8 +47,8 @@ INSTANTIATE_TYPED_TEST_SUITE_P(Renderers, RendererContract, factories);
 
 TEST(AnyRenderer, GivesTheBitsOfWhatIsInside) {
   using fixture = RendererContract<default_factory>;
-  paper_renderer alone = make_paper_renderer(fixture::bodies()).value();
-  any_renderer erased(make_paper_renderer(fixture::bodies()).value());
+  window_renderer alone = make_window_renderer(fixture::bodies()).value();
+  any_renderer erased(make_window_renderer(fixture::bodies()).value());
   const std::vector<pose> fixed = fixture::where_fixed();
   const pose pressed{quat(1, 0, 0, 0), {0.001, 0.002, 0.0145}};
   tick a, b;
@@ -56,15 +56,15 @@ TEST(AnyRenderer, GivesTheBitsOfWhatIsInside) {
   ASSERT_EQ(erased.step({pressed, fixed}, b), status::ok);
   EXPECT_EQ(a.force.on_probe_w.force, b.force.on_probe_w.force);
   EXPECT_EQ(a.force.stiffness.m, b.force.stiffness.m);
-  EXPECT_EQ(&erased.scene(), &erased.target<paper_renderer>()->scene());
+  EXPECT_EQ(&erased.scene(), &erased.target<window_renderer>()->scene());
 }
 
 TEST(AnyRenderer, KnowsWhatIsInside) {
-  any_renderer erased(make_paper_renderer(RendererContract<default_factory>::bodies()).value());
-  EXPECT_NE(erased.target<paper_renderer>(), nullptr);
-  EXPECT_EQ(erased.target<renderer>(), nullptr);
+  any_renderer erased(make_window_renderer(RendererContract<default_factory>::bodies()).value());
+  EXPECT_NE(erased.target<window_renderer>(), nullptr);
+  EXPECT_EQ(erased.target<least_motion_renderer>(), nullptr);
   any_renderer moved(std::move(erased));
-  EXPECT_NE(moved.target<paper_renderer>(), nullptr);
+  EXPECT_NE(moved.target<window_renderer>(), nullptr);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "broken_mutation.hpp"
 #include "model/surface_index.hpp"
 #include "model/texture_scale.hpp"
@@ -40,7 +40,7 @@ class difference_depth {
  public:
   using policy_tag = depth_tag;
 
-  difference_depth(asperity::scene scene, const depth_settings& settings, mutation how)
+  difference_depth(asperity::scene scene, const window_depth_settings& settings, mutation how)
       : scene_(std::move(scene)), settings_(settings), how_(how), a_(scene_, 0, settings), b_(scene_, 1, settings) {
     bodies_.emplace_back(*scene_.probe);
     const detail::texture_scale probe = detail::measure_texture(*scene_.probe, bodies_.front());
@@ -60,7 +60,7 @@ class difference_depth {
   struct side {
     detail::patch_projection patch;
     detail::height_field field;
-    side(const asperity::scene& s, std::size_t first, const depth_settings& settings)
+    side(const asperity::scene& s, std::size_t first, const window_depth_settings& settings)
         : patch(most_triangles(s, first)), field(std::size_t{settings.grid} * settings.grid) {}
   };
   static std::size_t most_triangles(const asperity::scene& s, std::size_t first) {
@@ -126,7 +126,7 @@ class difference_depth {
   }
 
   asperity::scene scene_;
-  depth_settings settings_;
+  window_depth_settings settings_;
   mutation how_;
   side a_, b_;
   std::vector<detail::surface_index> bodies_;
@@ -141,7 +141,7 @@ class paper_depth {
  public:
   using policy_tag = depth_tag;
 
-  paper_depth(const asperity::scene& s, const depth_settings& settings, mutation how) : scene_(s), how_(how) {
+  paper_depth(const asperity::scene& s, const window_depth_settings& settings, mutation how) : scene_(s), how_(how) {
     if (settings.gradient == gradient_scheme::central_difference) {
       differences_.emplace(s, settings, how);
     } else {
@@ -171,9 +171,9 @@ static_assert(depth_backend<paper_depth>);
 
 using broken_paper_renderer = basic_renderer<convex_piece_finder, paper_depth, gradient_penalty>;
 
-[[nodiscard]] inline result<broken_paper_renderer> make_paper(scene bodies, const depth_settings& settings,
+[[nodiscard]] inline result<broken_paper_renderer> make_paper(scene bodies, const window_depth_settings& settings,
                                                               mutation how) {
-  paper_settings s;
+  window_renderer_settings s;
   s.depth = settings;
   if (result<cpu_depth> checked = make_cpu_depth(bodies, settings); !checked) return checked.error();
   convex_piece_finder finder(bodies, s.finder);

@@ -29,11 +29,11 @@ struct watch {
 };
 
 constexpr watch watches[] = {
-    {mutation::no_transport, "hammer", asperity::experiment::paper_soft},
-    {mutation::flipped_normal, "hammer", asperity::experiment::paper_soft},
-    {mutation::nearest_texel, "fig8", asperity::experiment::paper_central},
-    {mutation::one_sided, "fig8", asperity::experiment::paper_central},
-    {mutation::no_curvature, "stability", asperity::experiment::paper_soft},
+    {mutation::no_transport, "hammer", asperity::experiment::window_soft},
+    {mutation::flipped_normal, "hammer", asperity::experiment::window_soft},
+    {mutation::nearest_texel, "fig8", asperity::experiment::window_central},
+    {mutation::one_sided, "fig8", asperity::experiment::window_central},
+    {mutation::no_curvature, "stability", asperity::experiment::window_soft},
 };
 
 workbench bench_with(mutation how, std::vector<variant> kinds) {
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(obvious, mutations_are_noticed, testing::ValuesIn(watch
 // Otherwise what a statement notices might be how the broken policies are put together.
 TEST(mutation_none, gives_the_bits_of_the_library) {
   workbench bench =
-      bench_with(mutation::none, {asperity::experiment::paper_soft(), asperity::experiment::paper_central()});
+      bench_with(mutation::none, {asperity::experiment::window_soft(), asperity::experiment::window_central()});
   const auto block = bench.models().benchmark(asperity::models::benchmark::block);
   const auto gear = bench.models().benchmark(asperity::models::benchmark::gear);
   ASSERT_TRUE(block && gear);

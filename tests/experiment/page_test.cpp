@@ -73,7 +73,7 @@ TEST_F(page, parts_of_pictures_have_names_of_their_own) {
   EXPECT_GT(used, 100U);
 }
 
-TEST_F(page, tells_of_a_brief_run_and_of_what_is_missing) {
+TEST_F(page, reports_a_brief_run_and_what_is_missing) {
   EXPECT_EQ(written().find("brief run"), std::string::npos);
   const std::string html = written({"1.2.3", "a machine", true, "Missing: fig9. The run ended before: <why>."});
   EXPECT_NE(html.find("brief run"), std::string::npos);

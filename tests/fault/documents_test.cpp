@@ -36,7 +36,7 @@ TEST_F(documents, models) {
   EXPECT_EQ(files(), (std::set<std::string>{"made", "made/gear.ply", "made/gear_coarse.ply"}));
 }
 
-TEST_F(documents, bake_and_inspect_tell_the_same) {
+TEST_F(documents, bake_and_inspect_report_the_same) {
   const json baked = expect_document(
       {"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture", "128", "-o", path("brick.glb")},
       "asperity.bake/1");
@@ -47,7 +47,8 @@ TEST_F(documents, bake_and_inspect_tell_the_same) {
   EXPECT_EQ(baked["texture"]["width"], 128);
   EXPECT_EQ(baked["units"], "SI");
   EXPECT_GT(baked["bake"]["max_error"], baked["bake"]["rms_error"]);
-  EXPECT_GT(baked["bake"]["relief"], 0.9e-3);  // ridges of half a millimetre either way, seen by a small texture
+  EXPECT_GT(baked["bake"]["peak_to_valley"],
+            0.9e-3);  // ridges of half a millimetre either way, seen by a small texture
   EXPECT_FALSE(baked["stages"].empty());
   for (const char* way : {"to_original", "to_textured"}) {
     expect_keys(baked["bake"][way], {"rms", "p50", "p99", "max"});
@@ -182,7 +183,7 @@ TEST_P(query_document, is_the_contract) {
   expect_keys(d, {"schema", "contacts", "force", "torque", "centre_of_mass", "stiffness", "formulation", "backend",
                   "gradient_scheme", "lookup", "status", "dropped_contacts", "units"});
   EXPECT_EQ(d["formulation"], GetParam());
-  EXPECT_EQ(d["gradient_scheme"], std::string(GetParam()) == "shared" ? "exact" : "soft");
+  EXPECT_EQ(d["gradient_scheme"], std::string(GetParam()) == "least-motion" ? "exact" : "soft");
   EXPECT_EQ(d["backend"], "cpu");
   EXPECT_EQ(d["units"], "SI");
   expect_numbers(d["force"], 3);
@@ -204,14 +205,15 @@ TEST_P(query_document, is_the_contract) {
   }
   // From the probe above to the body below. The least motion leans towards a flank of the ridges, by 0.17 rad with this
   // small texture.
-  EXPECT_NEAR(d["contacts"][0]["n_ab"][2], -1.0, std::string(GetParam()) == "shared" ? 0.03 : 1e-6);
+  EXPECT_NEAR(d["contacts"][0]["n_ab"][2], -1.0, std::string(GetParam()) == "least-motion" ? 0.03 : 1e-6);
   EXPECT_GT(d["contacts"][0]["depth"], 2e-4 - 1e-6);
   EXPECT_LT(d["contacts"][0]["depth"], 1e-3);  // the small texture is coarse beside the ridges
   EXPECT_GT(d["force"][2], 0.0);               // and the probe is pushed up
 }
 
-INSTANTIATE_TEST_SUITE_P(both, query_document, testing::Values("shared", "paper"),
-                         [](const auto& formulation) { return std::string(formulation.param); });
+INSTANTIATE_TEST_SUITE_P(both, query_document, testing::Values("least-motion", "window"), [](const auto& formulation) {
+  return std::string(formulation.param) == "window" ? "window" : "least_motion";
+});
 
 TEST_F(documents, what_belongs_to_the_paper_is_refused_without_it) {
   for (const arguments& option :
@@ -220,9 +222,9 @@ TEST_F(documents, what_belongs_to_the_paper_is_refused_without_it) {
     query.insert(query.end(), option.begin(), option.end());
     const std::string message = expect_failure(query, 1, "invalid_argument");
     EXPECT_NE(message.find(option.front()), std::string::npos);
-    EXPECT_NE(message.find("--contacts paper"), std::string::npos);
-    query.insert(query.end(), {"--contacts", "paper"});
-    EXPECT_EQ(expect_document(query, "asperity.query/1")["formulation"], "paper");
+    EXPECT_NE(message.find("--contacts window"), std::string::npos);
+    query.insert(query.end(), {"--contacts", "window"});
+    EXPECT_EQ(expect_document(query, "asperity.query/1")["formulation"], "window");
   }
 }
 
@@ -237,7 +239,7 @@ TEST_F(documents, query_far_away_has_no_contact_and_no_force) {
 TEST_F(documents, both_gradient_schemes_agree_on_the_depth) {
   const arguments query{
       "query",      "--probe", block(), "--fixed", block(), "--probe-pose", "0.001 0.0005 0.0198 0 0 0 1",
-      "--contacts", "paper"};
+      "--contacts", "window"};
   arguments central = query;
   central.insert(central.end(), {"--gradient", "central"});
   const json soft = expect_document(query, "asperity.query/1");
@@ -251,12 +253,12 @@ TEST_F(documents, both_gradient_schemes_agree_on_the_depth) {
 TEST_F(documents, the_exact_maximum_is_deeper_than_a_grid_s_and_says_how_deep_it_can_be) {
   const arguments query{"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0.001 0.0005 0.0198 0 0 0 1"};
   arguments paper = query, exact = query;
-  paper.insert(paper.end(), {"--contacts", "paper"});
+  paper.insert(paper.end(), {"--contacts", "window"});
   exact.insert(exact.end(), {"--backend", "exact"});
   const json on_grid = expect_document(paper, "asperity.query/1");
   const json searched = expect_document(exact, "asperity.query/1");
   EXPECT_EQ(searched["backend"], "exact");
-  EXPECT_EQ(searched["formulation"], "paper");
+  EXPECT_EQ(searched["formulation"], "window");
   EXPECT_EQ(searched["gradient_scheme"], "exact");
   ASSERT_FALSE(searched["contacts"].empty());
   ASSERT_EQ(searched["contacts"].size(), on_grid["contacts"].size());
@@ -274,7 +276,7 @@ TEST_F(documents, the_exact_maximum_is_deeper_than_a_grid_s_and_says_how_deep_it
 
 TEST_F(documents, what_contradicts_the_exact_maximum_is_refused_by_name) {
   for (const arguments& option :
-       {arguments{"--contacts", "shared"}, arguments{"--gradient", "soft"}, arguments{"--grid", "64"}}) {
+       {arguments{"--contacts", "least-motion"}, arguments{"--gradient", "soft"}, arguments{"--grid", "64"}}) {
     arguments query{"query",        "--probe",       block(),     "--fixed", block(),
                     "--probe-pose", "0 0 1 0 0 0 1", "--backend", "exact"};
     query.insert(query.end(), option.begin(), option.end());
@@ -287,7 +289,7 @@ TEST_F(documents, what_contradicts_the_exact_maximum_is_refused_by_name) {
                 .find("--clock virtual"),
             std::string::npos);
   EXPECT_EQ(expect_document({"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1",
-                             "--backend", "exact", "--contacts", "paper"},
+                             "--backend", "exact", "--contacts", "window"},
                             "asperity.query/1")["contacts"],
             json::array());
 }
@@ -324,7 +326,7 @@ TEST_F(documents, run) {
                   "units",        "device_recording", "replay",       "real_time",
                   "signal",       "driver_fault",     "rates",        "vibration",
                   "wall",         "coupling"});
-  EXPECT_EQ(d["formulation"], "field");
+  EXPECT_EQ(d["formulation"], "planes");
   for (const char* key : {"band", "rest", "force", "torque"}) EXPECT_TRUE(d["vibration"].contains(key)) << key;
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
   EXPECT_EQ(d["fault"], "none");
@@ -339,7 +341,7 @@ TEST_F(documents, run) {
 }
 
 TEST_F(documents, run_without_support_planes) {
-  for (const char* contacts : {"shared", "paper"}) {
+  for (const char* contacts : {"least-motion", "window"}) {
     const json d = expect_document(
         {"run", "--probe", block(), "--fixed", block(), "--seconds", "0.1", "--contacts", contacts}, "asperity.run/1");
     EXPECT_EQ(d["formulation"], contacts);
@@ -355,7 +357,7 @@ TEST_F(documents, run_with_support_planes) {
   above.insert(above.end(), {"--seconds", "0.5"});
   inside.insert(inside.end(), {"--seconds", "0.05", "--probe-pose", "0.001 0.002 0.003 0 0 0 1", "--coupling", "700"});
   const json d = expect_document(above, "asperity.run/1");
-  EXPECT_EQ(d["formulation"], "field");
+  EXPECT_EQ(d["formulation"], "planes");
   expect_keys(d["wall"], {"largest_overlap", "beyond_field", "passed", "not_held", "planes_left_out", "unbalanced"});
   for (const char* flag : {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced"}) {
     EXPECT_EQ(d["wall"][flag]["ticks"], 0) << flag;
@@ -386,7 +388,7 @@ TEST_F(documents, bench) {
   const json d =
       expect_document({"bench", "--probe", block(), "--fixed", block(), "--poses", "50"}, "asperity.bench/1");
   expect_keys(d["seconds"], {"collision_query", "contact_soft", "contact_central", "tick_planes", "every_sample",
-                             "tick_shared", "tick_soft", "tick_central"});
+                             "tick_least_motion", "tick_soft", "tick_central"});
   expect_keys(d["samples"], {"near", "leaves_bounded", "read_quickly", "read_exactly"});
   EXPECT_GT(d["samples"]["near"], d["samples"]["read_exactly"]);
   for (const auto& [what, times] : d["seconds"].items()) {

@@ -164,7 +164,7 @@ TEST_F(ending, during_a_homing_arms_nothing) {
 }
 
 // What is told of the scheduling class, held against what the kernel says of the threads.
-TEST_F(ending, of_a_session_in_real_time_tells_what_it_was_given) {
+TEST_F(ending, of_a_session_in_real_time_reports_what_it_was_given) {
   running_command felt(session("0.5"), noted());
   std::set<std::string> priorities;  // of the threads with SCHED_FIFO
   ASSERT_TRUE(felt.wait_until([&] { return notes("pushes"); })) << felt.finish(0.0).err;
@@ -182,8 +182,8 @@ TEST_F(ending, of_a_session_in_real_time_tells_what_it_was_given) {
   for (const auto& [thread, wish] : {std::pair{"device_thread", "40"}, std::pair{"contact_thread", "20"}}) {
     const bool granted = d[thread]["scheduling"] == "granted";
     ASSERT_EQ(granted, d[thread]["priority"].is_number()) << d;
-    const std::string told = granted ? std::to_string(d[thread]["priority"].get<int>()) : wish;
-    EXPECT_EQ(granted, priorities.contains(told)) << d;
+    const std::string reported = granted ? std::to_string(d[thread]["priority"].get<int>()) : wish;
+    EXPECT_EQ(granted, priorities.contains(reported)) << d;
   }
   arguments quiet = session("0.1");
   quiet.emplace_back("--quiet");

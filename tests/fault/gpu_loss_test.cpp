@@ -132,10 +132,10 @@ TEST_P(lost_gpu, without_a_fallback_the_session_ends_and_says_why) {
 
 INSTANTIATE_TEST_SUITE_P(
     each, lost_gpu,
-    testing::Values(lost_backend{"gl_compute", {"--backend", "gl-compute"}, {"--contacts", "paper"}, 1e-9},
+    testing::Values(lost_backend{"gl_compute", {"--backend", "gl-compute"}, {"--contacts", "window"}, 1e-9},
                     lost_backend{"gl_occlusion",
                                  {"--backend", "gl-occlusion"},
-                                 {"--contacts", "paper", "--gradient", "central", "--lookup", "paper"},
+                                 {"--contacts", "window", "--gradient", "central", "--lookup", "paper"},
                                  1e-5}),
     [](const auto& of) { return std::string(of.param.name); });
 

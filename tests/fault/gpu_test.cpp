@@ -65,8 +65,8 @@ TEST_F(gpu, contradictions_are_named) {
       {{"--gpu", "0"}, "--gpu", "--backend gl-compute"},
       {{"--fallback"}, "--fallback", "--backend gl-compute"},
       {{"--backend", "exact", "--gpu", "0"}, "--gpu", "--backend gl-compute"},
-      {{"--backend", "gl-compute", "--contacts", "shared"}, "--contacts shared", "leave out"},
-      {{"--backend", "gl-occlusion", "--contacts", "shared"}, "--contacts shared", "leave out"},
+      {{"--backend", "gl-compute", "--contacts", "least-motion"}, "--contacts least-motion", "leave out"},
+      {{"--backend", "gl-occlusion", "--contacts", "least-motion"}, "--contacts least-motion", "leave out"},
       {{"--backend", "gl-occlusion", "--gradient", "soft"}, "--gradient soft", "leave it out"},
       {{"--backend", "gl-occlusion", "--lookup", "exact"}, "--lookup exact", "--backend gl-compute"},
   };
@@ -101,7 +101,7 @@ TEST_F(gpu, without_opengl_the_cpu_answers_where_told_to_and_that_is_counted) {
   for (const std::string backend : {"gl-compute", "gl-occlusion"}) {
     json there = document(query({"--backend", backend, "--fallback"}), no_gl);
     const json cpu = document(
-        query({"--contacts", "paper", "--gradient", there.at("gradient_scheme"), "--lookup", there.at("lookup")}));
+        query({"--contacts", "window", "--gradient", there.at("gradient_scheme"), "--lookup", there.at("lookup")}));
     ASSERT_FALSE(cpu.at("contacts").empty());
     EXPECT_EQ(there.at("contacts"), cpu.at("contacts"));
     EXPECT_EQ(there.at("force"), cpu.at("force"));
@@ -119,7 +119,7 @@ TEST_F(gpu, without_opengl_the_cpu_answers_where_told_to_and_that_is_counted) {
   EXPECT_EQ(there.at("gpu").at("fallback_ticks"), there.at("gpu").at("ticks"));
   EXPECT_GE(there.at("gpu").at("ticks"), 100);
   static_cast<void>(
-      document(session({"--contacts", "paper", "--seconds", "0.1", "--motion", "free", "--record", path("cpu.csv")})));
+      document(session({"--contacts", "window", "--seconds", "0.1", "--motion", "free", "--record", path("cpu.csv")})));
   EXPECT_EQ(read("there.csv"), read("cpu.csv"));
   // Said once; not with --quiet.
   EXPECT_EQ(run(query({"--backend", "gl-compute", "--fallback", "--quiet"}), no_gl).err, "");
@@ -187,7 +187,7 @@ class query_on_gpu : public on_gpu, public testing::WithParamInterface<agreement
 
 TEST_P(query_on_gpu, agrees_with_the_cpu) {
   const json gl = document(query(GetParam().gl)), cpu = document(query(GetParam().cpu));
-  EXPECT_EQ(gl.at("formulation"), "paper");
+  EXPECT_EQ(gl.at("formulation"), "window");
   EXPECT_EQ(gl.at("gradient_scheme"), cpu.at("gradient_scheme"));
   EXPECT_EQ(gl.at("lookup"), cpu.at("lookup"));
   EXPECT_EQ(gl.at("gpu").at("failed_ticks"), 0);
@@ -212,15 +212,15 @@ TEST_P(query_on_gpu, agrees_with_the_cpu) {
 
 INSTANTIATE_TEST_SUITE_P(
     each, query_on_gpu,
-    testing::Values(agreement{"compute_soft", {"--backend", "gl-compute"}, {"--contacts", "paper"}, 1e-9, 1e-6},
+    testing::Values(agreement{"compute_soft", {"--backend", "gl-compute"}, {"--contacts", "window"}, 1e-9, 1e-6},
                     agreement{"compute_central",
                               {"--backend", "gl-compute", "--gradient", "central", "--lookup", "paper"},
-                              {"--contacts", "paper", "--gradient", "central", "--lookup", "paper"},
+                              {"--contacts", "window", "--gradient", "central", "--lookup", "paper"},
                               1e-9,
                               1e-6},
                     agreement{"occlusion",
                               {"--backend", "gl-occlusion"},
-                              {"--contacts", "paper", "--gradient", "central", "--lookup", "paper"},
+                              {"--contacts", "window", "--gradient", "central", "--lookup", "paper"},
                               1e-6,
                               1e-2}),
     [](const auto& of) { return std::string(of.param.name); });
@@ -238,7 +238,7 @@ TEST_F(on_gpu, a_session_on_the_real_clock_hands_the_context_to_its_thread) {
   }
 }
 
-TEST_F(on_gpu, a_software_renderer_is_told_once_and_not_when_quiet) {
+TEST_F(on_gpu, a_software_renderer_is_reported_once_and_not_when_quiet) {
   const json device = document(query({"--backend", "gl-compute"})).at("gpu");
   if (device.at("software") == false) GTEST_SKIP() << device.at("device") << " is no software renderer";
   EXPECT_NE(run(query({"--backend", "gl-compute"})).err.find("note: "), std::string::npos);

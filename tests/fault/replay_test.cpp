@@ -77,7 +77,7 @@ TEST_F(replay, gives_a_session_of_the_virtual_clock_byte_for_byte) {
   EXPECT_EQ(files(), (std::set<std::string>{"now.csv", "now.dev", "then.csv", "then.dev"}));
 }
 
-TEST_F(replay, tells_from_when_on_another_wrench_was_felt) {
+TEST_F(replay, reports_from_when_on_another_wrench_was_felt) {
   ASSERT_EQ(run(felt_with("simulated", {"--seconds", "0.35", "--record-device", path("then.dev")})).exit_status, 0);
   arguments other = again(path("then.dev"), {"--record", path("now.csv")});
   std::replace(other.begin(), other.end(), std::string("500"), std::string("200"));
@@ -86,8 +86,8 @@ TEST_F(replay, tells_from_when_on_another_wrench_was_felt) {
   EXPECT_GT(d["replay"]["first_difference"], 0.1);  // not before something is touched
   EXPECT_LT(d["replay"]["first_difference"], 0.3);
   EXPECT_EQ(d["fault"], "none");
-  const outcome told = run(other);
-  EXPECT_NE(told.out.find("the commands are others than then"), std::string::npos) << told.out;
+  const outcome reported = run(other);
+  EXPECT_NE(reported.out.find("the commands are others than then"), std::string::npos) << reported.out;
   // Whatever the recording holds of its own last ticks, the wrench goes to zero.
   const std::string last = rows("now.csv").back();
   EXPECT_NE(last.find(",0,0,0,0,0,0,"), std::string::npos) << last;
@@ -135,7 +135,7 @@ TEST_F(replay, ends_where_the_device_was_disarmed) {
 }
 
 TEST_F(replay, ends_as_an_interrupted_session_did) {
-  const arguments away{"--probe-pose", "0 0 0.5 0 0 0 1", "--contacts", "paper"};
+  const arguments away{"--probe-pose", "0 0 0.5 0 0 0 1", "--contacts", "window"};
   process_options options;
   options.interrupt_after_s = 0.4;
   arguments first =
@@ -152,7 +152,7 @@ TEST_F(replay, ends_as_an_interrupted_session_did) {
   EXPECT_TRUE(read("then.csv") == read("now.csv"));
 }
 
-TEST_F(replay, tells_the_gate_what_it_was_told) {
+TEST_F(replay, ends_the_gate_as_the_session_on_record_ended) {
   for (const auto& [end, word] :
        {std::pair{recorded_end::interrupted, ",interrupted"}, std::pair{recorded_end::stopped, ",stopped"}}) {
     device_recording other = short_session();

@@ -53,7 +53,7 @@ TEST_F(session, twice_gives_the_same_bytes) {
     EXPECT_GT(read("first.csv").size(), 50000U);
     EXPECT_TRUE(read("first.csv") == read("second.csv")) << motion;
   }
-  const arguments paper{"--seconds", "0.7", "--contacts", "paper", "--grid", "24"};
+  const arguments paper{"--seconds", "0.7", "--contacts", "window", "--grid", "24"};
   const std::string shared = read("first.csv");
   ASSERT_EQ(run(session_to("first.csv", paper)).exit_status, 0);
   ASSERT_EQ(run(session_to("second.csv", paper)).exit_status, 0);
@@ -109,7 +109,7 @@ TEST_F(session, interrupted_on_the_real_clock) {
 }
 
 TEST_F(session, interrupted_on_the_virtual_clock) {
-  const outcome stopped = interrupted(session_to("session.csv", {"--seconds", "80000", "--contacts", "paper"}));
+  const outcome stopped = interrupted(session_to("session.csv", {"--seconds", "80000", "--contacts", "window"}));
   EXPECT_EQ(stopped.exit_status, 130);
   EXPECT_EQ(files(), std::set<std::string>{"session.csv"});
   EXPECT_GT(table("session.csv").size(), 1U);

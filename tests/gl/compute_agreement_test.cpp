@@ -64,7 +64,7 @@ struct patch_kind {
 constexpr std::array<patch_kind, 8> kinds{
     {{1, 1, 64}, {1, 1, 256}, {2, 1, 128}, {2, 2, 256}, {3, 2, 96}, {3, 3, 224}, {4, 4, 192}, {5, 4, 200}}};
 
-void run(const char* name, const context_ptr& context, const depth_settings& settings, arithmetic a,
+void run(const char* name, const context_ptr& context, const window_depth_settings& settings, arithmetic a,
          std::size_t contacts_each, const bounds_of& allowed) {
   worst_of worst;
   std::optional<compute_depth> before;  // kept so that its program is there for the next
@@ -103,7 +103,7 @@ TEST_F(GlComputeAgreement, OverSeededContacts) {
   std::printf("| %-28s | cont. | over. | depth    | soft d.  | gradient | curv.    | witness  | flags | samples |\n",
               "worst differences");
   const bool doubles = context->facts().double_precision;
-  const depth_settings soft{.grid = 24}, paper{.parallax = parallax_mode::paper_lookup, .grid = 24},
+  const window_depth_settings soft{.grid = 24}, paper{.parallax = parallax_mode::paper_lookup, .grid = 24},
       differences{.gradient = gradient_scheme::central_difference, .grid = 16};
   if (doubles) {
     run("soft max, double", context, soft, arithmetic::double_precision, 260, {1e-11, 1e-7, 1e-5, 1e-5});
@@ -122,7 +122,7 @@ TEST_F(GlComputeAgreement, PastASharpCorner) {
     const scene s{test_support::sharp_corner(vec3(0.0, 0.0, other)), {test_support::make_plate(fixed)}};
     const contact_window w = test_support::window_downwards(8e-4, vec3(7e-4, 0.0, 0.0));
     const pose T_wa{test_support::face_down(), vec3(0.0)};
-    const depth_settings settings{.grid = 48};
+    const window_depth_settings settings{.grid = 48};
     cpu_depth reference(s, settings);
     const penetration wanted = test_support::measure_whole(reference, s, w, T_wa);
     EXPECT_NEAR(wanted.depth_m, 1e-4, 1e-9);

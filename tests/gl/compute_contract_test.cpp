@@ -16,7 +16,7 @@ struct compute_factory {
   }
   static std::string unavailable() { return context() ? "" : context().error().message; }
   static backend make(const scene& s, gradient_scheme scheme) {
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = scheme;
     auto made = gl::compute_depth::make(*context(), s, settings, {.arithmetic = Arithmetic});
     EXPECT_TRUE(made) << made.error().message;

@@ -21,7 +21,8 @@ using test_support::seeded_contacts;
 
 class GlComputeDepth : public test_support::gl_test {
  protected:
-  [[nodiscard]] compute_depth make(const scene& s, const depth_settings& settings, const compute_settings& o = {}) {
+  [[nodiscard]] compute_depth make(const scene& s, const window_depth_settings& settings,
+                                   const compute_settings& o = {}) {
     auto made = compute_depth::make(context, s, settings, o);
     EXPECT_TRUE(made) << made.error().message;
     return *std::move(made);
@@ -55,7 +56,7 @@ class GlComputeDepth : public test_support::gl_test {
   }
 };
 
-const depth_settings soft{.grid = 16}, differences{.gradient = gradient_scheme::central_difference, .grid = 16};
+const window_depth_settings soft{.grid = 16}, differences{.gradient = gradient_scheme::central_difference, .grid = 16};
 
 TEST_F(GlComputeDepth, ThousandsOfPairsAreOneSubmissionAndTheSameBitsAsOneByOne) {
   const seeded_contacts s = test_support::make_seeded_contacts(5, 1, 1, 64, 4096);
@@ -76,7 +77,7 @@ TEST_F(GlComputeDepth, ThousandsOfPairsAreOneSubmissionAndTheSameBitsAsOneByOne)
 
 TEST_F(GlComputeDepth, ATickTakesNoMemoryAndWaitsOnce) {
   const seeded_contacts s = test_support::make_seeded_contacts(6, 2, 2, 128, 8);
-  for (const depth_settings& settings : {soft, differences}) {
+  for (const window_depth_settings& settings : {soft, differences}) {
     compute_depth backend = make(s.bodies, settings);
     std::vector<penetration> out(s.contacts.size());
     const auto at = pairs(s);
@@ -136,7 +137,7 @@ TEST_F(GlComputeDepth, TwoBackendsShareTheModels) {
 
 TEST_F(GlComputeDepth, BadOptionsAreRefused) {
   const seeded_contacts s = test_support::make_seeded_contacts(10, 1, 1, 64, 1);
-  const auto refused = [&](const scene& bodies, const depth_settings& settings, const compute_settings& o) {
+  const auto refused = [&](const scene& bodies, const window_depth_settings& settings, const compute_settings& o) {
     const auto made = compute_depth::make(context, bodies, settings, o);
     return !made && made.error().code == error_code::invalid_argument;
   };
@@ -216,7 +217,7 @@ TEST_F(GlComputeDepth, BrokenTexelsAreLeftOutAsOnTheCpu) {
     for (std::size_t i = 0; i < 3; ++i) m->texture.texels[middle + i].z = std::numeric_limits<float>::quiet_NaN();
   }
   s.bodies = {probe, {fixed}};
-  for (const depth_settings& settings : {soft, differences}) {
+  for (const window_depth_settings& settings : {soft, differences}) {
     compute_depth backend = make(s.bodies, settings, {.contacts = 24});
     cpu_depth reference(s.bodies, settings);
     std::vector<penetration> found(24);
@@ -235,7 +236,7 @@ TEST_F(GlComputeDepth, BrokenTexelsAreLeftOutAsOnTheCpu) {
 
 TEST_F(GlComputeDepth, EverySettingMeansWhatItMeansOnTheCpu) {
   const seeded_contacts s = test_support::make_seeded_contacts(15, 3, 2, 128, 12);
-  const std::array<depth_settings, 4> all{
+  const std::array<window_depth_settings, 4> all{
       {{.grid = 16, .tau_m = 5e-5, .reference_area_m2 = 1e-7, .taper_m = 1e-3, .facing_cosine = 0.45},
        {.grid = 17, .taper_silhouettes = false, .taper_window = false},
        {.grid = 16, .taper_gradient = false},
@@ -243,7 +244,7 @@ TEST_F(GlComputeDepth, EverySettingMeansWhatItMeansOnTheCpu) {
         .grid = 16,
         .difference_step_m = 2e-5,
         .origin = rotation_origin::centre_of_mass}}};
-  for (const depth_settings& settings : all) {
+  for (const window_depth_settings& settings : all) {
     compute_depth backend = make(s.bodies, settings);
     cpu_depth reference(s.bodies, settings);
     std::vector<penetration> found(12);

@@ -35,7 +35,7 @@ double largest(const vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y),
 worst_of run(const char* name, const context_ptr& context, const occlusion_settings& options,
              std::size_t contacts_each) {
   worst_of worst;
-  const depth_settings settings = paper_depth_settings(32);
+  const window_depth_settings settings = paper_depth_settings(32);
   for (std::size_t k = 0; k < kinds.size(); ++k) {
     const auto& kind = kinds[k];
     const auto s = test_support::make_seeded_contacts(100 + k, kind.cells_x, kind.cells_y, kind.texels, contacts_each);

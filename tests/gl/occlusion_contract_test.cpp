@@ -20,7 +20,7 @@ struct occlusion_factory {
     EXPECT_TRUE(made) << made.error().message;
     return *std::move(made);
   }
-  static depth_settings reference(gradient_scheme /*scheme*/) { return gl::paper_depth_settings(); }
+  static window_depth_settings reference(gradient_scheme /*scheme*/) { return gl::paper_depth_settings(); }
   static constexpr bool soft_maximum = false;
   static constexpr bool repeatable = true;
   // The suite's windows of 5 mm see ranges of some 2 mm: a quantum of 3e-8 m, and steps of 80 um and more.

@@ -14,7 +14,7 @@ namespace asperity::gl {
 
 /// The first seed whose plates lie over each other in the whole window.
 [[nodiscard]] inline test_support::seeded_contacts overlapping() {
-  const depth_settings settings = paper_depth_settings(16);
+  const window_depth_settings settings = paper_depth_settings(16);
   for (std::uint64_t seed = 106;; ++seed) {
     auto s = test_support::make_seeded_contacts(seed, 4, 4, 192, 1);
     cpu_depth reference(s.bodies, settings);
@@ -50,13 +50,13 @@ struct windows {
 class GlOcclusionDepth : public test_support::gl_test {
  protected:
   [[nodiscard]] occlusion_depth make(const scene& s, const occlusion_settings& o = {},
-                                     const depth_settings& settings = paper_depth_settings(32)) {
+                                     const window_depth_settings& settings = paper_depth_settings(32)) {
     auto made = occlusion_depth::make(context, s, settings, o);
     EXPECT_TRUE(made) << made.error().message;
     return *std::move(made);
   }
-  void expect_refused(const scene& s, const depth_settings& settings, const occlusion_settings& o, error_code code,
-                      const std::string& words) {
+  void expect_refused(const scene& s, const window_depth_settings& settings, const occlusion_settings& o,
+                      error_code code, const std::string& words) {
     const auto made = occlusion_depth::make(context, s, settings, o);
     ASSERT_FALSE(made) << words;
     EXPECT_EQ(made.error().code, code);

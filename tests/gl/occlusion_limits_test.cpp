@@ -103,12 +103,12 @@ TEST_F(GlOcclusionDepth, ALostContextIsAStatusAndLeavesZeros) {
 TEST_F(GlOcclusionDepth, SettingsAndOptionsThatItDoesNotHaveAreRefused) {
   const scene s = flat_scene();
   const auto invalid = error_code::invalid_argument;
-  const depth_settings paper = paper_depth_settings();
+  const window_depth_settings paper = paper_depth_settings();
   expect_refused(s, {}, {}, invalid, "gradient_scheme::central_difference");
-  depth_settings exact = paper;
+  window_depth_settings exact = paper;
   exact.parallax = parallax_mode::exact;
   expect_refused(s, exact, {}, invalid, "parallax_mode::paper_lookup");
-  depth_settings refined = paper;
+  window_depth_settings refined = paper;
   refined.refine_maximum = true;
   expect_refused(s, refined, {}, invalid, "refine_maximum");
   expect_refused(s, paper, {.contacts = 257}, invalid, "1 to 256");
@@ -116,10 +116,10 @@ TEST_F(GlOcclusionDepth, SettingsAndOptionsThatItDoesNotHaveAreRefused) {
   expect_refused(s, paper, {.depth_bits = 32}, invalid, "16 or 24");
   expect_refused(s, paper, {.depth_range_m = -1.0}, invalid, "depth_range_m");
   expect_refused(s, paper_depth_settings(33), {.packed = true}, invalid, "quarters");
-  depth_settings step = paper;
+  window_depth_settings step = paper;
   step.difference_step_m = 1e-4;
   expect_refused(s, step, {.moved = moved_heights::reused}, invalid, "difference_step_m");
-  depth_settings origin = paper;
+  window_depth_settings origin = paper;
   origin.origin = rotation_origin::centre_of_mass;
   expect_refused(s, origin, {.moved = moved_heights::reused}, invalid, "origin");
   expect_refused(s, paper_depth_settings(512), {.contacts = 256}, error_code::limit_exceeded, "fewer contacts");

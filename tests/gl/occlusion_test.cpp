@@ -125,7 +125,7 @@ TEST_F(GlOcclusionDepth, ATickAllocatesNothing) {
 TEST_F(GlOcclusionDepth, SixHeightFunctionsAreEnoughForTranslations) {
   windows w(1);
   const contact_window& window = w.contacts.contacts()[0].window;
-  depth_settings settings = paper_depth_settings(32);
+  window_depth_settings settings = paper_depth_settings(32);
   for (const bool packed : {false, true}) {
     occlusion_depth six = make(w.bodies(), {.moved = moved_heights::reused, .packed = packed}, settings);
     const penetration p = w.measure(six)[0];
@@ -135,7 +135,7 @@ TEST_F(GlOcclusionDepth, SixHeightFunctionsAreEnoughForTranslations) {
     EXPECT_EQ((*tiles)[0].differences.size(), 11U);
     EXPECT_EQ((*tiles)[0].heights[2].name, "A turned +u");
 
-    depth_settings by_a_sample = settings;
+    window_depth_settings by_a_sample = settings;
     by_a_sample.difference_step_m = six.step_m(0);
     EXPECT_NEAR(six.step_m(0), 2.0 * window.half_size_m / 32, 1e-15);
     cpu_depth reference(w.bodies(), by_a_sample);
@@ -161,7 +161,7 @@ TEST_F(GlOcclusionDepth, SixHeightFunctionsAreEnoughForTranslations) {
 TEST_F(GlOcclusionDepth, TilesOfManyContactsTakeSeveralColumns) {
   const windows w(3);
   // 256 tiles of 70 pixels do not fit above each other into 16384.
-  const depth_settings settings = paper_depth_settings(64);
+  const window_depth_settings settings = paper_depth_settings(64);
   occlusion_depth few = make(w.bodies(), {.contacts = 3, .moved = moved_heights::reused}, settings);
   occlusion_depth many =
       make(w.bodies(), {.contacts = 256, .triangles = 400, .moved = moved_heights::reused}, settings);

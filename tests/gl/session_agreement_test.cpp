@@ -83,8 +83,8 @@ struct compared {
 
 // Measured figures stand in docs/explanation/gpu-backends.md.
 constexpr std::array<compared, 2> backends{
-    {{"gl-compute", "--backend gl-compute", "--contacts paper", 1e-9, 1e-6, 1e-7},
-     {"gl-occlusion", "--backend gl-occlusion", "--contacts paper --gradient central --lookup paper", 1e-5, 0.05,
+    {{"gl-compute", "--backend gl-compute", "--contacts window", 1e-9, 1e-6, 1e-7},
+     {"gl-occlusion", "--backend gl-occlusion", "--contacts window --gradient central --lookup paper", 1e-5, 0.05,
       0.002}}};
 
 class GlSessions : public testing::TestWithParam<std::array<const char*, 2>> {

@@ -101,7 +101,7 @@ int run(const char* to) {
     return 77;
   }
   const frame f;
-  depth_settings settings = gl::paper_depth_settings();
+  window_depth_settings settings = gl::paper_depth_settings();
   settings.difference_step_m = 2.0 * f.contacts.contacts()[0].window.half_size_m / settings.grid;
   auto backend = gl::occlusion_depth::make(*context, f.bodies, settings);
   std::vector<penetration> found(f.contacts.size());

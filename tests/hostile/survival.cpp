@@ -8,7 +8,7 @@
 
 #include "asperity/io/image_file.hpp"
 #include "asperity/model/validate.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "support/kept_bodies.hpp"
 
 namespace asperity::hostile {
@@ -24,8 +24,8 @@ std::optional<std::string> complaint(const error& e) {
 }
 
 /// Small: the renderer is made thousands of times.
-paper_settings small_settings() {
-  paper_settings s;
+window_renderer_settings small_settings() {
+  window_renderer_settings s;
   s.finder.close_pairs = 64;
   s.finder.clusters = 4;
   s.depth.grid = 8;
@@ -85,11 +85,11 @@ std::optional<std::string> complaint(const result<textured_model>& loaded) {
   if (!loaded) return complaint(loaded.error());
   if (const auto valid = validate(*loaded); !valid) return "an invalid model: " + valid.error().message;
   const auto model = std::make_shared<const textured_model>(*loaded);
-  if (auto bad = complaint_of_tick(make_paper_renderer({model, {model}}, small_settings()), *model)) return bad;
+  if (auto bad = complaint_of_tick(make_window_renderer({model, {model}}, small_settings()), *model)) return bad;
   // Making fields takes longer than all the rest; one model in 64, the first among them, is enough of it.
   static std::uint64_t models = 0;
   if (models++ % 64 != 0) return std::nullopt;
-  renderer_settings few;
+  least_motion_renderer_settings few;
   few.bodies.field.pitch_m = model->box.diagonal() / 40.0;
   few.bodies.field.relief_bytes = 4'000'000;
   few.limits.leaves = 256;

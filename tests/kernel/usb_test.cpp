@@ -215,7 +215,7 @@ TEST_F(kernel_usb_link, a_stalled_pipe_is_a_failure_and_not_a_hang) {
   EXPECT_EQ(back, pattern(5, 5));
 }
 
-TEST_F(kernel_usb_link, a_transfer_that_breaks_is_told_once_and_the_pipe_goes_on) {
+TEST_F(kernel_usb_link, a_transfer_that_breaks_is_reported_once_and_the_pipe_goes_on) {
   const auto link = opened(listing(), {.in_transfers = 1});
   ASSERT_TRUE(link);
   std::vector<std::uint8_t> back;
@@ -303,11 +303,11 @@ TEST_F(kernel_usb_link, without_permission_the_reason_has_the_line_for_udev) {
     const auto link = usb::open_usb(l);
     const auto listed = usb::list_usb(l.vendor, l.product);
     const std::string rule = "ATTR{idVendor}==\"1209\", ATTR{idProduct}==\"0a5f\"";
-    const bool told = !link && link.error().message.find(rule) != std::string::npos;
+    const bool reported = !link && link.error().message.find(rule) != std::string::npos;
     const bool known = listed && listed->size() == 1 && (*listed)[0].serial == "V1" && (*listed)[0].not_openable;
-    if (!told) std::printf("%s\n", link ? "it was opened" : link.error().message.c_str());
+    if (!reported) std::printf("%s\n", link ? "it was opened" : link.error().message.c_str());
     std::fflush(stdout);
-    ::_exit(told ? (known ? 0 : 3) : 4);
+    ::_exit(reported ? (known ? 0 : 3) : 4);
   }
   int state = 0;
   ASSERT_EQ(::waitpid(child, &state, 0), child);

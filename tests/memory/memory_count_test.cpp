@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "asperity/field/field_body.hpp"
-#include "asperity/least_motion/default_renderer.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "counted_heap.hpp"
 #include "support/piece_models.hpp"
 #include "support/small_models.hpp"
@@ -69,7 +69,7 @@ class RendererMemory : public ::testing::Test {
  protected:
   RendererMemory() {
     const std::size_t before = bytes_on_loan();
-    auto made = make_paper_renderer({model_, {model_, other_}});
+    auto made = make_window_renderer({model_, {model_, other_}});
     EXPECT_TRUE(made);
     if (made) feel_.emplace(std::move(made).value());
     asked_ = bytes_on_loan() - before;
@@ -77,12 +77,12 @@ class RendererMemory : public ::testing::Test {
 
   model_ptr model_ = std::make_shared<const textured_model>(make_model());
   model_ptr other_ = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
-  std::optional<paper_renderer> feel_;
+  std::optional<window_renderer> feel_;
   std::size_t asked_ = 0;
 };
 
 TEST_F(RendererMemory, IsWhatItHasAskedFor) {
-  EXPECT_EQ(feel_->memory_bytes(), sizeof(paper_renderer) + asked_);
+  EXPECT_EQ(feel_->memory_bytes(), sizeof(window_renderer) + asked_);
   EXPECT_GT(asked_, std::size_t{1} << 20);
 }
 
@@ -102,7 +102,7 @@ TEST_F(RendererMemory, AForgottenPartWouldShow) {
   for (const std::size_t part : {body.piece_tree.heap_bytes(), body.triangle_tree.heap_bytes(),
                                  body.shapes.front().heap_bytes(), feel_->found().heap_bytes()}) {
     EXPECT_GT(part, 0U);
-    EXPECT_NE(feel_->memory_bytes() - part, sizeof(paper_renderer) + asked_);
+    EXPECT_NE(feel_->memory_bytes() - part, sizeof(window_renderer) + asked_);
   }
 }
 
@@ -143,12 +143,12 @@ class DefaultRendererMemory : public ::testing::Test {
 
   model_ptr model_ = std::make_shared<const textured_model>(make_model());
   model_ptr other_ = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
-  std::optional<renderer> feel_;
+  std::optional<least_motion_renderer> feel_;
   std::size_t asked_ = 0;
 };
 
 TEST_F(DefaultRendererMemory, IsWhatItHasAskedFor) {
-  EXPECT_EQ(feel_->memory_bytes() + counts(), sizeof(renderer) + asked_);
+  EXPECT_EQ(feel_->memory_bytes() + counts(), sizeof(least_motion_renderer) + asked_);
   EXPECT_GT(asked_, std::size_t{1} << 20);
 }
 
@@ -171,9 +171,10 @@ TEST_F(DefaultRendererMemory, RenderersOfTheSameBodiesCanShareThem) {
   ASSERT_TRUE(made);
   const auto shared = std::make_shared<const field_scene>(std::move(made).value());
   const auto ways_of = exits::make_exit_scene(*shared);
-  renderer_settings stiffer;
+  least_motion_renderer_settings stiffer;
   stiffer.force.stiffness_n_per_m *= 2.0;
-  auto one = make_renderer(bodies, shared, ways_of), two = make_renderer(bodies, shared, ways_of, stiffer);
+  auto one = make_least_motion_renderer(bodies, shared, ways_of),
+       two = make_least_motion_renderer(bodies, shared, ways_of, stiffer);
   auto own = make_renderer(bodies);
   ASSERT_TRUE(one && two && own);
   EXPECT_EQ(&one.value().depth().bodies(), shared.get());
@@ -188,12 +189,12 @@ TEST_F(DefaultRendererMemory, RenderersOfTheSameBodiesCanShareThem) {
   EXPECT_EQ(by_one.force.on_probe_w.force, by_own.force.on_probe_w.force);
   EXPECT_GT(by_two.force.on_probe_w.force.z, by_one.force.on_probe_w.force.z);
 
-  EXPECT_FALSE(make_renderer({model_, {other_, other_}}, shared, ways_of));
-  EXPECT_FALSE(make_renderer(bodies, std::make_shared<const field_scene>()));
-  EXPECT_FALSE(make_renderer(bodies, nullptr));
-  EXPECT_FALSE(make_renderer(bodies, shared, nullptr));
+  EXPECT_FALSE(make_least_motion_renderer({model_, {other_, other_}}, shared, ways_of));
+  EXPECT_FALSE(make_least_motion_renderer(bodies, std::make_shared<const field_scene>()));
+  EXPECT_FALSE(make_least_motion_renderer(bodies, nullptr));
+  EXPECT_FALSE(make_least_motion_renderer(bodies, shared, nullptr));
   // What was made for the search of other bodies.
-  EXPECT_FALSE(make_renderer(bodies, shared, exits::make_exit_scene(fields())));
+  EXPECT_FALSE(make_least_motion_renderer(bodies, shared, exits::make_exit_scene(fields())));
 }
 
 TEST_F(DefaultRendererMemory, StaysTheSameInTicks) {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "asperity/io/textured_model_file.hpp"
-#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "oracle/approach.hpp"
 #include "oracle/brute_force.hpp"
 
@@ -25,15 +25,15 @@ double percentile(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
-paper_renderer make_compared(const original_and_bake& a, const original_and_bake& b) {
-  paper_settings settings;
+window_renderer make_compared(const original_and_bake& a, const original_and_bake& b) {
+  window_renderer_settings settings;
   settings.depth.grid = comparison_grid;
-  auto made = make_paper_renderer({a.model, {b.model}}, settings);
+  auto made = make_window_renderer({a.model, {b.model}}, settings);
   if (!made) throw std::runtime_error(made.error().message);
   return std::move(made).value();
 }
 
-std::vector<compared_contact> compare_contacts(paper_renderer& feel, const original_and_bake& a,
+std::vector<compared_contact> compare_contacts(window_renderer& feel, const original_and_bake& a,
                                                const original_and_bake& b, const pose& T_wa, double steepest,
                                                int& disagreed) {
   const triangle_mesh bare_a = bare(a.model->mesh), bare_b = bare(b.model->mesh);

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "asperity/control/contact_loop.hpp"
-#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
 #include "asperity/model/triangle_mesh.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 
 namespace asperity::oracle {
 
@@ -69,12 +69,12 @@ struct compared_contact {
 };
 
 /// The paper's renderer with the grid of these comparisons.
-[[nodiscard]] paper_renderer make_compared(const original_and_bake& a, const original_and_bake& b);
+[[nodiscard]] window_renderer make_compared(const original_and_bake& a, const original_and_bake& b);
 
 /// Every contact of the paper's renderer at a pose. A bake's error is a distance across the surface; along n a slope
 /// makes it longer. A wall, where that has no limit, counts as `steepest` (1: 45 degrees).
 /// @param disagreed raised by contacts that one side sees and the other does not
-[[nodiscard]] std::vector<compared_contact> compare_contacts(paper_renderer& feel, const original_and_bake& a,
+[[nodiscard]] std::vector<compared_contact> compare_contacts(window_renderer& feel, const original_and_bake& a,
                                                              const original_and_bake& b, const pose& T_wa,
                                                              double steepest, int& disagreed);
 

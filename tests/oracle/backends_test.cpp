@@ -7,8 +7,8 @@
 namespace asperity::oracle {
 namespace {
 
-depth_settings soft(parallax_mode lookup) {
-  depth_settings s;
+window_depth_settings soft(parallax_mode lookup) {
+  window_depth_settings s;
   s.grid = case_grid;
   s.parallax = lookup;
   return s;
@@ -17,7 +17,7 @@ depth_settings soft(parallax_mode lookup) {
 template <parallax_mode Lookup>
 struct on_the_cpu {
   static std::string unavailable() { return ""; }
-  static depth_settings settings() { return soft(Lookup); }
+  static window_depth_settings settings() { return soft(Lookup); }
   static cpu_depth make(const scene& s) { return cpu_depth(s, settings()); }
   static double bound_m(const cpu_depth& /*backend*/, const contact_window& /*window*/) { return 0.0; }
 };
@@ -35,7 +35,7 @@ struct in_compute_shaders {
     const auto& context = shared_context<gl::dialect::core>();
     return context ? "" : context.error().message;
   }
-  static depth_settings settings() { return soft(Lookup); }
+  static window_depth_settings settings() { return soft(Lookup); }
   static gl::compute_depth make(const scene& s) {
     auto made = gl::compute_depth::make(*shared_context<gl::dialect::core>(), s, settings(),
                                         {.contacts = 1, .arithmetic = Arithmetic});
@@ -53,7 +53,7 @@ struct by_occlusion_queries {
     const auto& context = shared_context<Dialect>();
     return context ? "" : context.error().message;
   }
-  static depth_settings settings() { return gl::paper_depth_settings(case_grid); }
+  static window_depth_settings settings() { return gl::paper_depth_settings(case_grid); }
   static gl::occlusion_depth make(const scene& s) {
     auto made = gl::occlusion_depth::make(*shared_context<Dialect>(), s, settings(), {.contacts = 1});
     EXPECT_TRUE(made) << made.error().message;

@@ -110,9 +110,9 @@ class kept_scenes {
   std::map<std::array<double, 3>, scene> made_;
 };
 
-[[nodiscard]] inline depth_settings settings_for(gradient_scheme scheme, std::uint32_t grid, double tau_mm,
-                                                 double step_mm) {
-  depth_settings s;
+[[nodiscard]] inline window_depth_settings settings_for(gradient_scheme scheme, std::uint32_t grid, double tau_mm,
+                                                        double step_mm) {
+  window_depth_settings s;
   s.gradient = scheme;
   s.grid = grid;
   s.tau_m = tau_mm * mm;

@@ -28,7 +28,7 @@ void check_gradient(error_table& table, const scene& bodies, const contact_windo
     table.add("gradient, soft maximum tau 0.01 mm, N = " + std::to_string(n),
               gradient_error(measure_whole(soft, bodies, window, T_wa).gradient, expected), 2e-2);
   }
-  depth_settings sharp = settings_for(gradient_scheme::central_difference, 200, 0.01, 0.02);
+  window_depth_settings sharp = settings_for(gradient_scheme::central_difference, 200, 0.01, 0.02);
   sharp.refine_maximum = true;
   cpu_depth about_contact(bodies, sharp);
   sharp.origin = rotation_origin::centre_of_mass;
@@ -125,7 +125,7 @@ TEST(ClosedForms, TiltedPlate) {
     const contact_window window = window_downwards(1.02 * half * mm);
     for (const double way : {1.0, -1.0}) {
       const pose T_wa{exp_rotation(vec3(way * theta, 0.0, 0.0)) * face_down(), mm * vec3(0.0, 0.0, -d0)};
-      depth_settings settings = settings_for(gradient_scheme::central_difference, 400, 0.01, turn * half);
+      window_depth_settings settings = settings_for(gradient_scheme::central_difference, 400, 0.01, turn * half);
       cpu_depth differences(bodies, settings);
       const penetration p = measure_whole(differences, bodies, window, T_wa);
       const double full = p.depth_m / mm * half;  // k delta a
@@ -165,7 +165,7 @@ TEST(ClosedForms, BumpPlatesInSixDegreesOfFreedom) {
     const contact_window window = window_downwards(9.0 * mm, mm * vec3(0.0, 0.0, 0.5 * vector_of(c["p"]).z));
     const pose T_wa{exp_rotation(vector_of(c["rotvec_then_RX"])) * face_down(), mm * vector_of(c["p"])};
     ASSERT_LT(glm::length(centre_of_mass_w(bodies, T_wa) - mm * vector_of(c["c_A"])), 1e-9);
-    depth_settings settings = settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0);
+    window_depth_settings settings = settings_for(gradient_scheme::soft_max, 400, 0.01, 0.0);
     cpu_depth exact(bodies, settings);
     table.add("depth, exact, N = 400", std::fabs(measure_whole(exact, bodies, window, T_wa).depth_m / mm - delta),
               1e-3);

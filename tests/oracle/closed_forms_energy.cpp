@@ -75,7 +75,7 @@ struct energy_scene {
   loop path;
 
   [[nodiscard]] vec3 centre_b() const { return bodies.probe->mass.centre_of_mass; }
-  [[nodiscard]] double work(const depth_settings& settings, int steps, bool without_transport = false) const {
+  [[nodiscard]] double work(const window_depth_settings& settings, int steps, bool without_transport = false) const {
     cpu_depth backend(bodies, settings);
     loop fine = path;
     fine.steps = steps;
@@ -158,13 +158,14 @@ TEST(Energy, LoopWithoutSilhouette) {
     energy_scene s = smooth ? covered_window(bumps_a(), bumps_b()) : covered_window(rough(0.05, 0.3), rough(0.05, 1.1));
     press(s, 0.15);
     const std::string kind = smooth ? ", smooth bumps" : ", rough";
-    depth_settings soft = settings_for(gradient_scheme::soft_max, soft_grid, 0.05, 0.1);
+    window_depth_settings soft = settings_for(gradient_scheme::soft_max, soft_grid, 0.05, 0.1);
     table.add("soft maximum" + kind, s.work(soft, soft_steps), 1e-5);
     EXPECT_GT(s.work(soft, control_steps, true), 0.1) << "without the transport term, soft maximum" << kind;
 
     // Differences over a finite step are no gradient of any potential. Where many rough peaks compete and the probe
     // turns, that shows; the limit of the acceptance list holds for smooth bodies, and for rough ones that only slide.
-    const depth_settings differences = settings_for(gradient_scheme::central_difference, difference_grid, 0.05, 0.1);
+    const window_depth_settings differences =
+        settings_for(gradient_scheme::central_difference, difference_grid, 0.05, 0.1);
     table.add("central difference 0.1 mm" + kind, s.work(differences, difference_steps), smooth ? 5e-3 : 5e-2);
     EXPECT_GT(s.work(differences, control_steps, true), 0.1)
         << "without the transport term, central difference" << kind;
@@ -181,11 +182,11 @@ TEST(Energy, LoopWithTheProbesSilhouetteInTheWindow) {
   error_table table("A3: work over a closed loop, share of the work to and fro; silhouette in the window");
   energy_scene s = silhouette_in_window(rough(0.05, 0.3), rough(0.05, 1.1));
   press(s, 0.15);
-  depth_settings soft = settings_for(gradient_scheme::soft_max, soft_grid, 0.02, 0.1);
+  window_depth_settings soft = settings_for(gradient_scheme::soft_max, soft_grid, 0.02, 0.1);
   soft.taper_m = 1.0 * mm;
   table.add("soft maximum, tapered", s.work(soft, soft_steps), 1e-5);
 
-  depth_settings lame = soft;
+  window_depth_settings lame = soft;
   lame.taper_gradient = false;
   const double without_gradient = s.work(lame, 1200);
   EXPECT_GT(without_gradient, 1e-4) << "without the gradient of the taper";

@@ -71,7 +71,7 @@ TEST(ClosedForms, SoftMaximumOfRidges) {
   for (const json& c : cases("O10_lse_ridges")) {
     const double a = c["a"], b = c["b"], lambda = c["lam"];
     const scene& bodies = ridges_on_ridges(a, b, lambda);
-    depth_settings settings = settings_for(gradient_scheme::soft_max, 400, c["tau"], 0.0);
+    window_depth_settings settings = settings_for(gradient_scheme::soft_max, 400, c["tau"], 0.0);
     settings.taper_window = false;  // the closed form weighs all samples alike
     settings.reference_area_m2 = 16.0 * lambda * lambda * mm * mm;
     cpu_depth backend(bodies, settings);

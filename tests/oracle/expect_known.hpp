@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "oracle/fresh_poses.hpp"
 #include "oracle/known_defects.hpp"
 
@@ -63,7 +63,7 @@ inline void expect_still_or_better(judged_pair& pair, const known_defect& d) {
 }
 
 /// Likewise for the contacts that the library's own finder tells at a pose, after whatever `feel` has felt before.
-inline void expect_still_or_better(paper_renderer& feel, const known_pose& known, const pose& T_wa,
+inline void expect_still_or_better(window_renderer& feel, const known_pose& known, const pose& T_wa,
                                    const original_and_bake& probe, const original_and_bake& fixed) {
   double worst_m = -1.0;
   int ignored = 0;

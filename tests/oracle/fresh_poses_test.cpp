@@ -40,8 +40,8 @@ struct planted {
 };
 
 /// @return how many counts of how many approaches of all pairs are not as they are known
-std::vector<std::string> told_with(const planted& fault, std::uint64_t seed, std::uint64_t approaches,
-                                   std::size_t pairs) {
+std::vector<std::string> reported_with(const planted& fault, std::uint64_t seed, std::uint64_t approaches,
+                                       std::size_t pairs) {
   std::vector<counted> all;
   std::vector<std::string> out;
   for (std::size_t i = 0; i < pairs; ++i) {
@@ -101,7 +101,7 @@ constexpr planted pulling{"forces turned round", [](judged_pair& pair) {
                           }};
 
 TEST(fresh_poses, notice_planted_faults) {
-  EXPECT_FALSE(told_with(turned, test_support::fresh_seed(turned.name, "8 approaches"), 8, 1).empty());
+  EXPECT_FALSE(reported_with(turned, test_support::fresh_seed(turned.name, "8 approaches"), 8, 1).empty());
 }
 
 /// By how many of how many days. A day is what the ordinary run asks.
@@ -110,9 +110,9 @@ TEST(fresh_poses, DISABLED_notice_planted_faults_on_most_days) {
     int days = 0;
     std::string first;
     for (std::uint64_t day = 1000; day < 1005; ++day) {
-      const auto told = told_with(fault, day, approaches_a_day, known_benchmark_pairs.size());
-      days += told.empty() ? 0 : 1;
-      if (first.empty() && !told.empty()) first = told.back();
+      const auto reported = reported_with(fault, day, approaches_a_day, known_benchmark_pairs.size());
+      days += reported.empty() ? 0 : 1;
+      if (first.empty() && !reported.empty()) first = reported.back();
     }
     std::printf("  %-30s noticed on %d of 5 days: %s\n", fault.name, days, first.c_str());
     std::fflush(stdout);

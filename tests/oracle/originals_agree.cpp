@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "asperity/window/cpu_depth.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "support/height_models.hpp"
 #include "support/kept_bodies.hpp"
 
@@ -33,8 +33,8 @@ double window_depth::excess_m() const noexcept {
 
 struct judged_pair::renderers {
   explicit renderers(const scene& bodies)
-      : shared(made_or_thrown(test_support::build_renderer(bodies))),
-        paper(made_or_thrown(make_paper_renderer(bodies))),
+      : least_motion_feel(made_or_thrown(test_support::build_renderer(bodies))),
+        window_feel(made_or_thrown(make_window_renderer(bodies))),
         backend(bodies, {.grid = grid}),
         contacts({.contacts = 1, .triangles = 1U << 16}),
         patch_a(test_support::all_triangles(*bodies.probe)),
@@ -44,18 +44,19 @@ struct judged_pair::renderers {
     const std::array<pose, 1> fixed{};
     tick t;
     // The paper's finder remembers its last contacts. Far away it forgets them, so that a pose can be repeated alone.
-    if (f == formulation::paper &&
-        paper.step({{T_wa.rotation, T_wa.position + vec3(10.0, 0.0, 0.0)}, fixed}, t) != status::ok) {
+    if (f == formulation::window &&
+        window_feel.step({{T_wa.rotation, T_wa.position + vec3(10.0, 0.0, 0.0)}, fixed}, t) != status::ok) {
       throw std::runtime_error("a tick failed");
     }
-    const status s = f == formulation::shared ? shared.step({T_wa, fixed}, t) : paper.step({T_wa, fixed}, t);
+    const status s =
+        f == formulation::least_motion ? least_motion_feel.step({T_wa, fixed}, t) : window_feel.step({T_wa, fixed}, t);
     if (s != status::ok && s != status::capacity_reached) throw std::runtime_error("a tick failed");
     felt_depth out{0.0, t.contacts.size()};
     if (t.force.on_probe_w.force == vec3(0.0)) return out;
     out.towards_w = glm::normalize(t.force.on_probe_w.force);
-    out.depth_m = f == formulation::shared
-                      ? std::sqrt(2.0 * shared.force().energy_j() / shared.force().settings().stiffness_n_per_m)
-                      : std::max(0.0, deepest(t));
+    out.depth_m = f == formulation::least_motion ? std::sqrt(2.0 * least_motion_feel.force().energy_j() /
+                                                             least_motion_feel.force().settings().stiffness_n_per_m)
+                                                 : std::max(0.0, deepest(t));
     return out;
   }
   std::optional<double> depth(const contact_window& window, const pose& T_wa) {
@@ -72,8 +73,8 @@ struct judged_pair::renderers {
     return p.depth_m;
   }
 
-  renderer shared;
-  paper_renderer paper;
+  least_motion_renderer least_motion_feel;
+  window_renderer window_feel;
   cpu_depth backend;
   contact_set contacts;
   std::vector<std::uint32_t> patch_a, patch_b;
@@ -130,7 +131,8 @@ judged judged_pair::judge(formulation f, const approach& on, press by, double wa
 }
 
 double judged_pair::missing_m(formulation f) const noexcept {
-  return f == formulation::shared ? 2.0 * made_->shared.force().settings().softness_m : 0.01 * smaller_m_ / grid;
+  return f == formulation::least_motion ? 2.0 * made_->least_motion_feel.force().settings().softness_m
+                                        : 0.01 * smaller_m_ / grid;
 }
 
 double judged_pair::overlap_m(double way_m) {
@@ -162,7 +164,7 @@ judged_approach judged_pair::judge_approach(std::uint64_t seed, std::uint64_t in
   for (std::size_t k = 0; k < presses; ++k) {
     const press by{static_cast<std::uint8_t>(k)};
     const double way = way_m(by);
-    for (const formulation f : {formulation::shared, formulation::paper}) {
+    for (const formulation f : {formulation::least_motion, formulation::window}) {
       out.poses[static_cast<std::size_t>(f)][k] = judge(f, on, by, way);
     }
   }

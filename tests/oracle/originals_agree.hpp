@@ -15,8 +15,8 @@
 namespace asperity::oracle {
 
 /// Whose force is judged.
-enum class formulation : std::uint8_t { shared, paper };
-inline constexpr std::array formulation_names{"shared", "paper"};
+enum class formulation : std::uint8_t { least_motion, window };
+inline constexpr std::array formulation_names{"least motion", "window"};
 
 /// What was wrong at a pose.
 enum class verdict : std::uint8_t {
@@ -33,8 +33,8 @@ inline constexpr std::size_t verdicts = verdict_names.size();
 
 /// How far the probe was pressed on from the first touch: less than a tenth of a millimetre, less than one, less than
 /// four, and from there to a tenth of the smaller diagonal, which can be through the middle of a body.
-enum class press : std::uint8_t { drawn_back, graze, relief, firm, deep };
-inline constexpr std::array press_names{"drawn back", "graze", "relief", "firm", "deep"};
+enum class press : std::uint8_t { drawn_back, graze, light, firm, deep };
+inline constexpr std::array press_names{"drawn back", "graze", "light", "firm", "deep"};
 inline constexpr std::size_t presses = press_names.size();
 
 /// Less than this is not felt: 0.02 N at 2 N/mm. A soft maximum does not end at the surface, it fades.

@@ -187,7 +187,7 @@ TEST(known_rates, binomial_tails_are_those_of_the_tables) {
 
 // A rate that has trebled is seen, one that has gone is seen, and a hundred fresh days of the same rate are not.
 TEST(known_rates, tell_worse_and_better_from_chance) {
-  const known_pair known{"a", "b", 700, {{formulation::shared, press::deep, verdict::shallow, 210}}, 0, 0, 0.0};
+  const known_pair known{"a", "b", 700, {{formulation::least_motion, press::deep, verdict::shallow, 210}}, 0, 0, 0.0};
   const auto said = [&](std::uint64_t shallow, std::uint64_t missed) {
     tally t;
     t.approaches = 60;

@@ -52,7 +52,7 @@ TEST_F(real_models, reports_are_plausible) {
     EXPECT_GT(errors["rms_error_percent"], 1e-5) << "no bake of a scan is exact";
     EXPECT_LT(errors["rms_error_percent"], 0.02) << "a quarter of the default's texels";
     EXPECT_LT(errors["max_error_percent"], 0.5);
-    EXPECT_GT(errors["relief"], 10.0 * errors["rms_error"].get<double>());
+    EXPECT_GT(errors["peak_to_valley"], 10.0 * errors["rms_error"].get<double>());
     // The box is full by some part, and not by more than all.
     double box = 1.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {

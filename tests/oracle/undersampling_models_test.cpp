@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <span>
 
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "exact/exact_renderer.hpp"
 #include "oracle/benchmark_bodies.hpp"
 #include "oracle/brute_force.hpp"
@@ -33,9 +33,9 @@ tally undersampling(const std::string& probe_name, const std::string& fixed_name
   const original_and_bake &a = load_benchmark_body(probe_name), &b = load_benchmark_body(fixed_name);
   if (a.model == nullptr || b.model == nullptr) return out;
   const scene bodies{a.model, {b.model}};
-  paper_settings settings;
+  window_renderer_settings settings;
   settings.depth.grid = grid;
-  auto made = make_paper_renderer(bodies, settings);
+  auto made = make_window_renderer(bodies, settings);
   if (!made) {
     ADD_FAILURE() << made.error().message;
     return out;
@@ -122,7 +122,7 @@ struct model_pair {
   std::uint64_t seed;
 };
 
-void tell_undersampling(std::span<const model_pair> pairs, int poses_per_pair) {
+void report_undersampling(std::span<const model_pair> pairs, int poses_per_pair) {
   std::printf(
       "  what a grid of 64 x 64 misses of the exact maximum, one of 256 x 256, and how far the exact maximum is\n"
       "  from the originals, um; contacts with samples that the paper's lookup stands in for; searches capped\n");
@@ -149,9 +149,9 @@ void tell_undersampling(std::span<const model_pair> pairs, int poses_per_pair) {
 
 constexpr model_pair all_pairs[] = {{"block", "gear", 11}, {"file", "cad_part", 12}, {"hammer", "torus", 13}};
 
-TEST(undersampling, of_the_default_grid_on_benchmark_models) { tell_undersampling(std::span(all_pairs).first(2), 8); }
+TEST(undersampling, of_the_default_grid_on_benchmark_models) { report_undersampling(std::span(all_pairs).first(2), 8); }
 
 /// The table of docs/explanation/penetration-depth.md; ask for it with --gtest_also_run_disabled_tests.
-TEST(undersampling, DISABLED_of_the_default_grid_on_all_of_them) { tell_undersampling(all_pairs, 25); }
+TEST(undersampling, DISABLED_of_the_default_grid_on_all_of_them) { report_undersampling(all_pairs, 25); }
 
 }  // namespace

@@ -149,9 +149,9 @@ template <contact_renderer Renderer>
   if (!c.textured) {
     return run(c, analytic_wall{.stiffness_n_per_m = c.stiffness_n_per_m, .arm_m = 0.006}, {{pose{}}, vec3(0.0)});
   }
-  renderer_settings settings;
+  least_motion_renderer_settings settings;
   settings.force.stiffness_n_per_m = c.stiffness_n_per_m;
-  result<renderer> made = build_renderer({boxes.cube, {boxes.plate}}, settings);
+  result<least_motion_renderer> made = build_renderer({boxes.cube, {boxes.plate}}, settings);
   if (!made) return {};
   felt_case raised = c;  // so that the cube's lower face begins where the wall's points do
   raised.device.motion.T_dh.position.z += 0.0065;

@@ -1,4 +1,4 @@
-// The field renderer's support planes, the coupling that fits the device, contacts one period late and no guard: hands
+// The plane renderer's support planes, the coupling that fits the device, contacts one period late and no guard: hands
 // that press, scrub and tap on textured bodies receive no energy. The energy is that of the simulated device's plant.
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "asperity/control/virtual_coupling.hpp"
-#include "asperity/planes/field_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
 #include "passivity/felt_session.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
@@ -25,9 +25,9 @@ constexpr double no_energy_j = 1e-5;  // the guard's tolerance: rounding and the
 /// A session of a drawn case with another coupling and no guard.
 felt_result feel_held(const felt_case& c, const ridged_boxes& boxes, const std::shared_ptr<const field_scene>& fields,
                       double times_as_stiff) {
-  field_renderer_settings settings;
+  plane_renderer_settings settings;
   settings.reach_m = reach_for(1e-9 * static_cast<double>(c.schedule.contact_period_ns));
-  result<field_renderer> made = make_field_renderer({boxes.cube, {boxes.plate}}, fields, settings);
+  result<plane_renderer> made = make_plane_renderer({boxes.cube, {boxes.plate}}, fields, settings);
   EXPECT_TRUE(made);
   if (!made) return {};
   felt_case raised = c;

@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "asperity/planes/field_renderer.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/kept_bodies.hpp"
 
@@ -30,24 +30,24 @@ result<render_function> render_of(result<Renderer> made) {
   return render_function([feel](const scene_pose& at, tick& out) { return feel->step(at, out); });
 }
 
-result<render_function> render_by_default(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
-  renderer_settings settings;
+result<render_function> render_by_least_motion(const press_body& probe, const press_body& fixed,
+                                               double stiffness_n_per_m) {
+  least_motion_renderer_settings settings;
   settings.force.stiffness_n_per_m = stiffness_n_per_m;
   return render_of(test_support::build_renderer({probe.model, {fixed.model}}, settings));
 }
 
-result<render_function> render_as_the_paper(const press_body& probe, const press_body& fixed,
-                                            double stiffness_n_per_m) {
-  paper_settings settings;
+result<render_function> render_by_windows(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
+  window_renderer_settings settings;
   settings.force.stiffness_n_per_m = stiffness_n_per_m;
-  return render_of(make_paper_renderer({probe.model, {fixed.model}}, settings));
+  return render_of(make_window_renderer({probe.model, {fixed.model}}, settings));
 }
 
 // Support planes bring the stiffness of the control loop's contact_law; the reported force has the one asked for.
-result<render_function> render_by_field(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
-  field_renderer_settings settings;
+result<render_function> render_by_planes(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
+  plane_renderer_settings settings;
   settings.springs.stiffness_n_per_m = stiffness_n_per_m;
-  return render_of(make_field_renderer({probe.model, {fixed.model}}, settings));
+  return render_of(make_plane_renderer({probe.model, {fixed.model}}, settings));
 }
 
 press_law law_of(std::string name, decltype(press_law::render) render) {
@@ -68,10 +68,10 @@ press_law law_of(std::string name, decltype(press_law::render) render) {
 
 }  // namespace
 
-press_law default_renderer_law() { return law_of("default", render_by_default); }
-press_law paper_renderer_law() { return law_of("paper", render_as_the_paper); }
+press_law least_motion_renderer_law() { return law_of("least-motion", render_by_least_motion); }
+press_law window_renderer_law() { return law_of("window", render_by_windows); }
 
-press_law field_renderer_law() { return {"field", {}, render_by_field}; }
+press_law plane_renderer_law() { return {"planes", {}, render_by_planes}; }
 
 press_law true_exit_law() {
   return {"exit",
@@ -86,7 +86,7 @@ press_law true_exit_law() {
 }
 
 std::vector<press_law> known_laws() {
-  return {default_renderer_law(), paper_renderer_law(), field_renderer_law(), true_exit_law()};
+  return {least_motion_renderer_law(), window_renderer_law(), plane_renderer_law(), true_exit_law()};
 }
 
 press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,

@@ -24,13 +24,13 @@ struct press_law {
       render;
 };
 
-/// "default": the default renderer.
-[[nodiscard]] press_law default_renderer_law();
-/// "paper": the paper's renderer.
-[[nodiscard]] press_law paper_renderer_law();
-/// "field": the renderer for control loops. In sessions only: it holds the probe by its support planes, and its force
+/// "least-motion": the default renderer.
+[[nodiscard]] press_law least_motion_renderer_law();
+/// "window": the paper's renderer.
+[[nodiscard]] press_law window_renderer_law();
+/// "planes": the renderer for control loops. In sessions only: it holds the probe by its support planes, and its force
 /// is meant for a probe at the surface.
-[[nodiscard]] press_law field_renderer_law();
+[[nodiscard]] press_law plane_renderer_law();
 /// "exit": the force that the true depth of the originals has, k times the shortest way out that a search finds, along
 /// it. It is right for every pair, and far too slow for a tick.
 [[nodiscard]] press_law true_exit_law();

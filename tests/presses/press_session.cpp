@@ -60,7 +60,7 @@ session_result press_session(render_function render, const press_touch& touch, c
       out.ended_early = true;
       return out;
     }
-    out.told |= now.flags;
+    out.reported |= now.flags;
     out.last_n = glm::length(now.on_hand_d.force);
     out.largest_n = std::max(out.largest_n, out.last_n);
     const vec3 p = now.T_wa * point_a;
@@ -77,7 +77,7 @@ session_result press_session(render_function render, const press_touch& touch, c
     if (!out.passed) out.deepest_m = std::max(out.deepest_m, depth);
   }
   // The renderer sees a pose in the tick after it.
-  for (int i = 0; out.passed && i < 3 && session.step() != status::backend_failed; ++i) out.told |= now.flags;
+  for (int i = 0; out.passed && i < 3 && session.step() != status::backend_failed; ++i) out.reported |= now.flags;
   if (!out.passed && !originals.apart(now.T_wa)) {
     const way_out exit = originals.true_exit(now.T_wa, touch.out_w);
     out.passed = exit.way_m > least_passing_m(touch) && glm::dot(exit.direction_w, touch.out_w) < -far_side;

@@ -43,7 +43,7 @@ struct session_result {
   double last_n = 0.0;         ///< on the hand, at the end
   double deepest_m = 0.0;      ///< of the probe's touching point within the fixed original, until it passed
   bool ended_early = false;    ///< the gate shut
-  tick_flag told{};            ///< flags of all device ticks, until three after it passed
+  tick_flag reported{};        ///< flags of all device ticks, until three after it passed
 };
 
 /// One session of one touch; it ends where the probe has passed. Whether it has is asked of the originals: the point of

@@ -20,8 +20,8 @@ using namespace asperity::presses;
 constexpr char usage[] =
     "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
     "[--sessions | --rests] [--dump]\n"
-    "  --law NAME    default or paper (renderers), field (the renderer for control loops, with --sessions or\n"
-    "                --rests) or exit (the originals' own true depth, slow, with neither)\n"
+    "  --law NAME    least-motion or window (renderers), planes (the renderer for control loops, with\n"
+    "                --sessions or --rests) or exit (the originals' own true depth, slow, with neither)\n"
     "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
     "  --touches N   presses on each pair (24)\n"
     "  --first N     leave the first N of the day's touches out (0)\n"
@@ -37,7 +37,7 @@ constexpr char usage[] =
     "../shared/models.\n";
 
 struct arguments {
-  std::string law = "default";
+  std::string law = "least-motion";
   std::vector<press_pair> pairs;
   press_choice which;
   press_bake solids = press_bake::simplified;

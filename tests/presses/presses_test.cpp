@@ -96,7 +96,7 @@ struct held_law {
 std::vector<held_law> held_laws() {
   return {{formula_law(), balls_on_boxes(), std::nullopt, 20, 60, 0.1 * mm},
           {true_exit_law(), press_pairs(), std::nullopt, 2, 60, 1.0 * mm},
-          {default_renderer_law(), round_pairs(), press_bake::simplified, 1, 6, 0.3 * mm}};
+          {least_motion_renderer_law(), round_pairs(), press_bake::simplified, 1, 6, 0.3 * mm}};
 }
 
 /// The pairs of a law in this run: all at length, otherwise some of the day.

@@ -31,7 +31,7 @@ rest_row rest_on(const std::string& name, const press_choice& which, Change&& ch
       ADD_FAILURE() << (probe ? fixed.error() : probe.error()).message;
       return {};
     }
-    const auto render = field_renderer_law().render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+    const auto render = plane_renderer_law().render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
     if (!render) {
       ADD_FAILURE() << render.error().message;
       return {};
@@ -91,7 +91,7 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
   press_shelf shelf(press_bake::simplified);
   const auto probe = shelf.get("file"), fixed = shelf.get("block");
   ASSERT_TRUE(probe && fixed);
-  const auto render = field_renderer_law().render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+  const auto render = plane_renderer_law().render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
   ASSERT_TRUE(render);
   touch_finder finder("file on block", (*probe)->full, (*fixed)->full, {});
   int pressed = 0, worse = 0;

@@ -156,16 +156,16 @@ void print_row(std::FILE* to, const press_row& row) {
 std::string in_words(const press_row& row, std::size_t press) {
   const press_result& p = row.presses[press];
   std::string out = row.probe + " on " + row.fixed + ", press " + std::to_string(press) + ":";
-  const auto tell = [&](const char* what, const breach& b) {
+  const auto report = [&](const char* what, const breach& b) {
     if (!b.found) return;
     char text[160];
     std::snprintf(text, sizeof text, " %s at %.2f mm: %.3f N where at least %.3f N is asked for;", what, b.at_m * 1e3,
                   b.force_n, b.expected_n);
     out += text;
   };
-  tell("weak", p.weak);
-  tell("falls", p.falls);
-  tell("pulls", p.pulls);
+  report("weak", p.weak);
+  report("falls", p.falls);
+  report("pulls", p.pulls);
   if (p.unanswered > 0) out += " " + std::to_string(p.unanswered) + " steps without an answer;";
   return out;
 }

@@ -11,7 +11,7 @@
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
 #include "asperity/io/textured_model_file.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "rt/tick_trap.hpp"
 #include "support/extent.hpp"
 #include "support/kept_bodies.hpp"
@@ -53,7 +53,7 @@ workspace_map held_above(pose T_wa_touch, const vec3& centre_of_mass_a, double h
 }
 
 // So many device ticks of the session after the warm-up, a millisecond each. Make is make_renderer or
-// make_paper_renderer.
+// make_window_renderer.
 template <class Make>
 void trap_file_on_cad_part(std::uint64_t steady_ticks, Make&& make) {
   const model_ptr file = load("file");
@@ -111,7 +111,7 @@ TEST(benchmark_ticks, file_on_cad_part_does_nothing_that_a_tick_must_not_do) {
 TEST(benchmark_ticks, nor_does_it_with_the_contacts_of_the_paper) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
   trap_file_on_cad_part(test_support::extent(5'000U, 24'000U),
-                        [](const scene& bodies) { return make_paper_renderer(bodies); });
+                        [](const scene& bodies) { return make_window_renderer(bodies); });
 }
 
 }  // namespace

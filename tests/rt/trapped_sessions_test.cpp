@@ -9,8 +9,8 @@
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/any_device.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
-#include "asperity/least_motion/default_renderer.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "record_queue.hpp"
 #include "rt/tick_trap.hpp"
 #include "support/small_models.hpp"
@@ -90,11 +90,11 @@ TEST_P(trapped_renderer, textured_boxes) {
       test_support::make_textured_box({0.01, 0.01, 0.01}, 64, test_support::ridges(0.0002, 0.004)));
   const auto plate = std::make_shared<const textured_model>(
       test_support::make_textured_box({0.05, 0.05, 0.01}, 64, test_support::ridges(0.0002, 0.004)));
-  paper_settings settings;
+  window_renderer_settings settings;
   settings.depth.gradient = GetParam().gradient;
   settings.depth.parallax = GetParam().parallax;
   settings.depth.grid = 32;
-  result<paper_renderer> feel = make_paper_renderer({probe, {plate}}, settings);
+  result<window_renderer> feel = make_window_renderer({probe, {plate}}, settings);
   ASSERT_TRUE(feel);
   simulated_settings c = hand(motion_kind::scrub);
   c.motion.T_dh.position.z = 0.022;
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(trapped_session, a_renderer_that_refuses_or_drops) {
   const auto box = std::make_shared<const textured_model>(
       test_support::make_textured_box({0.01, 0.01, 0.01}, 64, test_support::ridges(0.0002, 0.004)));
-  result<paper_renderer> feel = make_paper_renderer({box, {box}}, {.limits = {.contacts = 1, .triangles = 1}});
+  result<window_renderer> feel = make_window_renderer({box, {box}}, {.limits = {.contacts = 1, .triangles = 1}});
   ASSERT_TRUE(feel);
   const pose T_wb;
   tick found;

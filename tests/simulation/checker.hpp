@@ -51,24 +51,24 @@ class checker {
     const auto expect = [&broken](bool holds, const char* what) {
       if (!holds && broken == nullptr) broken = what;
     };
-    const device_command& told = device_->command();
+    const device_command& commanded = device_->command();
     const double passed_s = started_ ? 1e-9 * static_cast<double>(r.time_ns - last_time_ns_) : 0.0;
     const double slew_s = std::clamp(passed_s, 0.0, longest_slew_s);
-    expired_ = started_ && r.time_ns > last_told_.valid_until_ns;
+    expired_ = started_ && r.time_ns > last_commanded_.valid_until_ns;
 
-    numbers(r, told, expect);
-    time(r, facts, told, expect);
-    limits(told, slew_s, expect);
+    numbers(r, commanded, expect);
+    time(r, facts, commanded, expect);
+    limits(commanded, slew_s, expect);
     samples(r, expect);
-    energy(r, told, passed_s, slew_s, expect);
-    lateness(r, facts, told, slew_s, expect);
-    causes(r, slew_s, told, expect);
-    life(r, told, expect);
+    energy(r, commanded, passed_s, slew_s, expect);
+    lateness(r, facts, commanded, slew_s, expect);
+    causes(r, slew_s, commanded, expect);
+    life(r, commanded, expect);
 
     started_ = true;
     last_time_ns_ = r.time_ns;
     last_clock_ns_ = facts.clock_ns;
-    last_told_ = told;
+    last_commanded_ = commanded;
     last_state_ = device_->state();
     last_arms_ = device_->arms();
     return broken;
@@ -81,8 +81,8 @@ class checker {
   static constexpr double rounding = 1e-8;
 
   template <class Expect>
-  void numbers(const session_record& r, const device_command& told, Expect expect) const noexcept {
-    expect(is_finite(told.on_hand) && is_finite(r.on_hand_d), "finite: the command");
+  void numbers(const session_record& r, const device_command& commanded, Expect expect) const noexcept {
+    expect(is_finite(commanded.on_hand) && is_finite(r.on_hand_d), "finite: the command");
     expect(is_finite(r.on_probe_w) && std::isfinite(r.max_depth_m), "finite: the contact");
     expect(is_valid(r.T_dh) && is_valid(r.T_wa) && is_valid(r.T_wa_target), "finite: the poses, rotations of length 1");
     expect(std::isfinite(r.delivered_j) && std::isfinite(r.surplus_j) && std::isfinite(r.guard_alpha_per_s) &&
@@ -91,27 +91,28 @@ class checker {
   }
 
   template <class Expect>
-  void time(const session_record& r, const tick_facts& facts, const device_command& told,
+  void time(const session_record& r, const tick_facts& facts, const device_command& commanded,
             Expect expect) const noexcept {
     if (started_) {
       expect(r.time_ns >= last_time_ns_, "time forward: the record went back");
       expect(r.time_ns - last_time_ns_ == std::max<std::int64_t>(0, facts.clock_ns - last_clock_ns_),
              "time forward: the record does not follow the clock");
-      expect(told.sequence == last_told_.sequence + 1, "time forward: the command's number does not grow by one");
+      expect(commanded.sequence == last_commanded_.sequence + 1,
+             "time forward: the command's number does not grow by one");
     }
     expect(device_->read_at_ns() == r.time_ns && device_->written_at_ns() == r.time_ns,
            "time forward: the device was given another time");
-    expect(told.valid_until_ns > r.time_ns, "time forward: a command that was over before it was given");
+    expect(commanded.valid_until_ns > r.time_ns, "time forward: a command that was over before it was given");
     expect(r.contact_age_ns >= 0, "time forward: a contact from the future");
   }
 
   template <class Expect>
-  void limits(const device_command& told, double slew_s, Expect expect) const noexcept {
-    expect(told.frame == wrench_frame::device_base, "limits: the command's frame");
-    expect(glm::length(told.on_hand.force) <= force_limit_n_ * (1.0 + rounding), "limits: force");
-    expect(glm::length(told.on_hand.torque) <= torque_limit_n_m_ * (1.0 + rounding), "limits: torque");
-    const wrench change = told.on_hand - before();
-    const bool to_zero = is_zero(told.on_hand);
+  void limits(const device_command& commanded, double slew_s, Expect expect) const noexcept {
+    expect(commanded.frame == wrench_frame::device_base, "limits: the command's frame");
+    expect(glm::length(commanded.on_hand.force) <= force_limit_n_ * (1.0 + rounding), "limits: force");
+    expect(glm::length(commanded.on_hand.torque) <= torque_limit_n_m_ * (1.0 + rounding), "limits: torque");
+    const wrench change = commanded.on_hand - before();
+    const bool to_zero = is_zero(commanded.on_hand);
     if (!device_->output_allowed() && to_zero) return;  // a device that is not armed is silenced at once
     expect(glm::length(change.force) <= force_slew_ * slew_s * (1.0 + rounding) + 1e-12, "limits: slew of the force");
     expect(glm::length(change.torque) <= torque_slew_ * slew_s * (1.0 + rounding) + 1e-12,
@@ -146,7 +147,7 @@ class checker {
 
   // A fault has a cause, the cause has its fault, and a fault is silent after peak / slew.
   template <class Expect>
-  void causes(const session_record& r, double slew_s, const device_command& told, Expect expect) noexcept {
+  void causes(const session_record& r, double slew_s, const device_command& commanded, Expect expect) noexcept {
     const bool given_up = rejected_in_a_row_ >= scenario_->control.samples.reject_limit;
     const bool refused = device_->write_status() != status::ok;
     const guard_settings& g = scenario_->control.guard;
@@ -164,8 +165,9 @@ class checker {
       expect(r.fault == fault_, "fault: the first cause was not kept");
       force_left_n_ = std::max(0.0, force_left_n_ - force_slew_ * slew_s);
       torque_left_n_m_ = std::max(0.0, torque_left_n_m_ - torque_slew_ * slew_s);
-      expect(glm::length(told.on_hand.force) <= force_left_n_ * (1.0 + rounding) + 1e-12, "fault: the force stays");
-      expect(glm::length(told.on_hand.torque) <= torque_left_n_m_ * (1.0 + rounding) + 1e-12,
+      expect(glm::length(commanded.on_hand.force) <= force_left_n_ * (1.0 + rounding) + 1e-12,
+             "fault: the force stays");
+      expect(glm::length(commanded.on_hand.torque) <= torque_left_n_m_ * (1.0 + rounding) + 1e-12,
              "fault: the torque stays");
       return;
     }
@@ -181,23 +183,23 @@ class checker {
            "fault: without its cause");
     fault_ = r.fault;
     stop_asked_ = false;
-    force_left_n_ = glm::length(told.on_hand.force);
-    torque_left_n_m_ = glm::length(told.on_hand.torque);
+    force_left_n_ = glm::length(commanded.on_hand.force);
+    torque_left_n_m_ = glm::length(commanded.on_hand.torque);
   }
 
   template <class Expect>
-  void life(const session_record& r, const device_command& told, Expect expect) const noexcept {
+  void life(const session_record& r, const device_command& commanded, Expect expect) const noexcept {
     const bool was_armed = may_put_out(last_state_);
     const bool is_armed = may_put_out(device_->state());
     expect(!is_armed || was_armed || device_->arms() > last_arms_, "life: the device was armed by nobody");
-    expect(device_->output_allowed() || is_zero(told.on_hand), "life: a wrench for a device that is not armed");
-    expect(r.fault == gate_fault::none || !is_armed || !is_zero(told.on_hand), "life: armed in a fault, at rest");
+    expect(device_->output_allowed() || is_zero(commanded.on_hand), "life: a wrench for a device that is not armed");
+    expect(r.fault == gate_fault::none || !is_armed || !is_zero(commanded.on_hand), "life: armed in a fault, at rest");
   }
 
   // A contact that is too old is not felt, nor is anything soon after a command expired. How often either happened, and
   // for how long nothing left, is counted here anew: it is what a fault of lateness has to rest on.
   template <class Expect>
-  void lateness(const session_record& r, const tick_facts& facts, const device_command& told, double slew_s,
+  void lateness(const session_record& r, const tick_facts& facts, const device_command& commanded, double slew_s,
                 Expect expect) noexcept {
     const contact_ageing& a = scenario_->control.ageing;
     const rate_limits& limits = scenario_->control.rates;
@@ -207,14 +209,14 @@ class checker {
     expect((in_use && facts.contact_given) || is_zero(r.on_probe_w), "stale contact: pushes before there is one");
 
     const bool too_old = in_use && facts.contact_given && age_ns >= a.hold_ns + a.fade_ns;
-    aged_n_ = too_old ? std::max(0.0, aged_n_ - force_slew_ * slew_s) : glm::length(told.on_hand.force);
-    aged_n_m_ = too_old ? std::max(0.0, aged_n_m_ - torque_slew_ * slew_s) : glm::length(told.on_hand.torque);
-    expect(glm::length(told.on_hand.force) <= aged_n_ * (1.0 + rounding) + 1e-12, "stale contact: still pushes");
-    expect(glm::length(told.on_hand.torque) <= aged_n_m_ * (1.0 + rounding) + 1e-12, "stale contact: still turns");
+    aged_n_ = too_old ? std::max(0.0, aged_n_ - force_slew_ * slew_s) : glm::length(commanded.on_hand.force);
+    aged_n_m_ = too_old ? std::max(0.0, aged_n_m_ - torque_slew_ * slew_s) : glm::length(commanded.on_hand.torque);
+    expect(glm::length(commanded.on_hand.force) <= aged_n_ * (1.0 + rounding) + 1e-12, "stale contact: still pushes");
+    expect(glm::length(commanded.on_hand.torque) <= aged_n_m_ * (1.0 + rounding) + 1e-12, "stale contact: still turns");
 
     lateness_.gap_ns = started_ ? r.time_ns - last_time_ns_ : 0;
     if (expired_ && in_use) quiet_until_ns_ = r.time_ns + limits.settle_ns;
-    expect(r.time_ns >= quiet_until_ns_ || is_zero(told.on_hand), "gap: output too soon after a command expired");
+    expect(r.time_ns >= quiet_until_ns_ || is_zero(commanded.on_hand), "gap: output too soon after a command expired");
 
     if (!in_use) return;
     const double passed = static_cast<double>(lateness_.gap_ns) / static_cast<double>(limits.lapse_memory_ns);
@@ -222,17 +224,17 @@ class checker {
     lateness_.contacts.count(passed, too_old && !was_too_old_);
     was_too_old_ = too_old;
     lateness_.contact_age_ns = age_ns;
-    lateness_.silent_ns = is_zero(told.on_hand) ? lateness_.silent_ns + lateness_.gap_ns : 0;
+    lateness_.silent_ns = is_zero(commanded.on_hand) ? lateness_.silent_ns + lateness_.gap_ns : 0;
   }
 
   template <class Expect>
-  void energy(const session_record& r, const device_command& told, double passed_s, double slew_s,
+  void energy(const session_record& r, const device_command& commanded, double passed_s, double slew_s,
               Expect expect) noexcept {
     const bool accepted = r.sample == sample_verdict::accepted;
     booked_tick t;
     t.accepted = accepted;
     t.T_dh = device_->sample().T_dh;
-    t.told = told.on_hand;
+    t.commanded = commanded.on_hand;
     t.expired = expired_;
     t.uncertain = device_->write_status() != status::ok || was_silenced();
     t.slew_s = slew_s;
@@ -250,8 +252,8 @@ class checker {
       const device_capabilities& c = scenario_->device.capabilities;
       const double force_n = c.moving_mass_kg * book_.most_damping_per_kg();
       const double torque_n_m = c.moving_inertia_kg_m2 * book_.most_damping_per_kg_m2();
-      expect(glm::length(told.on_hand.force) <= force_n * (1.0 + rounding) + 1e-9 &&
-                 glm::length(told.on_hand.torque) <= torque_n_m * (1.0 + rounding) + 1e-9,
+      expect(glm::length(commanded.on_hand.force) <= force_n * (1.0 + rounding) + 1e-9 &&
+                 glm::length(commanded.on_hand.torque) <= torque_n_m * (1.0 + rounding) + 1e-9,
              "energy: more than damping past the hard limit");
     }
     expect(!has_pose_ || std::fabs(book_.delivered_j() - r.delivered_j) <= book_.unknown_j() + 1e-9,
@@ -264,7 +266,7 @@ class checker {
   [[nodiscard]] static bool is_zero(const wrench& w) noexcept { return w.force == vec3(0.0) && w.torque == vec3(0.0); }
   /// What the device was putting out when the command came.
   [[nodiscard]] wrench before() const noexcept {
-    return may_put_out(last_state_) && device_->output_allowed() && !expired_ ? last_told_.on_hand : wrench{};
+    return may_put_out(last_state_) && device_->output_allowed() && !expired_ ? last_commanded_.on_hand : wrench{};
   }
 
   const scenario* scenario_;
@@ -278,7 +280,7 @@ class checker {
   bool started_ = false;
   std::int64_t last_time_ns_ = 0;
   std::int64_t last_clock_ns_ = 0;
-  device_command last_told_{};
+  device_command last_commanded_{};
   device_state last_state_ = device_state::absent;
   std::uint64_t last_arms_ = 0;
 

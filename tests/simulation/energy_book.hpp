@@ -14,7 +14,7 @@ namespace asperity::simulation {
 struct booked_tick {
   bool accepted = false;   ///< a pose came that could be used
   pose T_dh{};             ///< that pose
-  wrench told{};           ///< what the device is told to put out from now on
+  wrench commanded{};      ///< what the device is told to put out from now on
   bool expired = false;    ///< the last command had expired before this tick: the device put out nothing
   bool uncertain = false;  ///< in the time since the last tick the device did something else than it was told
   double slew_s = 0.0;     ///< time that the gate may use for a change in this tick
@@ -45,9 +45,9 @@ class energy_book {
   void reset() noexcept { *this = energy_book(guard_, cut_off_.slew_time_s()); }
 
   void book(const booked_tick& t) noexcept {
-    if (t.expired) told_ = {};
-    gap_.widen(told_);
-    gap_.widen(t.told);
+    if (t.expired) commanded_ = {};
+    gap_.widen(commanded_);
+    gap_.widen(t.commanded);
     gap_.uncertain = gap_.uncertain || t.uncertain;
     step_s_ += t.step_s;
     if (t.accepted) {
@@ -59,7 +59,7 @@ class energy_book {
     } else {
       gap_.uncertain = true;
     }
-    told_ = t.told;
+    commanded_ = t.commanded;
     hard_.slew(surplus_j_, t.slew_s);
     cut_off_.slew(surplus_j_, t.slew_s);
   }
@@ -125,7 +125,7 @@ class energy_book {
   void add(const pose& T_dh) noexcept {
     const vec3 dx = T_dh.position - last_.position;
     const vec3 dphi = log_rotation(T_dh.rotation * glm::conjugate(last_.rotation));
-    const double given_j = glm::dot(told_.force, dx) + glm::dot(told_.torque, dphi);
+    const double given_j = glm::dot(commanded_.force, dx) + glm::dot(commanded_.torque, dphi);
     if (gap_.uncertain) unknown_j_ += 2.0 * (gap_.force_n * glm::length(dx) + gap_.torque_n_m * glm::length(dphi));
     hard_.book(surplus_j_, given_j);
     cut_off_.book(surplus_j_, given_j);
@@ -145,7 +145,7 @@ class energy_book {
   double step_s_ = 0.0;
   bool has_pose_ = false;
   pose last_{};
-  wrench told_{};
+  wrench commanded_{};
   gap gap_{};
   double delivered_j_ = 0.0;
   double surplus_j_ = 0.0;

@@ -49,11 +49,11 @@ const std::array<textured_bodies, textured_scene_count>& all_bodies() {
 
 class rendered_scene final : public touched_scene {
  public:
-  explicit rendered_scene(renderer r) : renderer_(std::move(r)) {}
+  explicit rendered_scene(least_motion_renderer r) : renderer_(std::move(r)) {}
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept override { return renderer_.step(at, out); }
 
  private:
-  renderer renderer_;
+  least_motion_renderer renderer_;
 };
 
 }  // namespace
@@ -62,10 +62,10 @@ double touch_height_m(std::size_t i) { return all_bodies()[i].touch_height_m; }
 
 std::unique_ptr<touched_scene> make_textured_scene(std::size_t i, double stiffness_n_per_m) {
   const textured_bodies& bodies = all_bodies()[i];
-  renderer_settings settings;
+  least_motion_renderer_settings settings;
   settings.force.stiffness_n_per_m = stiffness_n_per_m;
   settings.force.most_readings = 20'000;  // thousands of sessions: a tick that takes more says so, and is felt as it is
-  result<renderer> made = build_renderer({bodies.probe, {bodies.fixed}}, settings);
+  result<least_motion_renderer> made = build_renderer({bodies.probe, {bodies.fixed}}, settings);
   if (!made) {
     std::fprintf(stderr, "simulation: %s\n", made.error().message.c_str());
     std::abort();

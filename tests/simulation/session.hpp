@@ -163,13 +163,13 @@ class session {
   static void add(std::uint64_t& digest, const vec3& v) noexcept {
     for (int i = 0; i < 3; ++i) add(digest, std::bit_cast<std::uint64_t>(v[i]));
   }
-  static void add(std::uint64_t& digest, const session_record& r, const device_command& told) noexcept {
+  static void add(std::uint64_t& digest, const session_record& r, const device_command& commanded) noexcept {
     add(digest, static_cast<std::uint64_t>(r.time_ns));
     add(digest, r.T_dh.position);
     add(digest, r.T_wa.position);
     add(digest, vec3(r.T_wa.rotation.x, r.T_wa.rotation.y, r.T_wa.rotation.z));
-    add(digest, told.on_hand.force);
-    add(digest, told.on_hand.torque);
+    add(digest, commanded.on_hand.force);
+    add(digest, commanded.on_hand.torque);
     add(digest, r.on_probe_w.force);
     add(digest, r.on_probe_w.torque);
     add(digest, std::bit_cast<std::uint64_t>(r.surplus_j));

@@ -12,8 +12,8 @@
 
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
-#include "asperity/least_motion/default_renderer.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity::soak {
@@ -123,28 +123,28 @@ class watch {
 };
 
 /// A cube over a plate, both with ridges, under the default renderer.
-[[nodiscard]] inline result<paper_renderer> make_soak_renderer() {
+[[nodiscard]] inline result<window_renderer> make_soak_renderer() {
   using namespace test_support;
   const auto cube =
       std::make_shared<const textured_model>(make_textured_box({0.006, 0.006, 0.006}, 48, ridges(0.0002, 0.003)));
   const auto plate =
       std::make_shared<const textured_model>(make_textured_box({0.04, 0.04, 0.01}, 96, ridges(0.0003, 0.01)));
-  paper_settings settings;
+  window_renderer_settings settings;
   settings.depth.grid = 16;  // coarse, so that a day of ticks takes minutes
-  return make_paper_renderer({cube, {plate}}, settings);
+  return make_window_renderer({cube, {plate}}, settings);
 }
 
 /// Runs the session. `Device` is a simulated_device or derived from one.
 /// @param progress called with the virtual time that is done, a thousand times; false stops
 template <class Device, class Progress>
 [[nodiscard]] result<report> run(const options& o, Device& dev, Progress&& progress) {
-  result<paper_renderer> made = make_soak_renderer();
+  result<window_renderer> made = make_soak_renderer();
   if (!made) return made.error();
   const vec3 centre = made->scene().probe->mass.centre_of_mass;
   if (result<void> opened = dev.open(); !opened) return opened.error();
   if (result<void> armed = dev.arm(); !armed) return armed.error();
   const pose T_wb{quat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, -0.0103}};
-  virtual_session<paper_renderer, Device, watch> session(
+  virtual_session<window_renderer, Device, watch> session(
       std::move(*made), {{T_wb}, centre}, dev, control_settings{},
       {.device_period_ns = o.device_period_ns, .contact_period_ns = o.contact_period_ns});
 

@@ -118,11 +118,11 @@ struct planes_may_be_changed {
 struct planes_change_the_stage {
   std::span<const support_plane> support_planes() noexcept { return {}; }
 };
-static_assert(tells_support_planes<knows_planes>);
-static_assert(!tells_support_planes<planes_may_throw>);
-static_assert(!tells_support_planes<planes_may_be_changed>);
-static_assert(!tells_support_planes<planes_change_the_stage>);
-static_assert(!tells_support_planes<depth>);
+static_assert(reports_support_planes<knows_planes>);
+static_assert(!reports_support_planes<planes_may_throw>);
+static_assert(!reports_support_planes<planes_may_be_changed>);
+static_assert(!reports_support_planes<planes_change_the_stage>);
+static_assert(!reports_support_planes<depth>);
 
 // The renderer takes exactly three policies, each in its place.
 template <class... Policies>

@@ -35,11 +35,11 @@ result<kept_bodies> bodies_of(const asperity::scene& bodies, const field_body_se
 
 }  // namespace
 
-result<renderer> build_renderer(scene bodies, const renderer_settings& settings) {
+result<least_motion_renderer> build_renderer(scene bodies, const least_motion_renderer_settings& settings) {
   if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
   const result<kept_bodies> kept = bodies_of(bodies, settings.bodies);
   if (!kept) return kept.error();
-  return make_renderer(std::move(bodies), kept->fields, kept->ways_of, settings);
+  return make_least_motion_renderer(std::move(bodies), kept->fields, kept->ways_of, settings);
 }
 
 }  // namespace asperity::test_support

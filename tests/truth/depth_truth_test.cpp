@@ -50,16 +50,16 @@ void add(truth_table& to, const plane_truth& pair, const plane_case& c) {
   const double scale = 1.0 / pair.diagonal_m(), bound_m = bound * pair.diagonal_m() + pair.bake_error_m();
   ++to.poses;
   // Everything is told up to the reach, and what the bakes lack is not the renderer's.
-  if (!c.told) {
+  if (!c.reported) {
     ++to.untold;
     if (c.overlap_m > bound_m) ++to.missed;
     return;
   }
-  if (c.told->depth_m <= 0.0 && c.overlap_m > bound_m) ++to.missed;
-  if (c.told->depth_m > bound_m && c.overlap_m < 0.0) ++to.felt_apart;
+  if (c.reported->depth_m <= 0.0 && c.overlap_m > bound_m) ++to.missed;
+  if (c.reported->depth_m > bound_m && c.overlap_m < 0.0) ++to.felt_apart;
   findings& f =
       to.of[static_cast<std::size_t>(c.of)][static_cast<std::size_t>(c.one_wall ? place::wall : place::edges)];
-  f.short_of.push_back((c.overlap_m - c.told->depth_m) * scale);
+  f.short_of.push_back((c.overlap_m - c.reported->depth_m) * scale);
   if (!c.truth.found) {
     ++f.nowhere;
     return;
@@ -208,13 +208,13 @@ const planted fewer{
     "23 of 24 samples left out", [](const truth_body& b) { return with_fewer_samples(*b.field, 24); }, {}};
 const planted tilted{
     "directions tilted by 2 degrees", [](const truth_body& b) { return b.field; },
-    [](told_plane& p) { p.n_ab_w = exp_rotation(2.0 * degree * any_orthogonal(p.n_ab_w)) * p.n_ab_w; }};
+    [](reported_plane& p) { p.n_ab_w = exp_rotation(2.0 * degree * any_orthogonal(p.n_ab_w)) * p.n_ab_w; }};
 const planted late{"planes 0.2 % of a diagonal late", [](const truth_body& b) { return b.field; },
-                   [](told_plane& p) { p.depth_m -= 0.35e-3; }};
+                   [](reported_plane& p) { p.depth_m -= 0.35e-3; }};
 
 /// What is told of a fault at two pairs, which have little else to tell of.
-std::vector<std::string> told_with(const planted& fault, const char* one, const char* other, std::uint64_t seed,
-                                   std::uint64_t approaches) {
+std::vector<std::string> reported_with(const planted& fault, const char* one, const char* other, std::uint64_t seed,
+                                       std::uint64_t approaches) {
   truth_table t;
   for (const auto& [probe, fixed] : {std::pair{one, other}, std::pair{other, one}}) {
     const truth_body &a = get_body(probe), &b = get_body(fixed);
@@ -231,13 +231,13 @@ std::vector<std::string> told_with(const planted& fault, const char* one, const 
 
 TEST(depth_truth, notices_planted_faults) {
   const std::uint64_t seed = test_support::fresh_seed("faults", "2 pairs x 35 approaches, more at length");
-  EXPECT_FALSE(told_with(tilted, "gear", "torus", seed, 35).empty());
-  EXPECT_FALSE(told_with(late, "gear", "torus", seed, 10).empty());
+  EXPECT_FALSE(reported_with(tilted, "gear", "torus", seed, 35).empty());
+  EXPECT_FALSE(reported_with(late, "gear", "torus", seed, 10).empty());
   if (!test_support::at_length()) return;
-  EXPECT_TRUE(told_with(nothing, "gear", "torus", seed, 60).empty());
-  EXPECT_TRUE(told_with(nothing, "hammer", "torus", seed, 100).empty());
-  EXPECT_FALSE(told_with(shifted, "hammer", "torus", seed, 100).empty());
-  EXPECT_FALSE(told_with(fewer, "hammer", "torus", seed, 100).empty());
+  EXPECT_TRUE(reported_with(nothing, "gear", "torus", seed, 60).empty());
+  EXPECT_TRUE(reported_with(nothing, "hammer", "torus", seed, 100).empty());
+  EXPECT_FALSE(reported_with(shifted, "hammer", "torus", seed, 100).empty());
+  EXPECT_FALSE(reported_with(fewer, "hammer", "torus", seed, 100).empty());
 }
 
 }  // namespace

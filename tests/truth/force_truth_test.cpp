@@ -117,10 +117,10 @@ TEST(force_truth, light_touches_push_by_their_depth) {
 
 TEST(force_truth, notices_forces_that_are_a_fifth_too_weak_or_turned) {
   const std::uint64_t seed = test_support::fresh_seed("planted forces", "6 pairs x 4, 10 x 10 more at length");
-  const auto turned = [](told_force& f) { f.on_probe_w = -1.0 * f.on_probe_w; };
+  const auto turned = [](reported_force& f) { f.on_probe_w = -1.0 * f.on_probe_w; };
   EXPECT_FALSE(complaints(ask(seed, 6, 4, turned)).empty());
   if (!test_support::at_length()) return;
-  const auto weak = [](told_force& f) { f.on_probe_w = 0.8 * f.on_probe_w; };
+  const auto weak = [](reported_force& f) { f.on_probe_w = 0.8 * f.on_probe_w; };
   EXPECT_FALSE(complaints(ask(seed, 10, 12, weak)).empty());
 }
 
@@ -136,8 +136,8 @@ std::vector<double> changes(std::uint64_t seed, std::size_t pairs, std::uint64_t
     for (std::uint64_t i = 0; i < approaches; ++i) {
       const double depth_m = i % 2 == 0 ? 1e-3 : 0.3e-3;
       const auto c = pair.press(seed, i, depth_m, 0.0);
-      if (!c || !c->told.complete) continue;
-      const vec3 change = law.at(c->T_wa).on_probe_w.force - c->told.on_probe_w.force;
+      if (!c || !c->reported.complete) continue;
+      const vec3 change = law.at(c->T_wa).on_probe_w.force - c->reported.on_probe_w.force;
       out.push_back(glm::length(change) / (law.stiffness_n_per_m() * depth_m));
     }
   }

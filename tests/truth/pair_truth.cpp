@@ -25,7 +25,7 @@ std::shared_ptr<const near_triangles> near_triangles_of(const truth_body& body) 
 
 double plane_case::tilt_rad() const {
   const vec3 wall = of_probe ? -truth.out_b_w : truth.out_a_w;
-  return std::acos(std::clamp(glm::dot(told->n_ab_w, wall), -1.0, 1.0));
+  return std::acos(std::clamp(glm::dot(reported->n_ab_w, wall), -1.0, 1.0));
 }
 
 double quantile(std::vector<double> values, double share) {
@@ -71,10 +71,10 @@ plane_truth::plane_truth(const truth_body& probe, const truth_body& fixed, const
 plane_case plane_truth::judge(const pose& T_wa) {
   plane_case out;
   out.T_wa = T_wa;
-  out.told = law_.deepest(T_wa);
-  if (!out.told) return out;
-  if (bend) bend(*out.told);
-  const told_plane& p = *out.told;
+  out.reported = law_.deepest(T_wa);
+  if (!out.reported) return out;
+  if (bend) bend(*out.reported);
+  const reported_plane& p = *out.reported;
   // Whose sample: it lies on one of the two surfaces, and as deep as the plane in the other.
   out.of_probe = probe_->distance(inverse(T_wa) * p.point_w, window_m_) <= fixed_->distance(p.point_w, window_m_);
   asked_place at;
@@ -141,8 +141,8 @@ std::optional<press_case> force_truth::press(std::uint64_t seed, std::uint64_t i
   const vec3 touch_w = on.window.centre_w;
   out.one_wall = fixed_->turn_rad(touch_w, depth_m + 2.0 * fixed_pitch_m_) < one_wall_rad ||
                  probe_->turn_rad(inverse(on.touching) * touch_w, depth_m + 2.0 * probe_pitch_m_) < one_wall_rad;
-  out.told = law_.at(out.T_wa);
-  if (bend) bend(out.told);
+  out.reported = law_.at(out.T_wa);
+  if (bend) bend(out.reported);
   return out;
 }
 

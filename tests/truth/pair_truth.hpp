@@ -11,7 +11,7 @@
 
 #include "oracle/approach.hpp"
 #include "truth/originals_depth.hpp"
-#include "truth/told.hpp"
+#include "truth/reported.hpp"
 #include "truth/truth_bodies.hpp"
 
 namespace asperity::truth {
@@ -28,7 +28,7 @@ struct plane_case {
   double way_m = 0.0;    ///< from the first touch; negative: drawn back
   bool against = false;  ///< pressed against the features that touch; otherwise along the approach
   pose T_wa;
-  std::optional<told_plane> told;
+  std::optional<reported_plane> reported;
   double overlap_m = 0.0;  ///< how deep the originals are in each other, at least; negative: their distance
   bool of_probe = false;   ///< the sample lies on the probe
   place_depth truth;
@@ -37,13 +37,13 @@ struct plane_case {
   bool one_wall = false;
 
   /// Told less true; only where a plane was told and the originals have a surface there.
-  [[nodiscard]] double error_m() const { return told->depth_m - truth.at_place_m; }
+  [[nodiscard]] double error_m() const { return reported->depth_m - truth.at_place_m; }
   /// Angle between n_ab and the mean normal of the surface that the sample is in, rad.
   [[nodiscard]] double tilt_rad() const;
 };
 
 /// Puts faults between the library and its judge.
-using plane_bend = std::function<void(told_plane&)>;
+using plane_bend = std::function<void(reported_plane&)>;
 
 /// The originals of a pair, as both judges ask them.
 class pair_originals {
@@ -91,12 +91,12 @@ struct press_case {
   bool one_wall = false;
   vec3 n_ab_w{0.0};  ///< the way of the press, unit
   pose T_wa;
-  told_force told;
-  [[nodiscard]] double along_n() const { return -glm::dot(told.on_probe_w.force, n_ab_w); }
+  reported_force reported;
+  [[nodiscard]] double along_n() const { return -glm::dot(reported.on_probe_w.force, n_ab_w); }
 };
 
 /// Puts faults between the library and its judge.
-using force_bend = std::function<void(told_force&)>;
+using force_bend = std::function<void(reported_force&)>;
 
 /// A pair, its originals, and the wrench that is told of it.
 class force_truth : public pair_originals {

@@ -13,7 +13,7 @@
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 #include "truth/pair_truth.hpp"
-#include "truth/told.hpp"
+#include "truth/reported.hpp"
 #include "unit/field/charted_model.hpp"
 
 namespace asperity::truth {
@@ -84,7 +84,7 @@ differences between(ball_on_ball& usual, ball_on_ball& other, const pose& T_wb, 
     const drawn_press p = draw(bits);
     const pose here = usual.pressed(p.turn, p.from, p.share), there = other.pressed(p.turn, p.from, p.share, T_wb);
     const auto a = usual.planes.deepest(here), b = other.planes.deepest(there, T_wb);
-    const told_force f = usual.force.at(here), g = other.force.at(there, T_wb);
+    const reported_force f = usual.force.at(here), g = other.force.at(there, T_wb);
     out.incomplete += g.complete ? 0 : 1;
     if (!a || !b) {
       out.untold += a.has_value() == b.has_value() ? 0 : 1;

@@ -9,8 +9,8 @@
 
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
+#include "truth/reported.hpp"
 #include "truth/striped_ball.hpp"
-#include "truth/told.hpp"
 
 namespace asperity::truth {
 namespace {
@@ -34,7 +34,7 @@ ripple_errors slide_over(const striped_ball& ball, const ball_slide& slide, cons
     const pose T_wa{turned, at.position};
     const vec3 north = slide.north_w(ball, i);
     const auto p = planes.deepest(T_wa);
-    const told_force f = force.at(T_wa);
+    const reported_force f = force.at(T_wa);
     const double latitude = slide.latitude(ball, i);
     const double d = exact_depth_m(ball, slide, latitude, depth_along::radius);
     const double slope = exact_slope(ball, slide, latitude, depth_along::radius);
@@ -48,8 +48,8 @@ ripple_errors slide_over(const striped_ball& ball, const ball_slide& slide, cons
     worst_mean =
         std::max(worst_mean, std::fabs(glm::length(f.on_probe_w.force) / (k * d * std::hypot(1.0, slope)) - 1.0));
   }
-  const auto off = [](const std::vector<double>& told, const std::vector<double>& exact) {
-    const auto is = at_the_wavelength(told), should = at_the_wavelength(exact);
+  const auto off = [](const std::vector<double>& reported, const std::vector<double>& exact) {
+    const auto is = at_the_wavelength(reported), should = at_the_wavelength(exact);
     return std::abs(is - should) / std::abs(should);
   };
   return {off(depth, exact_depth), off(aside, exact_aside), off(lateral, exact_lateral), worst_mean};

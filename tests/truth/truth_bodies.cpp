@@ -33,11 +33,11 @@ constexpr std::array<scan, 3> scans{{{"igea", "igea.ply", false},
 
 // As its bake took it: at the scale that the bake told, its holes closed.
 triangle_mesh load_scan(const scan& of) {
-  const fs::path told = fs::path(ASPERITY_TEST_MODELS_DIR) / "real" / (std::string(of.name) + ".json");
-  std::ifstream in(told);
+  const fs::path bake_report_path = fs::path(ASPERITY_TEST_MODELS_DIR) / "real" / (std::string(of.name) + ".json");
+  std::ifstream in(bake_report_path);
   std::ostringstream text;
   if (!(text << in.rdbuf())) {
-    throw std::runtime_error("there is no " + told.string() + "; ctest -R real_models makes it");
+    throw std::runtime_error("there is no " + bake_report_path.string() + "; ctest -R real_models makes it");
   }
   triangle_mesh full = made_or_thrown(io::load_mesh(test_support::real_mesh_folder() / of.file));
   const double scale = nlohmann::json::parse(text.str()).at("scale");

@@ -200,7 +200,7 @@ result<textured_model> bake(triangle_mesh full_mesh, const bake_settings& settin
   if (!errors) return errors.error();
   out.report.rms_error_m = errors->rms_m();
   out.report.max_error_m = errors->max_m();
-  out.report.relief_m = projected->highest_m - projected->lowest_m;
+  out.report.peak_to_valley_m = projected->highest_m - projected->lowest_m;
   out.report.max_displacement_m = projected->max_displacement_m;
   out.report.full_triangles = full->mesh.triangles.size();
   out.report.fallback_texels = projected->fallback_texels;

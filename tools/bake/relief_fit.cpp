@@ -35,7 +35,7 @@ void for_each_sample(const Visit& visit) {
 
 // Mean offset of the relief around each vertex, weighted by the vertex's hat function.
 std::vector<double> mean_offsets(const triangle_mesh& coarse, const std::vector<vec3>& normals,
-                                 const triangle_bvh& full, double range_m, unsigned threads, stage_monitor& tell) {
+                                 const triangle_bvh& full, double range_m, unsigned threads, stage_monitor& report) {
   std::vector<triangle_offsets> offsets(coarse.triangles.size());
   const auto look = [&](std::size_t i) {
     const index_triangle& t = coarse.triangles[i];
@@ -47,7 +47,7 @@ std::vector<double> mean_offsets(const triangle_mesh& coarse, const std::vector<
       offsets[i][number] = crossing ? crossing->offset_m : std::numeric_limits<double>::quiet_NaN();
     });
   };
-  if (!parallel_tasks(offsets.size(), threads, tell, tell.done(), tell.done(), look)) return {};
+  if (!parallel_tasks(offsets.size(), threads, report, report.done(), report.done(), look)) return {};
 
   std::vector<double> sum(coarse.positions.size(), 0.0);
   std::vector<double> weight(coarse.positions.size(), 0.0);
@@ -84,11 +84,11 @@ std::vector<double> shortest_edges(const triangle_mesh& mesh) {
 void fit_to_relief(triangle_mesh& coarse, const triangle_bvh& full, double range_m, unsigned threads,
                    stage_monitor* monitor) {
   stage_monitor no_one;
-  stage_monitor& tell = monitor != nullptr ? *monitor : no_one;
+  stage_monitor& report = monitor != nullptr ? *monitor : no_one;
   for (int step = 0; step < most_steps; ++step) {
     const std::vector<vec3> normals = vertex_normals(coarse.positions, coarse.triangles);
-    const std::vector<double> offsets = mean_offsets(coarse, normals, full, range_m, threads, tell);
-    if (tell.cancelled()) return;
+    const std::vector<double> offsets = mean_offsets(coarse, normals, full, range_m, threads, report);
+    if (report.cancelled()) return;
     const std::vector<double> shortest = shortest_edges(coarse);
     triangle_mesh moved = coarse;
     for (std::size_t v = 0; v < moved.positions.size(); ++v) {

@@ -12,7 +12,7 @@ class stage_monitor {
   using callback = std::function<bool(std::string_view stage, double done)>;
 
   stage_monitor() = default;
-  explicit stage_monitor(callback tell) : tell_(std::move(tell)) {}
+  explicit stage_monitor(callback report) : report_(std::move(report)) {}
 
   /// Starts a stage. @return false where the bake is cancelled
   bool begin(std::string_view stage) {
@@ -23,7 +23,7 @@ class stage_monitor {
   /// Reports the share of the stage that is done, 0 to 1. @return false where the bake is cancelled
   bool at(double done) {
     done_ = done;
-    if (!cancelled_ && tell_) cancelled_ = !tell_(stage_, done);
+    if (!cancelled_ && report_) cancelled_ = !report_(stage_, done);
     return !cancelled_;
   }
 
@@ -34,7 +34,7 @@ class stage_monitor {
   [[nodiscard]] bool cancelled() const noexcept { return cancelled_; }
 
  private:
-  callback tell_;
+  callback report_;
   std::string_view stage_;
   double done_ = 0.0;
   bool cancelled_ = false;

@@ -112,15 +112,15 @@ std::size_t stitch(const coarse_mesh& coarse, const triangle_bvh& full, double l
   // Only they are looked at again: most seams share no texel with one that is closed.
   std::vector<double> gap(seams.size());
   stage_monitor no_one;
-  stage_monitor& tell = monitor != nullptr ? *monitor : no_one;
+  stage_monitor& report = monitor != nullptr ? *monitor : no_one;
   const auto look = [&](std::size_t i) { gap[i] = seams[i].gap(texture); };
-  if (!parallel_tasks(seams.size(), threads, tell, tell.done(), tell.done(), look)) return 0;
+  if (!parallel_tasks(seams.size(), threads, report, report.done(), report.done(), look)) return 0;
   std::vector<bool> stale(seams.size(), false);
   std::vector<bool> touched(seams.size(), false);
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     bool open = false;
     for (std::size_t i = 0; i < seams.size(); ++i) {
-      if (!tell.ask()) return 0;
+      if (!report.ask()) return 0;
       if (stale[i]) look(i);
       stale[i] = false;
       if (gap[i] <= limit_m) continue;

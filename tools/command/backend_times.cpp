@@ -9,9 +9,9 @@
 #include "approach.hpp"
 #include "asperity/gl/compute_depth.hpp"
 #include "asperity/gl/uploaded_model.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "interrupt.hpp"
-#include "paper_on_gpu.hpp"
+#include "window_on_gpu.hpp"
 
 namespace asperity::command {
 namespace {
@@ -55,7 +55,7 @@ struct workload {
 };
 
 result<workload> make_workload(const scene& bodies, std::uint64_t seed) {
-  result<paper_renderer> feel = make_paper_renderer(bodies);
+  result<window_renderer> feel = make_window_renderer(bodies);
   if (!feel) return feel.error();
   workload out;
   out.T_wb.resize(bodies.fixed.size());
@@ -95,8 +95,8 @@ struct candidate {
   std::size_t device_bytes = 0;  ///< beyond the models
 };
 
-depth_settings settings_of(const backend_bench& options, gradient_scheme gradient) {
-  depth_settings s;
+window_depth_settings settings_of(const backend_bench& options, gradient_scheme gradient) {
+  window_depth_settings s;
   s.gradient = gradient;
   s.grid = options.grid;
   // Central differences are the paper's, so with its lookup: both backends on a GPU can do that.
@@ -104,7 +104,7 @@ depth_settings settings_of(const backend_bench& options, gradient_scheme gradien
   return s;
 }
 
-backend_times named(const char* backend, const depth_settings& s) {
+backend_times named(const char* backend, const window_depth_settings& s) {
   return {.backend = backend,
           .gradient = s.gradient == gradient_scheme::soft_max ? "soft" : "central",
           .lookup = s.parallax == parallax_mode::exact ? "exact" : "paper"};
@@ -124,7 +124,7 @@ result<std::vector<candidate>> make_candidates(const scene& bodies, const backen
   std::vector<candidate> out;
   const auto add_gpu = [&](const char* name, gpu_depth_maker* make, gradient_scheme gradient,
                            std::size_t reference) -> result<void> {
-    const depth_settings s = settings_of(options, gradient);
+    const window_depth_settings s = settings_of(options, gradient);
     const std::size_t before = context->device_bytes();
     result<any_depth> made = error{error_code::unsupported, ""};
     backend_times times = named(name, s);
@@ -134,7 +134,7 @@ result<std::vector<candidate>> make_candidates(const scene& bodies, const backen
     return {};
   };
   for (const gradient_scheme gradient : {gradient_scheme::soft_max, gradient_scheme::central_difference}) {
-    const depth_settings s = settings_of(options, gradient);
+    const window_depth_settings s = settings_of(options, gradient);
     result<cpu_depth> made = make_cpu_depth(bodies, s);
     if (!made) return made.error();
     out.push_back({named("cpu", s), any_depth(std::move(made).value()), out.size()});
@@ -210,7 +210,7 @@ struct batch_backend {
   std::size_t device_bytes;
 };
 
-result<batch_backend> make_batch(const scene& bodies, const workload& work, const depth_settings& settings,
+result<batch_backend> make_batch(const scene& bodies, const workload& work, const window_depth_settings& settings,
                                  const gl::context_ptr& context) {
   for (std::size_t at_once = pairs;; at_once /= 2) {
     const contact_limits limits = work.limits(at_once);

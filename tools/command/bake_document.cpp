@@ -7,7 +7,7 @@
 
 namespace asperity::command {
 
-answer tell_of_bake(const finished_bake& done, std::vector<std::string> notes) {
+answer report_bake(const finished_bake& done, std::vector<std::string> notes) {
   for (std::string& warning : warnings(done.model)) notes.push_back(std::move(warning));
   answer out;
   out.document = {{"file", done.file}, {"source", done.source}, {"scale", done.scale}};

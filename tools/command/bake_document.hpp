@@ -47,6 +47,6 @@ struct finished_bake {
 };
 
 /// The document and the report of a bake. @param notes  warnings, besides those that the model itself deserves
-[[nodiscard]] answer tell_of_bake(const finished_bake& done, std::vector<std::string> notes);
+[[nodiscard]] answer report_bake(const finished_bake& done, std::vector<std::string> notes);
 
 }  // namespace asperity::command

@@ -60,7 +60,7 @@ int exit_interrupted() noexcept { return 128 + stop_signal(); }
 
 void complain(std::string_view message) { write_all(STDERR_FILENO, "asperity: " + printable(message) + '\n'); }
 
-void tell_error(std::string_view code, std::string_view message, bool as_json) {
+void report_error(std::string_view code, std::string_view message, bool as_json) {
   if (has_room(STDERR_FILENO)) complain(message);
   if (as_json && has_room(STDOUT_FILENO)) write_all(STDOUT_FILENO, error_document(code, message));
 }

@@ -29,7 +29,7 @@ void complain(std::string_view message);
 
 /// Error line, and with --json the error document, for a process that ends at once: waits for half a
 /// second at the most for somebody who reads.
-void tell_error(std::string_view code, std::string_view message, bool as_json);
+void report_error(std::string_view code, std::string_view message, bool as_json);
 
 /// Switches that every subcommand has.
 struct common_options {

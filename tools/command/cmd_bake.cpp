@@ -136,7 +136,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     if (const result<void> kept = drawing->commit(); !kept) return kept.error();
   }
   clock.leave();
-  answer out = tell_of_bake(
+  answer out = report_bake(
       {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, holes, *relief, clock},
       std::move(remarks));
   if (drawing) {

@@ -34,7 +34,7 @@ std::string full_name(const experiment::published& one, const experiment::statem
 }
 
 // What a person wants to know first: does it hold, and if not, where.
-void tell(const experiment::published& one, answer& out, std::vector<std::string>& failed) {
+void report(const experiment::published& one, answer& out, std::vector<std::string>& failed) {
   std::size_t held = 0;
   for (const experiment::statement& s : one.found.statements) held += s.holds() ? 1U : 0U;
   out.text += std::string(one.what->name) + ": " + one.what->title + ", " + std::to_string(held) + " of " +
@@ -127,7 +127,7 @@ result<answer> run_experiments(const experiment_command& options, const common_o
       ended = written.error();
       break;
     }
-    tell(done.back(), out, failed);
+    report(done.back(), out, failed);
   }
   // The page shows what is there: an older one would belong to other files.
   if (ended) facts.missing = missing(std::span(wanted).subspan(done.size()), *ended);

@@ -152,7 +152,7 @@ void add_query(command_line& line) {
   sub.add_option("--fixed-pose", o->fixed_pose, "Pose of the fixed body in the world")
       ->check(pose_form_error, "POSE")
       ->capture_default_str();
-  add_render_options(sub, o->render, {"shared", "paper"});
+  add_render_options(sub, o->render, {"least-motion", "window"});
 }
 
 }  // namespace asperity::command

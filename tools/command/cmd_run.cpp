@@ -269,7 +269,7 @@ void add_run(command_line& line) {
       ->capture_default_str();
   sub.add_option("--coupling", o->coupling_n_per_m,
                  "Stiffness of the virtual coupling (N/m); by default what the device can show, and 500 with other "
-                 "contacts than field")
+                 "contacts than planes")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1.0, 1e5));
   sub.add_option("--coupling-rotation", o->coupling_n_m_per_rad,
@@ -290,8 +290,8 @@ void add_run(command_line& line) {
             return extension_error(text, {".png", ".svg"});
           },
           "FILE");
-  o->render.usual_contacts = "field";
-  add_render_options(sub, o->render, {"field", "shared", "paper"});
+  o->render.usual_contacts = "planes";
+  add_render_options(sub, o->render, {"planes", "least-motion", "window"});
 }
 
 }  // namespace asperity::command

@@ -173,9 +173,9 @@ result<device_replay> device_replay::open(const std::filesystem::path& file) {
   const auto writes_before = static_cast<std::uint64_t>(
       std::count_if(calls.begin(), armed, [](const call_record& c) { return c.call == device_call::write; }));
   out.ticks_ = std::move(ticks).value();
-  if (loaded->end != recorded_end::not_told) {
-    const std::uint64_t told = std::max(loaded->writes_before_end, writes_before) - writes_before;
-    out.ticks_.of_session = std::min(out.ticks_.of_session, static_cast<std::size_t>(told));
+  if (loaded->end != recorded_end::not_reported) {
+    const std::uint64_t reported = std::max(loaded->writes_before_end, writes_before) - writes_before;
+    out.ticks_.of_session = std::min(out.ticks_.of_session, static_cast<std::size_t>(reported));
   }
   out.ticks_.end = loaded->end == recorded_end::interrupted ? gate_fault::interrupted : gate_fault::stopped;
 

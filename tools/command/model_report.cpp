@@ -109,7 +109,7 @@ json describe(const textured_model& model) {
         {"max_error", r.max_error_m},
         {"rms_error_percent", percent_of_diagonal(model, r.rms_error_m)},
         {"max_error_percent", percent_of_diagonal(model, r.max_error_m)},
-        {"relief", r.relief_m},
+        {"peak_to_valley", r.peak_to_valley_m},
         {"max_displacement", r.max_displacement_m}}},
       {"memory", memory_bytes(model)},
   };
@@ -134,8 +134,8 @@ std::string describe_text(const textured_model& model) {
                                    " texels, " + brief(100.0 * share(r.texels, image)) + " % used, " +
                                    brief(100.0 * share(r.fallback_texels, r.texels)) +
                                    " % of these found by the closest point");
-  out += row("relief", length_text(r.relief_m) + " peak to valley, at most " + length_text(r.max_displacement_m) +
-                           " from the coarse mesh");
+  out += row("relief", length_text(r.peak_to_valley_m) + " peak to valley, at most " +
+                           length_text(r.max_displacement_m) + " from the coarse mesh");
   out += row("RMS error", error_text(model, r.rms_error_m));
   out += row("maximum error", error_text(model, r.max_error_m));
   if (r.quality) out += quality_text(model, *r.quality);

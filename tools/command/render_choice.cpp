@@ -6,13 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 #include "render_kinds.hpp"
 
 namespace asperity::command {
 namespace {
 
-/// How a backend takes the depth of the paper's contacts.
+/// How a backend takes the depth in a contact's window.
 enum class depth_kind : std::uint8_t {
   searched,   ///< not on a grid of samples: --gradient, --grid and --lookup mean nothing
   sampled,    ///< on a grid, both gradients and both lookups
@@ -22,24 +22,25 @@ enum class depth_kind : std::uint8_t {
 /// A value of --backend.
 struct backend_choice {
   const char* name;
-  renderer_maker* shared;  ///< with --contacts shared; null: the backend has none, and implies --contacts paper
-  renderer_maker* field;   ///< with --contacts field; null: the backend has none
-  renderer_maker* paper;   ///< with --contacts paper; both null: not part of this build
+  renderer_maker*
+      least_motion;        ///< with --contacts least-motion; null: none, and the backend implies --contacts window
+  renderer_maker* planes;  ///< with --contacts planes; null: the backend has none
+  renderer_maker* window;  ///< with --contacts window; all null: not part of this build
   depth_kind depth;
   bool on_gpu;
 };
 
 #ifdef ASPERITY_HAS_GL
-constexpr renderer_maker* gl_compute = make_paper_with_gl_compute;
-constexpr renderer_maker* gl_occlusion = make_paper_with_gl_occlusion;
+constexpr renderer_maker* gl_compute = make_window_with_gl_compute;
+constexpr renderer_maker* gl_occlusion = make_window_with_gl_occlusion;
 #else
 constexpr renderer_maker* gl_compute = nullptr;
 constexpr renderer_maker* gl_occlusion = nullptr;
 #endif
 
 constexpr std::array backends{
-    backend_choice{"cpu", make_shared_on_cpu, make_field_on_cpu, make_paper_on_cpu, depth_kind::sampled, false},
-    backend_choice{"exact", nullptr, nullptr, make_paper_with_exact, depth_kind::searched, false},
+    backend_choice{"cpu", make_least_motion_on_cpu, make_planes_on_cpu, make_window_on_cpu, depth_kind::sampled, false},
+    backend_choice{"exact", nullptr, nullptr, make_window_with_exact, depth_kind::searched, false},
     backend_choice{"cpu-simd", nullptr, nullptr, nullptr, depth_kind::sampled, false},
     backend_choice{"gl-occlusion", nullptr, nullptr, gl_occlusion, depth_kind::as_printed, true},
     backend_choice{"gl-compute", nullptr, nullptr, gl_compute, depth_kind::sampled, true},
@@ -50,12 +51,12 @@ const backend_choice& backend_of(const render_options& options) {
   return *std::find_if(backends.begin(), backends.end(), [&](const auto& b) { return options.backend == b.name; });
 }
 
-bool is_built(const backend_choice& b) { return b.paper != nullptr; }
+bool is_built(const backend_choice& b) { return b.window != nullptr; }
 
 error contradiction(std::string what) { return {error_code::invalid_argument, std::move(what)}; }
 
 bool on_grid(const render_options& options) {
-  return formulation_name(options) == "paper" && backend_of(options).depth != depth_kind::searched;
+  return formulation_name(options) == "window" && backend_of(options).depth != depth_kind::searched;
 }
 
 /// The first of the options given that belong to depths on a grid, or nothing.
@@ -94,8 +95,12 @@ std::vector<std::string> backend_names() {
   return names;
 }
 
+std::vector<std::pair<std::string, std::string>> old_contact_names() {
+  return {{"field", "planes"}, {"shared", "least-motion"}, {"paper", "window"}};
+}
+
 std::string formulation_name(const render_options& options) {
-  return options.contacts.value_or(backend_of(options).shared != nullptr ? options.usual_contacts : "paper");
+  return options.contacts.value_or(backend_of(options).least_motion != nullptr ? options.usual_contacts : "window");
 }
 
 std::string gradient_name(const render_options& options) {
@@ -105,7 +110,7 @@ std::string gradient_name(const render_options& options) {
 
 std::optional<std::uint32_t> grid_of(const render_options& options) {
   if (!on_grid(options)) return std::nullopt;
-  return options.grid.value_or(depth_settings{}.grid);
+  return options.grid.value_or(window_depth_settings{}.grid);
 }
 
 std::optional<std::string> lookup_name(const render_options& options) {
@@ -113,8 +118,8 @@ std::optional<std::string> lookup_name(const render_options& options) {
   return options.lookup.value_or(backend_of(options).depth == depth_kind::as_printed ? "paper" : "exact");
 }
 
-depth_settings grid_settings(const render_options& options) {
-  depth_settings settings;
+window_depth_settings grid_settings(const render_options& options) {
+  window_depth_settings settings;
   settings.gradient =
       gradient_name(options) == "central" ? gradient_scheme::central_difference : gradient_scheme::soft_max;
   settings.parallax = lookup_name(options) == "paper" ? parallax_mode::paper_lookup : parallax_mode::exact;
@@ -132,16 +137,16 @@ result<void> check(const render_options& options) {
                                        "libegl-dev, libgl-dev)"
                                      : "")};
   }
-  const bool without_windows = options.contacts == "shared" || options.contacts == "field";
-  if (backend.shared == nullptr && without_windows) {
-    return contradiction("--backend " + options.backend +
-                         " looks into the windows of the paper's contacts: leave out --contacts " + *options.contacts);
+  const bool without_windows = options.contacts && options.contacts != "window";
+  if (backend.least_motion == nullptr && without_windows) {
+    return contradiction("--backend " + options.backend + " looks into the windows of contacts: leave out --contacts " +
+                         *options.contacts);
   }
   if (const result<void> ok = check_gpu(backend, options); !ok) return ok;
   if (const char* const given = given_for_grid(options); given != nullptr && !on_grid(options)) {
     return contradiction(given +
-                         (formulation_name(options) != "paper"
-                              ? std::string(" belongs to the paper's contacts: add --contacts paper")
+                         (formulation_name(options) != "window"
+                              ? std::string(" belongs to contacts with windows: add --contacts window")
                               : " belongs to depths on a grid: leave it out with --backend " + options.backend));
   }
   return backend.depth == depth_kind::as_printed ? check_as_printed(options) : result<void>();
@@ -151,8 +156,9 @@ result<any_renderer> make_chosen_renderer(scene bodies, const render_options& op
   if (const result<void> ok = check(options); !ok) return ok.error();
   const backend_choice& backend = backend_of(options);
   const std::string formulation = formulation_name(options);
-  renderer_maker* const make =
-      formulation == "shared" ? backend.shared : (formulation == "field" ? backend.field : backend.paper);
+  renderer_maker* const make = formulation == "least-motion"
+                                   ? backend.least_motion
+                                   : (formulation == "planes" ? backend.planes : backend.window);
   return make(std::move(bodies), options);
 }
 

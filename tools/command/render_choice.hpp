@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
 #include "asperity/render/any_renderer.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 
 namespace asperity::command {
 
@@ -17,26 +18,29 @@ namespace asperity::command {
 struct render_options {
   std::optional<std::string> contacts;  ///< what the backend implies where it is not given
   /// What the backend cpu implies: a pose alone has no loop that planes could use.
-  std::string usual_contacts = "shared";
+  std::string usual_contacts = "least-motion";
   std::string backend = "cpu";
-  std::optional<std::string> gradient;  ///< of the paper's contacts on grids only
-  std::optional<std::uint32_t> grid;    ///< of the paper's contacts on grids only
-  std::optional<std::string> lookup;    ///< of the paper's contacts on grids only
+  std::optional<std::string> gradient;  ///< of windows on grids only
+  std::optional<std::uint32_t> grid;    ///< of windows on grids only
+  std::optional<std::string> lookup;    ///< of windows on grids only
   std::optional<std::string> gpu;       ///< index of a GPU or part of its name; of backends on a GPU only
   bool fallback = false;                ///< of backends on a GPU only
   bool allow_scale_mismatch = false;
-  /// Of the loop that renders, where there is one: contacts as support planes look as far as it needs, and contacts as
-  /// one potential are as soft as it can follow.
+  /// Of the loop that renders, where there is one: planes are reported as far as it needs, and the least motion is as
+  /// soft as it can follow.
   double contact_rate_hz = 1000.0;
-  /// Of contacts as one potential, N/m. For experiments: the command line has no option for it.
+  /// Of the least motion, N/m. For experiments: the command line has no option for it.
   std::optional<double> contact_stiffness_n_per_m;
-  /// Of the paper's contacts on grids with central differences, m; 0: the backend's choice. For experiments: the
+  /// Of windows on grids with central differences, m; 0: the backend's choice. For experiments: the
   /// command line has no option for it.
   double difference_step_m = 0.0;
 };
 
 /// Every value of --backend, those that are not part of this build too.
 [[nodiscard]] std::vector<std::string> backend_names();
+
+/// The names that --contacts had before, each with its name of today. They are still accepted.
+[[nodiscard]] std::vector<std::pair<std::string, std::string>> old_contact_names();
 
 /// What the options come to, for documents and captions.
 [[nodiscard]] std::string formulation_name(const render_options& options);
@@ -47,7 +51,7 @@ struct render_options {
 [[nodiscard]] std::optional<std::string> lookup_name(const render_options& options);
 
 /// The same for a depth backend on a grid. @pre grid_of() has a value
-[[nodiscard]] depth_settings grid_settings(const render_options& options);
+[[nodiscard]] window_depth_settings grid_settings(const render_options& options);
 
 /// Says what does not go together; asked before models are loaded, which takes longer.
 /// @return unsupported (a backend that is not part of this build) | invalid_argument

@@ -13,13 +13,13 @@ namespace asperity::command {
 
 using renderer_maker = result<any_renderer>(scene bodies, const render_options& options);
 
-renderer_maker make_shared_on_cpu;     ///< --contacts shared: the library's default
-renderer_maker make_field_on_cpu;      ///< --contacts field: support planes, for control loops
-renderer_maker make_paper_on_cpu;      ///< --contacts paper
-renderer_maker make_paper_with_exact;  ///< --backend exact: the paper's contacts with the maximum itself
+renderer_maker make_least_motion_on_cpu;  ///< --contacts least-motion: the library's default
+renderer_maker make_planes_on_cpu;        ///< --contacts planes: support planes, for control loops
+renderer_maker make_window_on_cpu;        ///< --contacts window: the paper's
+renderer_maker make_window_with_exact;    ///< --backend exact: windows with the maximum itself
 // In builds with OpenGL, where ASPERITY_HAS_GL is defined:
-renderer_maker make_paper_with_gl_compute;    ///< --backend gl-compute
-renderer_maker make_paper_with_gl_occlusion;  ///< --backend gl-occlusion
+renderer_maker make_window_with_gl_compute;    ///< --backend gl-compute
+renderer_maker make_window_with_gl_occlusion;  ///< --backend gl-occlusion
 
 /// What a renderer of these does with a GPU; null where it uses none.
 [[nodiscard]] std::shared_ptr<gpu_use> gpu_use_of(any_renderer& feel);

@@ -20,7 +20,8 @@ void abandon(session_rescue& rescue, session_files& files, const std::string& wh
       of_the_files = "what was written of the recordings is in the files whose names end in .partial- and letters";
     }
   }
-  tell_error("io_failed", what + "; the process is ended" + (of_the_files.empty() ? "" : "; " + of_the_files), as_json);
+  report_error("io_failed", what + "; the process is ended" + (of_the_files.empty() ? "" : "; " + of_the_files),
+               as_json);
   std::_Exit(exit_failed);
 }
 

@@ -24,8 +24,8 @@ std::string plot_title(const run_command& options, const session_summary& summar
 
 std::string contacts_in_words(const render_options& options) {
   const std::string formulation = formulation_name(options);
-  if (formulation == "field") return "contacts as support planes";
-  return formulation == "shared" ? "contacts as one potential" : "contacts as in the paper";
+  if (formulation == "planes") return "contacts as support planes";
+  return formulation == "least-motion" ? "contacts as one potential" : "contacts as in the paper";
 }
 
 std::string plot_caption(const run_command& options) {
@@ -102,7 +102,7 @@ std::string session_files::rescue() {
   closed_ = true;
   bool kept = true;
   if (recorder_) {
-    const result<void> ended = recorder_->finish(recorded_end::not_told, 0);
+    const result<void> ended = recorder_->finish(recorded_end::not_reported, 0);
     kept = ended && recorder_->commit();
   }
   if (record_) kept = record_->close() && kept;

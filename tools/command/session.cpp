@@ -238,16 +238,16 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   const rescue_line line(rescue, take_records);
   const memory_lock locked;
   const auto begin = std::chrono::steady_clock::now();
-  bool told = !setup.on_start;
+  bool reported = !setup.on_start;
   threads_set_up = 0;
   session.start();
   for (double elapsed = 0.0; elapsed < setup.seconds && !failed && !shut && !interrupted();) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     drain();
     session.beat();
-    if (!told && threads_set_up == 2) {
+    if (!reported && threads_set_up == 2) {
       setup.on_start(grants_of(locked));
-      told = true;
+      reported = true;
     }
     elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     progress.show("session", std::min(1.0, elapsed / setup.seconds));

@@ -8,9 +8,9 @@
 
 #include "approach.hpp"
 #include "asperity/field/field_body.hpp"
-#include "asperity/least_motion/default_renderer.hpp"
-#include "asperity/planes/field_renderer.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "cpu_clock.hpp"
 #include "interrupt.hpp"
 
@@ -39,7 +39,7 @@ std::vector<pose> scrubbing_path(const pose& touch, const scrubbing& motion, dou
 }
 
 /// A pose whose deepest sample is at the surface, as a loop keeps it.
-pose lifted(field_renderer& feel, scene_pose at) {
+pose lifted(plane_renderer& feel, scene_pose at) {
   pose T_wa = at.T_wa;
   for (int i = 0; i < 4; ++i) {
     tick found;
@@ -54,7 +54,7 @@ pose lifted(field_renderer& feel, scene_pose at) {
 
 /// The sum of depths and slopes of all samples that the last tick found near, each of them read in full: a number that
 /// no compiler can do without a reading for.
-double sum_of_all(field_renderer& feel, const scene_pose& at) {
+double sum_of_all(plane_renderer& feel, const scene_pose& at) {
   const field_scene& fields = feel.depth().bodies();
   double sum = 0.0;
   for (const near_patch& patch : feel.found().patches()) {
@@ -74,17 +74,17 @@ double sum_of_all(field_renderer& feel, const scene_pose& at) {
 }  // namespace
 
 result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, progress_line& progress) {
-  paper_settings soft_settings, central_settings;
+  window_renderer_settings soft_settings, central_settings;
   soft_settings.depth.gradient = gradient_scheme::soft_max;
   central_settings.depth.gradient = gradient_scheme::central_difference;
-  result<renderer> shared = make_renderer(bodies);
-  if (!shared) return shared.error();
-  result<paper_renderer> soft = make_paper_renderer(bodies, soft_settings);
+  result<least_motion_renderer> least = make_renderer(bodies);
+  if (!least) return least.error();
+  result<window_renderer> soft = make_window_renderer(bodies, soft_settings);
   if (!soft) return soft.error();
-  result<paper_renderer> central = make_paper_renderer(bodies, central_settings);
+  result<window_renderer> central = make_window_renderer(bodies, central_settings);
   if (!central) return central.error();
 
-  result<field_renderer> planes = make_field_renderer(bodies, {.reach_m = reach_for(1e-3)});
+  result<plane_renderer> planes = make_plane_renderer(bodies, {.reach_m = reach_for(1e-3)});
   if (!planes) return planes.error();
 
   const std::vector<pose> T_wb(bodies.fixed.size());
@@ -123,7 +123,7 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
       out.sum_of_samples += sum_of_all(*planes, at_surface);
       return status::ok;
     });
-    time(out.shared_tick_s, 1.0, [&] { return shared->step(at, found); });
+    time(out.least_motion_tick_s, 1.0, [&] { return least->step(at, found); });
     time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
     time(out.central_tick_s, 1.0, [&] { return central->step(at, found); });
   }

@@ -22,8 +22,8 @@ struct scrubbing {
 struct stage_times {
   std::vector<double> query_s;
   std::vector<double> soft_contact_s, central_contact_s;
-  std::vector<double> shared_tick_s, soft_tick_s, central_tick_s;
-  std::vector<double> planes_tick_s;   ///< of the field renderer, with the probe at the surface, as a loop keeps it
+  std::vector<double> least_motion_tick_s, soft_tick_s, central_tick_s;
+  std::vector<double> planes_tick_s;   ///< of the plane renderer, with the probe at the surface, as a loop keeps it
   std::vector<double> every_sample_s;  ///< what reading all samples that such a tick finds near would take
   double sum_of_samples = 0.0;         ///< of that reading, so that it is made
   std::vector<depth_work> planes_work;

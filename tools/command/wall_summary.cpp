@@ -54,13 +54,13 @@ json wall_summary::to_json() const {
 
 std::string wall_summary::to_text() const {
   if (!has_planes_) return "";
-  std::string told;
+  std::string reported;
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (counts_[i].ticks == 0) continue;
-    told += std::string(told.empty() ? "" : ", ") + words[i].key + " in " + std::to_string(counts_[i].ticks) +
-            " ticks from " + first_text(counts_[i].first_ns) + " on";
+    reported += std::string(reported.empty() ? "" : ", ") + words[i].key + " in " + std::to_string(counts_[i].ticks) +
+                " ticks from " + first_text(counts_[i].first_ns) + " on";
   }
-  return row("wall", (told.empty() ? "held in every tick" : told) + "; at most " + length_text(overlap_max_m_) +
+  return row("wall", (reported.empty() ? "held in every tick" : reported) + "; at most " + length_text(overlap_max_m_) +
                          " of overlap in the solver");
 }
 

@@ -31,7 +31,7 @@ struct exact_depth_settings {
   /// Samples per side of the grid that the search starts from. Odd: one of them is the window's middle.
   std::uint32_t grid = 65;
 
-  /// As depth_settings::facing_cosine.
+  /// As window_depth_settings::facing_cosine.
   double facing_cosine = 0.1;
 
   static constexpr std::uint32_t most_nodes = 1U << 26;
@@ -47,7 +47,7 @@ struct exact_depth_settings {
     return bad("max_nodes is " + std::to_string(s.max_nodes) + "; give 1 to " +
                std::to_string(exact_depth_settings::most_nodes));
   }
-  return check(depth_settings{.grid = s.grid, .facing_cosine = s.facing_cosine});
+  return check(window_depth_settings{.grid = s.grid, .facing_cosine = s.facing_cosine});
 }
 
 /// What exact_depth knows about one contact: the largest depth lies between lower_m and upper_m.

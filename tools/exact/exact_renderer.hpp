@@ -10,13 +10,13 @@
 
 namespace asperity {
 
-/// As paper_renderer, with exact_depth. For tests and work at a desk: a step takes as long as its search. See
+/// As window_renderer, with exact_depth. For tests and work at a desk: a step takes as long as its search. See
 /// exact_depth.
 using exact_renderer = basic_renderer<convex_piece_finder, exact_depth, gradient_penalty>;
 
 /// Settings of its policies.
 struct exact_renderer_settings {
-  finder_settings finder{};
+  window_finder_settings finder{};
   exact_depth_settings depth{};
   gradient_penalty_settings force{};
   contact_limits limits{};

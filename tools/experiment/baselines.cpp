@@ -213,7 +213,7 @@ result<findings> run(workbench& bench) {
     index += 1.0;
   }
   // The same by the depth between two textures.
-  for (const variant& kind : {paper_soft(), shared_contacts()}) {
+  for (const variant& kind : {window_soft(), least_motion_contacts()}) {
     if (const result<void> on = bench.go_on(); !on) return on.error();
     bench.progress("baselines, " + kind.says, 0.0);
     std::vector<std::string> row{kind.says, "-", "-", "-"};
@@ -229,7 +229,7 @@ result<findings> run(workbench& bench) {
     }
     row[3] = percent(work->ratio());
     shown.add_loop(kind.says, *work, index);
-    if (kind.name == paper_soft().name) {
+    if (kind.name == window_soft().name) {
       feel = bench.make_renderer(*bodies, kind);
       if (!feel) return feel.error();
       const result<samples> turned = turn_block(std::move(feel).value(), how);

@@ -72,9 +72,9 @@ std::vector<std::string> timing_row(const std::string& what, const std::vector<d
 
 // The paper measured on 50 x 50 samples and looked fine points up as its Eq. 8 says; that is kept for its own scheme.
 variant at_papers_resolution(variant kind) {
-  if (kind.options.contacts != "paper") return kind;
+  if (kind.options.contacts != "window") return kind;
   kind.options.grid = 50;
-  if (kind.name == paper_central().name) kind.options.lookup = "paper";
+  if (kind.name == window_central().name) kind.options.lookup = "paper";
   return kind;
 }
 
@@ -201,10 +201,10 @@ result<findings> run_fig9(workbench& bench) {
     return {};
   };
   if (const result<void> ran = bench.with_each("fig9", bench.variants(), out, time_with); !ran) return ran.error();
-  const timed_frames* soft = find_times(all, paper_soft().name);
-  const timed_frames* central = find_times(all, paper_central().name);
-  const timed_frames* shared = find_times(all, shared_contacts().name);
-  if (shared != nullptr) state_rate(*shared, out);
+  const timed_frames* soft = find_times(all, window_soft().name);
+  const timed_frames* central = find_times(all, window_central().name);
+  const timed_frames* least = find_times(all, least_motion_contacts().name);
+  if (least != nullptr) state_rate(*least, out);
   if (soft != nullptr) {
     state_rate(*soft, out);
     state_texture(*path, *soft, bench.brief(), out);

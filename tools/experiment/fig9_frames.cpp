@@ -95,7 +95,7 @@ result<scrubbed> scrub(workbench& bench) {
   if (!part) return part.error();
   scrubbed path;
   path.bodies = {*file, {*part}};
-  result<any_renderer> feel = bench.make_renderer(path.bodies, paper_soft());
+  result<any_renderer> feel = bench.make_renderer(path.bodies, window_soft());
   if (!feel) return feel.error();
   const std::size_t wanted = bench.brief() ? frames_brief : frames;
   bench.progress("fig9, scrubbing", 0.0);

@@ -19,7 +19,7 @@ using models::benchmark;
 // The bodies, as tools/models makes them: the hammer's face is its end at +x, the ring's top a circle.
 constexpr double face_x_m = 45e-3, face_half_m = 13.4e-3, face_corner_m = 14.8e-3;
 constexpr double ring_m = 45e-3, tube_m = 18e-3;
-constexpr double relief_m = 0.4e-3 + 0.25e-3;  // largest height of both textures over mid height, together
+constexpr double highest_relief_m = 0.4e-3 + 0.25e-3;  // largest height of both textures over mid height, together
 constexpr double press_n = 1.0;
 constexpr double rock_rad = 0.1;
 
@@ -40,7 +40,7 @@ struct wish_on_ring {
 };
 wish_on_ring wish_at(double t, const schedule& s, double push_m) {
   const double held = smooth(0.0, s.down, t) - smooth(s.lift, s.end - 0.05, t);
-  const double above_m = relief_m + 0.5e-3;
+  const double above_m = highest_relief_m + 0.5e-3;
   // To one side and to the other, starting and ending at rest.
   const double u = std::numbers::pi * std::clamp((t - s.rock) / (s.lift - s.rock), 0.0, 1.0);
   const double rocks = std::sin(2.0 * u) * std::sin(u) * std::sin(u) / 0.65;
@@ -162,7 +162,7 @@ void state(const std::string& name, const touch& t, const schedule& s, findings&
   double opposes = 0.0, leans = 0.0, low_m = 0.0, high_m = 0.0;
   // The furthest point is a corner. While the hammer leans it hangs lower than the middle, by the relief more, and a
   // force that slants by 45 degrees there passes the middle's height that much further out.
-  constexpr double furthest_m = face_corner_m * (1.0 + rock_rad) + relief_m;
+  constexpr double furthest_m = face_corner_m * (1.0 + rock_rad) + highest_relief_m;
   for (std::size_t i = 0; i < t.time_s.size(); ++i) {
     if (t.time_s[i] < s.down || t.time_s[i] > s.lift) continue;
     held += 1.0;

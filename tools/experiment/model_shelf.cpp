@@ -9,8 +9,8 @@
 
 namespace asperity::experiment {
 
-model_shelf::model_shelf(std::filesystem::path folder, progress told)
-    : folder_(std::move(folder)), told_(std::move(told)) {}
+model_shelf::model_shelf(std::filesystem::path folder, progress report)
+    : folder_(std::move(folder)), report_(std::move(report)) {}
 
 result<model_ptr> model_shelf::benchmark(models::benchmark which) {
   bake::bake_settings options;
@@ -35,7 +35,7 @@ result<model_ptr> model_shelf::baked(const std::string& name, const std::functio
   }
   options.name = name;
   options.progress = [&](std::string_view stage, double done) {
-    return told_("baking " + name + ", " + std::string(stage), done);
+    return report_("baking " + name + ", " + std::string(stage), done);
   };
   result<textured_model> model = bake::bake(full(), options);
   if (!model) return model.error();

@@ -21,7 +21,7 @@ class model_shelf {
   using progress = std::function<bool(std::string_view what, double done)>;
 
   /// @param folder  where models are looked for and kept as files, .glb; empty: in memory alone
-  model_shelf(std::filesystem::path folder, progress told);
+  model_shelf(std::filesystem::path folder, progress report);
 
   /// One of the paper's models, baked with the paper's coarse triangle count.
   /// @return what bake() or the file says | cancelled
@@ -33,7 +33,7 @@ class model_shelf {
 
  private:
   std::filesystem::path folder_;
-  progress told_;
+  progress report_;
   std::map<std::string, model_ptr, std::less<>> kept_;
 };
 

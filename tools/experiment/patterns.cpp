@@ -98,7 +98,7 @@ command::plot_panel spectra_panel(const std::vector<std::vector<double>>& mean_n
   return panel;
 }
 
-void tell_confusion(const std::vector<std::vector<std::size_t>>& taken, findings& out) {
+void report_confusion(const std::vector<std::vector<std::size_t>>& taken, findings& out) {
   shown_table shown{"Which texture a stroke was taken for: one row for each that was felt", {"felt \\ taken for"}, {}};
   table numbers{"confusion", {"felt"}, {}};
   for (std::size_t i = 0; i < taken.size(); ++i) {
@@ -120,7 +120,7 @@ void tell_confusion(const std::vector<std::vector<std::size_t>>& taken, findings
   out.tables.push_back(std::move(numbers));
 }
 
-void tell_spectra(const std::vector<std::vector<double>>& mean_n, findings& out) {
+void report_spectra(const std::vector<std::vector<double>>& mean_n, findings& out) {
   figure f{"patterns",
            "Stripes and dots show lines at their pitch and its multiples, the larger ones at other places than the "
            "smaller ones; what is scattered or random is spread over all frequencies, and its two sizes look alike.",
@@ -160,7 +160,7 @@ result<findings> run_patterns(workbench& bench) {
   if (const result<void> on = bench.go_on(); !on) return on.error();
   bench.progress("patterns, stroking", 0.3);
   const result<std::vector<felt_stroke>> felt =
-      stroke_plate(bench, shared_contacts(), *stylus, *plate, all_lanes(drawn, !bench.brief()));
+      stroke_plate(bench, least_motion_contacts(), *stylus, *plate, all_lanes(drawn, !bench.brief()));
   if (!felt) return felt.error();
 
   std::vector<felt_sample> samples;
@@ -194,8 +194,8 @@ result<findings> run_patterns(workbench& bench) {
       at_least("spectrum_tells_more_than_strength",
                "how much larger the share of regular plates recognised is by the spectrum than by its strength alone",
                found.regular - recognised_shares(confusion(strengths(samples, *felt), classes)).regular, 0.1)};
-  tell_confusion(taken, out);
-  tell_spectra(mean_n, out);
+  report_confusion(taken, out);
+  report_spectra(mean_n, out);
   return out;
 }
 

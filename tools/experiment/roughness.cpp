@@ -56,7 +56,7 @@ struct dot_study {
     done = std::min(1.0, done + (bench.brief() ? 0.12 : 0.07));
     const result<model_ptr> stylus = bake_stylus(bench, ball_m);
     if (!stylus) return stylus.error();
-    return stroke_plate(bench, shared_contacts(), *stylus, plate, how);
+    return stroke_plate(bench, least_motion_contacts(), *stylus, plate, how);
   }
 
   /// All rows; of a brief run those about the spacing at which the ball drops to the ground.

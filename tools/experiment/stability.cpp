@@ -150,7 +150,7 @@ std::vector<in_notch> ways_to_fall(bool brief) {
 }
 
 result<void> hold_in_notch(workbench& bench, std::vector<in_notch>& ways) {
-  const result<notch> where = notch::make(bench, paper_soft(), false);
+  const result<notch> where = notch::make(bench, window_soft(), false);
   if (!where) return where.error();
   for (in_notch& s : ways) {
     if (const result<void> on = bench.go_on(); !on) return on.error();

@@ -88,7 +88,7 @@ bool poles_are_inside(double K, double B) {
 }  // namespace
 
 result<std::vector<coupling_limit>> coupling_limits(workbench& bench, const std::vector<double>& dampings_n_s_per_m) {
-  const result<notch> where = notch::make(bench, paper_soft(), true);
+  const result<notch> where = notch::make(bench, window_soft(), true);
   if (!where) return where.error();
   std::vector<coupling_limit> out;
   for (const double B : dampings_n_s_per_m) {

@@ -139,7 +139,7 @@ result<notch> notch::make(workbench& bench, const variant& kind, bool flat) {
                  "ridged_pad_10x10x20mm", [] { return make_pad(models::ridge_amplitude_m); }, std::move(options));
   if (!pad) return pad.error();
   variant on_pad = kind;
-  if (kind.options.contacts == "paper") on_pad.options.grid = pad_grid;
+  if (kind.options.contacts == "window") on_pad.options.grid = pad_grid;
   result<any_renderer> feel = bench.make_renderer({*pad, {*pad}}, on_pad);
   if (!feel) return feel.error();
   notch out;

@@ -89,7 +89,7 @@ const char* line_text(contact_line line) noexcept {
 
 result<std::vector<stiffness_limits>> find_stiffness_limits(workbench& bench, const std::vector<int>& rates_hz,
                                                             guard_record& record) {
-  const result<notch> where = notch::make(bench, paper_soft(), true);
+  const result<notch> where = notch::make(bench, window_soft(), true);
   if (!where) return where.error();
   std::vector<stiffness_limits> out;
   const std::size_t all = 6 * rates_hz.size();

@@ -30,7 +30,7 @@ double there_and_back(double travelled, double reach) {
 
 // Peak to valley of the sine whose height has the variance of the block's whole surface, its level sides included: what
 // the library measures softness by.
-double relief_m() {
+double peak_to_valley_m() {
   const double lx = 2.0 * block_half_m[0], ly = 2.0 * block_half_m[1], lz = 2.0 * block_half_m[2];
   constexpr int nx = 400, ny = 380;
   double height = 0.0, square = 0.0;
@@ -118,7 +118,7 @@ double torque_arm_m(double angle_rad) noexcept {
 }
 
 depth_kind depth_of(const command::render_options& options) {
-  if (command::formulation_name(options) == "shared") return depth_kind::way_out;
+  if (command::formulation_name(options) == "least-motion") return depth_kind::way_out;
   return command::gradient_name(options) == "central" ? depth_kind::largest : depth_kind::soft;
 }
 
@@ -126,7 +126,7 @@ rise_by_brute_force::rise_by_brute_force(double reach_rad, depth_kind kind) {
   const bool hard = kind != depth_kind::soft;
   // The largest overlap of samples 0.1 mm apart is 0.3 % of the amplitude too small at most; a mean needs fewer.
   const double step_m = hard ? 1e-4 : 2e-4;
-  const double tau_m = 0.02 * relief_m();
+  const double tau_m = 0.02 * peak_to_valley_m();
   const auto last = static_cast<int>(std::ceil(reach_rad / step_rad)) + 1;
   const auto nx = static_cast<int>(std::lround(block_half_m[0] / step_m));
   const auto ny = static_cast<int>(std::lround(block_half_m[1] / step_m));

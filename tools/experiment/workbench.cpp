@@ -13,7 +13,7 @@ variant on_cpu(std::string name, std::string says, const char* contacts, const c
 }
 
 variant on_gpu(std::string name, std::string says, const char* backend, const char* gradient) {
-  variant out = on_cpu(std::move(name), std::move(says), "paper", gradient);
+  variant out = on_cpu(std::move(name), std::move(says), "window", gradient);
   out.options.backend = backend;
   out.may_be_missing = true;
   return out;
@@ -21,15 +21,17 @@ variant on_gpu(std::string name, std::string says, const char* backend, const ch
 
 }  // namespace
 
-variant shared_contacts() { return on_cpu("shared", "one potential", "shared", nullptr); }
-variant paper_soft() { return on_cpu("paper_soft", "paper's contacts, soft maximum", "paper", "soft"); }
-variant paper_central() { return on_cpu("paper_central", "paper's contacts, central differences", "paper", "central"); }
+variant least_motion_contacts() { return on_cpu("least_motion", "one potential", "least-motion", nullptr); }
+variant window_soft() { return on_cpu("window_soft", "paper's contacts, soft maximum", "window", "soft"); }
+variant window_central() {
+  return on_cpu("window_central", "paper's contacts, central differences", "window", "central");
+}
 
 workbench::workbench(workbench_settings settings)
     : settings_(std::move(settings)),
       models_(settings_.models,
-              [told = settings_.progress, cancelled = settings_.cancelled](std::string_view what, double done) {
-                if (told) told(what, done);
+              [report = settings_.progress, cancelled = settings_.cancelled](std::string_view what, double done) {
+                if (report) report(what, done);
                 return !cancelled || !cancelled();
               }) {
   if (!settings_.make_renderer) {
@@ -39,7 +41,7 @@ workbench::workbench(workbench_settings settings)
   }
   std::vector<variant>& all = settings_.variants;
   if (!all.empty()) return;
-  all = {shared_contacts(), paper_soft(), paper_central()};
+  all = {least_motion_contacts(), window_soft(), window_central()};
   if (settings_.brief || !settings_.gpu) return;
   all.push_back(on_gpu("gl_compute_soft", "compute shaders, soft maximum", "gl-compute", "soft"));
   all.push_back(on_gpu("gl_occlusion_central", "occlusion queries, central differences", "gl-occlusion", nullptr));

@@ -65,10 +65,10 @@ class workbench {
 };
 
 /// The paper's contacts on the CPU with the soft maximum: for experiments that need one kind only and its contacts.
-[[nodiscard]] variant paper_soft();
+[[nodiscard]] variant window_soft();
 /// The paper's own scheme: central differences.
-[[nodiscard]] variant paper_central();
+[[nodiscard]] variant window_central();
 /// Contacts as one potential, the library's default.
-[[nodiscard]] variant shared_contacts();
+[[nodiscard]] variant least_motion_contacts();
 
 }  // namespace asperity::experiment

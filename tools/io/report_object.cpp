@@ -58,7 +58,7 @@ tinygltf::Value::Object report_object(const bake_report& report) {
   };
   object out{{"rms_error_m", value(report.rms_error_m)},
              {"max_error_m", value(report.max_error_m)},
-             {"relief_m", value(report.relief_m)},
+             {"relief_m", value(report.peak_to_valley_m)},
              {"max_displacement_m", value(report.max_displacement_m)},
              {"full_triangles", count(report.full_triangles)},
              {"fallback_texels", count(report.fallback_texels)},
@@ -68,7 +68,7 @@ tinygltf::Value::Object report_object(const bake_report& report) {
 }
 
 bool has_finite_figures(const bake_report& r) {
-  return std::isfinite(r.rms_error_m) && std::isfinite(r.max_error_m) && std::isfinite(r.relief_m) &&
+  return std::isfinite(r.rms_error_m) && std::isfinite(r.max_error_m) && std::isfinite(r.peak_to_valley_m) &&
          std::isfinite(r.max_displacement_m) && (!r.quality || all_finite(*r.quality));
 }
 

@@ -211,7 +211,7 @@ bake_report read_report(const json_object& from) {
   bake_report report;
   report.rms_error_m = from.number("rms_error_m");
   report.max_error_m = from.number("max_error_m");
-  report.relief_m = from.number("relief_m");
+  report.peak_to_valley_m = from.number("relief_m");
   report.max_displacement_m = from.number("max_displacement_m");
   report.full_triangles = static_cast<std::size_t>(from.whole("full_triangles"));
   report.fallback_texels = static_cast<std::size_t>(from.whole("fallback_texels"));

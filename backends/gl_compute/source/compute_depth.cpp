@@ -20,7 +20,7 @@ namespace asperity::gl {
 namespace {
 
 /// Names of the shader's types in single and double precision, and what its settings switch on.
-std::string definitions_of(const depth_settings& s, bool doubles) {
+std::string definitions_of(const window_depth_settings& s, bool doubles) {
   std::string text = doubles ? "#define real double\n#define rvec2 dvec2\n#define rvec3 dvec3\n"
                                "#define TOLERANCE 1e-10\n#define LAST_TOLERANCE 1e-10\n#define SMALLEST_WEIGHT 1e-37\n"
                              : "#define real float\n#define rvec2 vec2\n#define rvec3 vec3\n"
@@ -32,7 +32,7 @@ std::string definitions_of(const depth_settings& s, bool doubles) {
   return text + job::definitions();
 }
 
-result<void> check_gpu_settings(const compute_settings& o, const context_facts& facts, const depth_settings& s) {
+result<void> check_gpu_settings(const compute_settings& o, const context_facts& facts, const window_depth_settings& s) {
   const auto bad = [](std::string what) { return error{error_code::invalid_argument, "compute depth: " + what}; };
   if (o.contacts < 1 || o.contacts > 65535) {
     return bad("room for " + std::to_string(o.contacts) + " contacts; give 1 to 65535");
@@ -61,7 +61,7 @@ struct compute_depth::parts {
   compute_counters counters;
   bool overdue = false;  ///< the device has not answered yet, and may still read and write the buffers
 
-  parts(context_ptr c, const scene& s, const depth_settings& settings, const compute_settings& o)
+  parts(context_ptr c, const scene& s, const window_depth_settings& settings, const compute_settings& o)
       : context(std::move(c)), writer(s, settings), gpu_settings(o) {}
   [[nodiscard]] result<void> take_buffers();
   [[nodiscard]] number_list list(const mapped_buffer& b) const noexcept {
@@ -74,7 +74,7 @@ struct compute_depth::parts {
 };
 
 result<void> compute_depth::parts::take_buffers() {
-  const depth_settings& s = writer.settings();
+  const window_depth_settings& s = writer.settings();
   const std::size_t jobs_each = writer.jobs_per_contact();
   const std::size_t jobs = gpu_settings.contacts * jobs_each;
   const std::size_t samples = std::size_t{s.grid} * s.grid;
@@ -111,7 +111,7 @@ result<void> compute_depth::parts::take_buffers() {
   return {};
 }
 
-result<compute_depth> compute_depth::make(context_ptr context, const scene& s, const depth_settings& settings,
+result<compute_depth> compute_depth::make(context_ptr context, const scene& s, const window_depth_settings& settings,
                                           const compute_settings& gpu_settings) {
   if (context == nullptr) return error{error_code::invalid_argument, "compute depth: no context; open one"};
   if (result<void> r = check(settings); !r) return r.error();
@@ -255,7 +255,7 @@ status compute_depth::measure_each(std::span<const pose_pair> at, const contact_
   return parts_->measure(contacts, out, [&](std::size_t i) { return at[i]; });
 }
 
-const depth_settings& compute_depth::settings() const noexcept { return parts_->writer.settings(); }
+const window_depth_settings& compute_depth::settings() const noexcept { return parts_->writer.settings(); }
 const compute_counters& compute_depth::counters() const noexcept { return parts_->counters; }
 const context_ptr& compute_depth::owner() const noexcept { return parts_->context; }
 arithmetic compute_depth::arithmetic() const noexcept {

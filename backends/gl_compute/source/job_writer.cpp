@@ -45,7 +45,7 @@ glm::ivec2 base_texel(const projected_triangle& t, double half_m) noexcept {
 
 }  // namespace
 
-job_writer::job_writer(scene s, const depth_settings& settings)
+job_writer::job_writer(scene s, const window_depth_settings& settings)
     : scene_(std::move(s)),
       settings_(settings),
       a_(std::size_t{settings.grid} * settings.grid, most_triangles(0, 1)),

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "asperity/model/scene.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 #include "job_buffers.hpp"
 #include "window/central_difference.hpp"
 #include "window/edge_taper.hpp"
@@ -46,13 +46,13 @@ struct asked_poses {
 class job_writer {
  public:
   /// Takes all memory that a tick needs. @pre cpu_depth finds nothing wrong with scene and settings
-  job_writer(scene s, const depth_settings& settings);
+  job_writer(scene s, const window_depth_settings& settings);
 
   [[nodiscard]] std::uint32_t jobs_per_contact() const noexcept {
     return settings_.gradient == gradient_scheme::central_difference ? 1 + asked_poses::count : 1;
   }
   [[nodiscard]] const scene& bodies() const noexcept { return scene_; }
-  [[nodiscard]] const depth_settings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const window_depth_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] const detail::pair_scale& pair(std::size_t body) const noexcept { return pairs_[body]; }
   [[nodiscard]] vec3 rotation_origin_w(const contact& c, const pose& T_wa) const noexcept {
     return settings_.origin == rotation_origin::contact ? c.window.centre_w : centre_of_mass_w(scene_, T_wa);
@@ -101,7 +101,7 @@ class job_writer {
   }
 
   scene scene_;
-  depth_settings settings_;
+  window_depth_settings settings_;
   std::vector<detail::surface_index> indices_;  ///< the probe, then the fixed bodies
   std::vector<detail::pair_scale> pairs_;       ///< probe against each fixed body
   side a_, b_;

@@ -12,7 +12,7 @@ namespace {
 
 error bad(const std::string& what) { return {error_code::invalid_argument, "occlusion depth: " + what}; }
 
-result<void> check_settings(const depth_settings& s) {
+result<void> check_settings(const window_depth_settings& s) {
   if (s.gradient != gradient_scheme::central_difference) {
     return bad("occlusion queries find a hard maximum; ask for gradient_scheme::central_difference");
   }
@@ -23,7 +23,7 @@ result<void> check_settings(const depth_settings& s) {
   return {};
 }
 
-result<void> check_gpu_settings(const occlusion_settings& o, const depth_settings& s) {
+result<void> check_gpu_settings(const occlusion_settings& o, const window_depth_settings& s) {
   if (o.contacts < 1 || o.contacts > 256) {
     return bad("room for " + std::to_string(o.contacts) + " contacts; give 1 to 256");
   }
@@ -51,7 +51,7 @@ result<void> check_gpu_settings(const occlusion_settings& o, const depth_setting
 }  // namespace
 
 // A turn about n by one sample at the rim moves the corners by one and a half; resampling reads one further.
-occlusion_depth::parts::parts(context_ptr c, const scene& s, const depth_settings& settings,
+occlusion_depth::parts::parts(context_ptr c, const scene& s, const window_depth_settings& settings,
                               const occlusion_settings& o)
     : context(std::move(c)),
       writer(s, settings, o.moved == moved_heights::reused ? 3 : 0, o.packed),
@@ -100,7 +100,8 @@ result<void> occlusion_depth::parts::set_up() {
   return {};
 }
 
-result<occlusion_depth> occlusion_depth::make(context_ptr context, const scene& s, const depth_settings& settings,
+result<occlusion_depth> occlusion_depth::make(context_ptr context, const scene& s,
+                                              const window_depth_settings& settings,
                                               const occlusion_settings& gpu_settings) {
   if (context == nullptr) return error{error_code::invalid_argument, "occlusion depth: no context; open one"};
   if (result<void> r = check(settings); !r) return r.error();
@@ -143,7 +144,7 @@ double occlusion_depth::step_rad(std::size_t i) const noexcept {
   return s == parts::no_slot ? 0.0 : parts_->slots[s].step_rad;
 }
 
-const depth_settings& occlusion_depth::settings() const noexcept { return parts_->writer.settings(); }
+const window_depth_settings& occlusion_depth::settings() const noexcept { return parts_->writer.settings(); }
 const occlusion_settings& occlusion_depth::gpu_settings() const noexcept { return parts_->gpu_settings; }
 const occlusion_counters& occlusion_depth::counters() const noexcept { return parts_->counters; }
 const context_ptr& occlusion_depth::owner() const noexcept { return parts_->context; }

@@ -35,7 +35,7 @@ struct occlusion_depth::parts {
   /// Motions of the probe whose heights are rendered; the others are read out of those at rest.
   static constexpr std::size_t first_turn = 4, end_turns = 8;
 
-  parts(context_ptr c, const scene& s, const depth_settings& settings, const occlusion_settings& o);
+  parts(context_ptr c, const scene& s, const window_depth_settings& settings, const occlusion_settings& o);
   [[nodiscard]] bool reuses() const noexcept { return gpu_settings.moved == moved_heights::reused; }
   [[nodiscard]] std::size_t first_drawn() const noexcept { return reuses() ? first_turn : 0; }
   [[nodiscard]] std::size_t end_drawn() const noexcept { return reuses() ? end_turns : detail::probe_motions; }

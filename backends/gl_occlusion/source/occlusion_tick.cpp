@@ -54,7 +54,7 @@ void occlusion_depth::parts::write_at_rest(const scene_pose& at, const contact_s
 }
 
 void occlusion_depth::parts::write_moved(const scene_pose& at, const contact_set& contacts) noexcept {
-  const depth_settings& settings = writer.settings();
+  const window_depth_settings& settings = writer.settings();
   write_runs([&](std::size_t body) {
     for (std::size_t s = 0; s < slots.size(); ++s) {
       contact_slot& slot = slots[s];

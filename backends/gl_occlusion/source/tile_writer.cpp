@@ -58,7 +58,7 @@ std::array<float, 4> narrow(double a, double b, double c, double d) noexcept {
 }
 
 /// Smallest and largest value over a box of a direction's component.
-std::pair<double, double> extent(const relief_box& box, const vec3& direction) noexcept {
+std::pair<double, double> extent(const displacement_box& box, const vec3& direction) noexcept {
   double low = 0.0, high = 0.0;
   for (int i = 0; i < 3; ++i) {
     const double a = direction[i] * box.low[i], b = direction[i] * box.high[i];
@@ -70,7 +70,7 @@ std::pair<double, double> extent(const relief_box& box, const vec3& direction) n
 
 }  // namespace
 
-tile_writer::tile_writer(scene s, const depth_settings& settings, std::uint32_t margin, bool packed)
+tile_writer::tile_writer(scene s, const window_depth_settings& settings, std::uint32_t margin, bool packed)
     : scene_(std::move(s)), settings_(settings), margin_(margin), packed_(packed), patch_([&] {
         std::size_t most = scene_.probe->mesh.triangles.size();
         for (const model_ptr& m : scene_.fixed) most = std::max(most, m->mesh.triangles.size());
@@ -79,7 +79,7 @@ tile_writer::tile_writer(scene s, const depth_settings& settings, std::uint32_t 
   std::vector<detail::texture_scale> scales;
   const auto add = [&](const textured_model& m) {
     indices_.emplace_back(m);
-    relief_.push_back(relief_bounds(m, indices_.back()));
+    displacements_.push_back(displacement_bounds(m, indices_.back()));
     scales.push_back(measure_texture(m, indices_.back()));
     bad_.push_back(std::any_of(m.texture.texels.begin(), m.texture.texels.end(),
                                [](const glm::vec3& p) { return !is_finite(vec3(p)); })
@@ -114,13 +114,13 @@ height_range tile_writer::add(std::span<record_list> lists, std::size_t body_ind
   height_range range;
   const double reach = half * tile_samples() / settings_.grid;
   for (const projected_triangle& t : patch_.triangles()) {
-    if (include(range, t, relief_[body_index][t.triangle], map.n_b, reach)) write(lists, t, common, which, half);
+    if (include(range, t, displacements_[body_index][t.triangle], map.n_b, reach)) write(lists, t, common, which, half);
   }
   return range;
 }
 
-bool tile_writer::include(height_range& to, const projected_triangle& t, const relief_box& relief, const vec3& n_b,
-                          double reach_m) const noexcept {
+bool tile_writer::include(height_range& to, const projected_triangle& t, const displacement_box& displacement,
+                          const vec3& n_b, double reach_m) const noexcept {
   vec3 low = t.corner[0], high = t.corner[0];
   for (const vec3& c : t.corner) {
     low = glm::min(low, c);
@@ -128,7 +128,7 @@ bool tile_writer::include(height_range& to, const projected_triangle& t, const r
   }
   if (low.x > reach_m || low.y > reach_m || high.x < -reach_m || high.y < -reach_m) return false;
   const double slope = reach_m * (std::fabs(t.height.per_u) + std::fabs(t.height.per_v));
-  const auto [leaves_low, leaves_high] = extent(relief, n_b);
+  const auto [leaves_low, leaves_high] = extent(displacement, n_b);
   to.include(std::max(low.z, t.height.at_centre - slope) + leaves_low,
              std::min(high.z, t.height.at_centre + slope) + leaves_high);
   return true;
@@ -176,8 +176,8 @@ void tile_writer::write(std::span<record_list> lists, const projected_triangle& 
 
 std::size_t tile_writer::heap_bytes() const noexcept {
   std::size_t bytes = asperity::heap_bytes(scene_.fixed, indices_, pairs_, patch_, bad_);
-  for (const auto& r : relief_) bytes += asperity::heap_bytes(r);
-  return bytes + relief_.capacity() * sizeof(decltype(relief_)::value_type);
+  for (const auto& r : displacements_) bytes += asperity::heap_bytes(r);
+  return bytes + displacements_.capacity() * sizeof(decltype(displacements_)::value_type);
 }
 
 }  // namespace asperity::gl

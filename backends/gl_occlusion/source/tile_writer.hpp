@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "asperity/model/scene.hpp"
-#include "asperity/window/depth_settings.hpp"
-#include "relief_bounds.hpp"
+#include "asperity/window/window_depth_settings.hpp"
+#include "displacement_bounds.hpp"
 #include "window/height_field.hpp"
 #include "window/pair_scale.hpp"
 
@@ -48,10 +48,10 @@ class tile_writer {
  public:
   /// Takes all memory that a tick needs. @pre cpu_depth finds nothing wrong with scene and settings
   /// @param margin  samples around the window that tiles have
-  tile_writer(scene s, const depth_settings& settings, std::uint32_t margin, bool packed);
+  tile_writer(scene s, const window_depth_settings& settings, std::uint32_t margin, bool packed);
 
   [[nodiscard]] const scene& bodies() const noexcept { return scene_; }
-  [[nodiscard]] const depth_settings& settings() const noexcept { return settings_; }
+  [[nodiscard]] const window_depth_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] const detail::pair_scale& pair(std::size_t body) const noexcept { return pairs_[body]; }
   /// True where the probe or this fixed body has a texel that is no position.
   [[nodiscard]] bool has_bad_texels(std::size_t body) const noexcept { return bad_[0] || bad_[body + 1]; }
@@ -72,17 +72,17 @@ class tile_writer {
  private:
   void write(std::span<record_list> lists, const detail::projected_triangle& t, const triangle_record& common,
              detail::layer which, double half_m) const noexcept;
-  [[nodiscard]] bool include(height_range& to, const detail::projected_triangle& t, const relief_box& relief,
-                             const vec3& n_b, double reach_m) const noexcept;
+  [[nodiscard]] bool include(height_range& to, const detail::projected_triangle& t,
+                             const displacement_box& displacement, const vec3& n_b, double reach_m) const noexcept;
 
   scene scene_;
-  depth_settings settings_;
+  window_depth_settings settings_;
   std::uint32_t margin_;
   bool packed_;
-  std::vector<detail::surface_index> indices_;   ///< the probe, then the fixed bodies
-  std::vector<std::vector<relief_box>> relief_;  ///< likewise
-  std::vector<char> bad_;                        ///< likewise
-  std::vector<detail::pair_scale> pairs_;        ///< probe against each fixed body
+  std::vector<detail::surface_index> indices_;                ///< the probe, then the fixed bodies
+  std::vector<std::vector<displacement_box>> displacements_;  ///< likewise
+  std::vector<char> bad_;                                     ///< likewise
+  std::vector<detail::pair_scale> pairs_;                     ///< probe against each fixed body
   detail::patch_projection patch_;
 };
 

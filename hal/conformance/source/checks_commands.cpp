@@ -151,7 +151,7 @@ void check_commands(subject& device, ledger& found) {
     why = "a wrench is put out with --hand-held only";
   } else if (is_zero(device.small_wrench())) {
     why = "the device puts out nothing";
-  } else if (!device.tells_applied()) {
+  } else if (!device.reports_applied()) {
     why = "the driver has no applied(), so that nobody sees what it puts out";
   }
   if (why != nullptr) {

@@ -51,7 +51,7 @@ class subject {
   [[nodiscard]] device_state state() const noexcept { return state_; }
   /// What is put out now, where the driver can tell.
   [[nodiscard]] std::optional<wrench> applied();
-  [[nodiscard]] bool tells_applied() const noexcept { return t_.applied != nullptr; }
+  [[nodiscard]] bool reports_applied() const noexcept { return t_.applied != nullptr; }
   [[nodiscard]] bool can_provoke() const noexcept { return t_.provoke != nullptr; }
   /// Compares what the driver says now with what it said after open().
   void look_at_capabilities();

@@ -55,7 +55,7 @@ class ASPERITY_API rest_prediction {
     bool all = true;  // of the planes above the gap
   };
 
-  [[nodiscard]] static double depth_at(const support_plane& told_at_0, const vec6& moved) noexcept;
+  [[nodiscard]] static double depth_at(const support_plane& reported_at_0, const vec6& moved) noexcept;
 
   [[nodiscard]] bool look(const plane_source& planes_near, const vec6& moved, place& out) noexcept;
 
@@ -89,7 +89,7 @@ class ASPERITY_API rest_prediction {
   // Tells the planes of the pose of rest, and of the probe's own pose those that it does not replace. A plane of the
   // probe's own pose that says more at the pose of rest than is true would keep the probe from it; one that says less
   // would be a second spring on the same point.
-  void tell(support_planes& planes) noexcept;
+  void report(support_planes& planes) noexcept;
 
   static constexpr std::size_t most_cuts = 12;
   double stiffness_n_per_m_ = contact_law{}.stiffness_n_per_m;

@@ -254,7 +254,7 @@ class recording_encoder {
   [[nodiscard]] std::uint64_t blocks() const noexcept { return calls_ / recording_detail::block_calls; }
 
   /// @param writes_before_end see device_recording
-  [[nodiscard]] std::string end(recorded_end why = recorded_end::not_told, std::uint64_t writes_before_end = 0) {
+  [[nodiscard]] std::string end(recorded_end why = recorded_end::not_reported, std::uint64_t writes_before_end = 0) {
     recording_detail::byte_writer w;
     w.number(recording_detail::end_mark);
     w.number(calls_);
@@ -339,9 +339,9 @@ class recording_encoder {
   const std::size_t room = free_call_bytes + 4 * bytes.size();
   if (constexpr std::size_t tail = 25; bytes.size() > tail) {
     const std::string end = bytes.substr(bytes.size() - tail, 8);
-    const auto told = byte_reader(end).number<std::uint64_t>();
+    const auto stated = byte_reader(end).number<std::uint64_t>();
     const std::size_t most = std::min({most_calls, bytes.size() / shortest_call, room / sizeof(call_record)});
-    out.calls.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(told, most)));
+    out.calls.reserve(static_cast<std::size_t>(std::min<std::uint64_t>(stated, most)));
   }
   const auto wanted = [&](std::size_t step) { return step % 65536 != 0 || !keep_going || keep_going(); };
   const error cancelled{error_code::cancelled, "the device recording was not read to its end: cancelled"};
@@ -355,8 +355,8 @@ class recording_encoder {
     if (first == end_mark) break;
     if (in_blocks && first == block_mark) {
       const bool counted = r.number<std::uint64_t>() == out.calls.size() && out.calls.size() == whole + block_calls;
-      const std::uint64_t told = r.ok() ? sum.up_to(r.at()) : 0;
-      const bool matches = r.number<std::uint64_t>() == told;
+      const std::uint64_t computed = r.ok() ? sum.up_to(r.at()) : 0;
+      const bool matches = r.number<std::uint64_t>() == computed;
       if (!r.ok()) return broken("is cut off after call " + std::to_string(out.calls.size()));
       if (!counted || !matches) return bad("does not match the check sum at byte " + std::to_string(at));
       whole = out.calls.size();
@@ -401,15 +401,15 @@ class recording_encoder {
   const bool counted = r.number<std::uint64_t>() == out.calls.size();
   out.end = r.choice<recorded_end>(recorded_end_count);
   out.writes_before_end = r.number<std::uint64_t>();
-  const std::uint64_t told = r.ok() ? sum.up_to(r.at()) : 0;
-  const bool matches = r.number<std::uint64_t>() == told;
+  const std::uint64_t computed = r.ok() ? sum.up_to(r.at()) : 0;
+  const bool matches = r.number<std::uint64_t>() == computed;
   if (r.ended() && whole > 0) {
-    out.end = recorded_end::not_told;
+    out.end = recorded_end::not_reported;
     out.writes_before_end = 0;
   }
   if (r.ended()) return broken("is cut off where it tells its end");
   if (!counted) return bad("holds another number of calls than it says");
-  if (!r.ok() || out.writes_before_end > (out.end == recorded_end::not_told ? 0 : writes)) {
+  if (!r.ok() || out.writes_before_end > (out.end == recorded_end::not_reported ? 0 : writes)) {
     return bad("is wrong where it tells its end");
   }
   if (!matches) return bad("does not match its check sum");

@@ -14,7 +14,7 @@ namespace asperity {
 
 /// Why a session on record came to its end, as the program told that recorded it.
 enum class recorded_end : std::uint8_t {
-  not_told,
+  not_reported,
   stopped,      ///< it had lasted long enough, or its gate had shut
   interrupted,  ///< a signal asked for it
 };
@@ -26,7 +26,7 @@ struct device_recording {
   device_capabilities capabilities{};          ///< its name is that of `name`
   device_state before = device_state::absent;  ///< the first call
   std::vector<call_record> calls;
-  recorded_end end = recorded_end::not_told;
+  recorded_end end = recorded_end::not_reported;
   /// Writes until then; those after it take the wrench to zero. 0 where nobody told.
   std::uint64_t writes_before_end = 0;
   bool cut = false;  ///< its bytes ended before it did: these are the calls up to its last whole block

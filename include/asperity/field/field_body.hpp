@@ -1,4 +1,4 @@
-// One body as the field formulation sees it: its depth field and its samples.
+// One body as planes and least motion see it: its depth field and its samples.
 #pragma once
 
 #include <cstddef>

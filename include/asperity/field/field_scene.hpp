@@ -1,4 +1,4 @@
-// The bodies of a scene as the field formulation sees them: a depth field to be measured in, samples to measure with.
+// The bodies of a scene as planes and least motion see them: a depth field to be measured in, samples to measure with.
 #pragma once
 
 #include <cstddef>
@@ -44,6 +44,10 @@ struct field_scene {
 
   [[nodiscard]] ASPERITY_API std::size_t heap_bytes() const noexcept;
 };
+
+/// Says what a scene lacks to be rendered with these fields: every body has one.
+/// @param made of the bodies, or nullptr
+[[nodiscard]] ASPERITY_API result<void> check_field_scene(const scene& bodies, const field_scene* made);
 
 /// Makes the field and the samples of every body of a scene; a model that appears several times is made once.
 /// @return invalid_argument | bad_mesh | bad_texture

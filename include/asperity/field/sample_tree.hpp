@@ -82,7 +82,7 @@ class sample_tree {
       const auto [i, end] = waiting[--count];
       const ball& b = balls_[i];
       const bool is_leaf = b.right == 0;
-      const branch_answer answer = look(b.told(), is_leaf);
+      const branch_answer answer = look(b.in_double(), is_leaf);
       if (answer == branch_answer::taken) {
         for (std::uint32_t l = i; l < end; ++l) {
           if (balls_[l].right == 0) visit_leaf(balls_[l], visit);
@@ -103,14 +103,14 @@ class sample_tree {
     float radius_m = 0.0F, half_m = 0.0F;
     std::uint32_t right = 0, first = 0, count = 0;
 
-    [[nodiscard]] sample_ball told() const noexcept {
+    [[nodiscard]] sample_ball in_double() const noexcept {
       return {vec3(centre_b), vec3(axis_b), static_cast<double>(radius_m), static_cast<double>(half_m)};
     }
   };
 
   template <class Visit>
   void visit_leaf(const ball& b, Visit& visit) const noexcept {
-    visit(b.told(), std::span<const field_sample>(samples_).subspan(b.first, b.count));
+    visit(b.in_double(), std::span<const field_sample>(samples_).subspan(b.first, b.count));
   }
 
   void build(std::size_t first, std::size_t count) {

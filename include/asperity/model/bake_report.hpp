@@ -47,7 +47,7 @@ struct bake_quality {
 struct bake_report {
   double rms_error_m = 0.0;         ///< root mean square over both directions (texture to original and back)
   double max_error_m = 0.0;         ///< largest of either direction
-  double relief_m = 0.0;            ///< peak to valley of the displacement along the coarse normal
+  double peak_to_valley_m = 0.0;    ///< of the relief, along the normals of the coarse mesh
   double max_displacement_m = 0.0;  ///< largest distance between a texel and its coarse surface point
   std::size_t full_triangles = 0;
   std::size_t fallback_texels = 0;  ///< texels projected to the closest point because their ray met no front face

@@ -26,7 +26,7 @@ concept ticks_contacts = requires(R& r, const R& fixed, const scene_pose& at, ti
 
 /// Owns a renderer of any kind and is one itself.
 ///
-///     asperity::any_renderer feel(papers ? asperity::any_renderer(asperity::make_paper_renderer(bodies).value())
+///     asperity::any_renderer feel(papers ? asperity::any_renderer(asperity::make_window_renderer(bodies).value())
 ///                                        : asperity::any_renderer(asperity::make_renderer(bodies).value()));
 ///
 /// One allocation when it is made, none afterwards. A moved-from any_renderer may only be destroyed or assigned to.

@@ -16,7 +16,7 @@
 //   which moves continuously where witness points of parallel faces jump. State between ticks (cached simplices,
 //   contact ids, window axes) may change the cost and the frame {u, v}, never whether two pieces touch; the direction
 //   of a contact that has grown too deep to have one may be kept, and is marked (contact::held).
-// - Fields (found_type near_samples, field_finder): leaves of samples, a superset of those within reach. It keeps
+// - Fields (found_type near_samples, plane_finder): leaves of samples, a superset of those within reach. It keeps
 //   nothing between ticks, so that the same poses give the same bits whatever was before.
 #pragma once
 
@@ -44,7 +44,7 @@ struct found_by<P> {
 }  // namespace detail
 
 /// What a policy's finder hands on: contacts with patches and windows, unless the policy names another found_type.
-/// near_samples is the other one: see field_finder. The three policies of a renderer must agree on it.
+/// near_samples is the other one: see plane_finder. The three policies of a renderer must agree on it.
 template <class P>
 using found_by = typename detail::found_by<P>::type;
 

@@ -45,11 +45,11 @@ class plane_source {
   status (*ask_)(void*, const vec6&, double, plane_list&) noexcept = nullptr;
 };
 
-/// A depth backend that can be asked for the planes of a pose near that of its last measure(); see field_depth.
+/// A depth backend that can be asked for the planes of a pose near that of its last measure(); see plane_depth.
 template <class D>
-concept tells_planes_nearby = requires(const D& depth, const scene_pose& at, const typename D::found_type& found,
-                                       std::span<const typename D::reading_type> read, const vec6& moved,
-                                       double above_m, plane_list& out) {
+concept reports_planes_nearby = requires(const D& depth, const scene_pose& at, const typename D::found_type& found,
+                                         std::span<const typename D::reading_type> read, const vec6& moved,
+                                         double above_m, plane_list& out) {
   { depth.planes_at(at, found, read, moved, above_m, out) }
   noexcept->std::same_as<status>;
 };

@@ -31,7 +31,7 @@ struct tick {
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
 ///
-///     auto made = asperity::make_renderer(scene);            // the default policies, see default_renderer.hpp
+///     auto made = asperity::make_renderer(scene);            // the default policies
 ///     asperity::tick tick;
 ///     if (made && made->step({T_wa, T_wb}, tick) == asperity::status::ok) send(tick.force.on_probe_w);
 ///
@@ -57,7 +57,7 @@ class basic_renderer {
         force_(std::move(force)),
         found_(limits),
         readings_(limits.readings()) {
-    if constexpr (tells_planes_nearby<Depth>) at_.T_wb.resize(scene_.fixed.size());
+    if constexpr (reports_planes_nearby<Depth>) at_.T_wb.resize(scene_.fixed.size());
   }
 
   /// Wrench on the probe at these poses.
@@ -87,13 +87,13 @@ class basic_renderer {
     out.depths = report.depths;
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
     out.dropped_contacts = found_.dropped();
-    if constexpr (tells_tick_flags<Depth>) out.flags = depth_.flags();
-    if constexpr (tells_planes_nearby<Depth>) {
+    if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
+    if constexpr (reports_planes_nearby<Depth>) {
       at_.T_wa = at.T_wa;
       std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
       out.planes_near = plane_source(*this);
     }
-    if constexpr (tells_support_planes<Depth>) out.planes = depth_.support_planes();
+    if constexpr (reports_support_planes<Depth>) out.planes = depth_.support_planes();
     return found == status::ok ? felt : found;
   }
 
@@ -101,7 +101,7 @@ class basic_renderer {
   /// @pre a step before, which answered ok or capacity_reached
   /// @rt safe
   [[nodiscard]] status planes_at(const vec6& moved, double above_m,
-                                 plane_list& out) noexcept requires tells_planes_nearby<Depth> {
+                                 plane_list& out) noexcept requires reports_planes_nearby<Depth> {
     out.clear();
     const vec3 c_a_w = centre_of_mass_w(scene_, at_.T_wa);
     const quat turn = exp_rotation(moved.angular);
@@ -150,7 +150,7 @@ class basic_renderer {
   [[no_unique_address]] Force force_;
   found_type found_;
   std::vector<reading_type> readings_;
-  [[no_unique_address]] std::conditional_t<tells_planes_nearby<Depth>, kept_poses, nothing> at_;
+  [[no_unique_address]] std::conditional_t<reports_planes_nearby<Depth>, kept_poses, nothing> at_;
 };
 
 }  // namespace asperity

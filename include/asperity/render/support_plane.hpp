@@ -35,14 +35,14 @@ struct support_plane {
 /// before it need not be told.
 /// The order of the planes must not depend on addresses or time. The span lives until the next tick.
 template <class P>
-concept tells_support_planes = requires(const P& stage) {
+concept reports_support_planes = requires(const P& stage) {
   { stage.support_planes() }
   noexcept->std::same_as<std::span<const support_plane>>;
 };
 
 /// A stage of a renderer that knows what the planes of its last tick do not answer.
 template <class P>
-concept tells_tick_flags = requires(const P& stage) {
+concept reports_tick_flags = requires(const P& stage) {
   { stage.flags() }
   noexcept->std::same_as<tick_flag>;
 };

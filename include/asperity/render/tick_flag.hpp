@@ -41,11 +41,11 @@ class held_flags {
   static constexpr std::int64_t hold_ns = 50'000'000;
 
   /// @param told of a tick at now_ns   @rt safe
-  [[nodiscard]] tick_flag held(tick_flag told, std::int64_t now_ns) noexcept {
-    tick_flag out = told;
+  [[nodiscard]] tick_flag held(tick_flag reported, std::int64_t now_ns) noexcept {
+    tick_flag out = reported;
     for (std::size_t i = 0; i < until_ns_.size(); ++i) {
       const auto flag = static_cast<tick_flag>(1U << i);
-      if (has(told, flag)) {
+      if (has(reported, flag)) {
         until_ns_[i] = now_ns + hold_ns;
       } else if (now_ns < until_ns_[i]) {
         out |= flag;

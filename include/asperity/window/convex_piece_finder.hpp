@@ -12,7 +12,7 @@
 namespace asperity {
 
 /// Settings of convex_piece_finder. Lengths in metres; 0 means automatic, see resolve().
-struct finder_settings {
+struct window_finder_settings {
   double tolerance_m = 0.0;         ///< pieces closer than this are in contact
   double max_depth_m = 0.0;         ///< deeper overlaps have no direction of their own: the last valid one is held
   double min_half_size_m = 0.0;     ///< smallest window
@@ -30,8 +30,8 @@ struct finder_statistics {
   /// Of these, found by the deep pass: the surfaces passed each other by more than the tolerance.
   std::size_t deep_pairs = 0;
   std::size_t penetrating_pairs = 0;  ///< pairs whose hulls overlap
-  std::size_t dropped_pairs = 0;      ///< close pairs that did not fit: raise finder_settings::close_pairs
-  std::size_t dropped_clusters = 0;   ///< clusters that did not fit: raise finder_settings::clusters
+  std::size_t dropped_pairs = 0;      ///< close pairs that did not fit: raise window_finder_settings::close_pairs
+  std::size_t dropped_clusters = 0;   ///< clusters that did not fit: raise window_finder_settings::clusters
   std::size_t empty_clusters = 0;     ///< clusters without a facing triangle on one side: no contact
   std::size_t held_contacts = 0;      ///< contacts deeper than the limit that keep their last valid direction
   std::size_t unheld_clusters = 0;    ///< clusters that came up deep inside while a contact was held: left out
@@ -44,8 +44,8 @@ struct finder_statistics {
 /// - depth limit: half the sum of both bodies' thinnest box sides, at most 10 % of the smaller diagonal: beyond it the
 ///   way out on the other side may be shorter.
 /// - windows: from one tolerance to half the smaller diagonal.
-[[nodiscard]] ASPERITY_API finder_settings resolve(finder_settings s, const textured_model& a,
-                                                   const textured_model& b) noexcept;
+[[nodiscard]] ASPERITY_API window_finder_settings resolve(window_finder_settings s, const textured_model& a,
+                                                          const textured_model& b) noexcept;
 
 /// Finds contacts between the convex pieces of the probe and of every fixed body.
 ///
@@ -62,7 +62,7 @@ class ASPERITY_API convex_piece_finder {
 
   /// Takes all memory that find() needs. Offline.
   /// @pre the scene's models are set and valid
-  explicit convex_piece_finder(const scene& s, const finder_settings& settings = {});
+  explicit convex_piece_finder(const scene& s, const window_finder_settings& settings = {});
   convex_piece_finder(convex_piece_finder&&) noexcept;
   convex_piece_finder& operator=(convex_piece_finder&&) noexcept;
   ~convex_piece_finder();
@@ -75,7 +75,7 @@ class ASPERITY_API convex_piece_finder {
   /// Counters of the last find().
   [[nodiscard]] const finder_statistics& statistics() const noexcept;
   /// Settings for one fixed body, automatic ones filled in. @pre body < number of fixed bodies
-  [[nodiscard]] const finder_settings& settings(std::size_t body) const noexcept;
+  [[nodiscard]] const window_finder_settings& settings(std::size_t body) const noexcept;
   /// Without the models, which others share.
   [[nodiscard]] std::size_t heap_bytes() const noexcept;
 

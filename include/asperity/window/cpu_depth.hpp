@@ -7,7 +7,7 @@
 
 #include "asperity/core/export.hpp"
 #include "asperity/render/depth_backend.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 
 namespace asperity {
 
@@ -27,7 +27,7 @@ class ASPERITY_API cpu_depth {
   /// Takes all memory that a tick needs.
   /// @pre check(settings) and check_scene(scene) succeed; otherwise measure() answers not_ready. make_cpu_depth() says
   /// why.
-  explicit cpu_depth(asperity::scene scene, const depth_settings& settings = {});
+  explicit cpu_depth(asperity::scene scene, const window_depth_settings& settings = {});
   cpu_depth(cpu_depth&&) noexcept;
   cpu_depth& operator=(cpu_depth&&) noexcept;
   ~cpu_depth();
@@ -38,7 +38,7 @@ class ASPERITY_API cpu_depth {
   /// @rt safe: no allocation, lock, throw, print or clock; cost grows with samples times contacts
   [[nodiscard]] status measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept;
 
-  [[nodiscard]] const depth_settings& settings() const noexcept;
+  [[nodiscard]] const window_depth_settings& settings() const noexcept;
   /// Softness that is in force against fixed body `body`, m.
   [[nodiscard]] double tau_m(std::size_t body) const noexcept;
   /// Reference area A0 that is in force against fixed body `body`, m^2.
@@ -61,6 +61,6 @@ static_assert(depth_backend<cpu_depth>);
 
 /// A cpu_depth, or what is wrong with its settings or scene.
 /// @return invalid_argument | bad_mesh | bad_texture
-[[nodiscard]] ASPERITY_API result<cpu_depth> make_cpu_depth(const scene& s, const depth_settings& settings = {});
+[[nodiscard]] ASPERITY_API result<cpu_depth> make_cpu_depth(const scene& s, const window_depth_settings& settings = {});
 
 }  // namespace asperity

@@ -189,9 +189,9 @@ TEST(arm_session, textured_boxes_are_felt_as_well) {
       std::make_shared<const textured_model>(make_textured_box({0.006, 0.006, 0.006}, 48, ridges(0.0002, 0.003)));
   const auto plate =
       std::make_shared<const textured_model>(make_textured_box({0.04, 0.04, 0.01}, 96, ridges(0.0003, 0.01)));
-  renderer_settings settings;
+  least_motion_renderer_settings settings;
   settings.force.stiffness_n_per_m = 1500.0;
-  result<renderer> made = build_renderer({cube, {plate}}, settings);
+  result<least_motion_renderer> made = build_renderer({cube, {plate}}, settings);
   ASSERT_TRUE(made);
   const pose T_wb{quat(1.0, 0.0, 0.0, 0.0), {0.0, 0.0, -0.0103 - 0.0065}};
   const arm_session_result r =

@@ -66,7 +66,7 @@ struct bench {
   bool ticks_master = true;
 };
 
-TEST(cia402_drive, comes_up_configured_and_puts_out_the_torque_it_is_told) {
+TEST(cia402_drive, comes_up_configured_and_puts_out_the_commanded_torque) {
   bench b;
   EXPECT_EQ(b.drive.state(), drive_state::silent);
   EXPECT_FALSE(b.drive.enable(0));

@@ -35,7 +35,7 @@ class can_interfaces : public testing::Test {
   fs::path root = fs::temp_directory_path() / ("asperity-can-interfaces-" + std::to_string(::getpid()));
 };
 
-TEST_F(can_interfaces, are_told_with_their_driver_and_what_is_wrong) {
+TEST_F(can_interfaces, are_reported_with_their_driver_and_what_is_wrong) {
   add("vcan0", 280, 72, "0xc1", "1");
   add("can1", 280, 16, "0x80", "", "kvaser_pci");
   add("can0", 280, 72, "0x400c1", "0", "mcp251xfd");

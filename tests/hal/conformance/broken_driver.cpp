@@ -149,7 +149,7 @@ class broken_handle {
       lie_ = true;
       lied_ = device_state::armed;
     }
-    if (echoes_) in.T_dh.position = 0.001 * told_;
+    if (echoes_) in.T_dh.position = 0.001 * commanded_;
     if (nan_) in.T_dh.position.x = std::nan("");
     if (millimetres_) in.T_dh.position *= 1000.0;
     if (long_quaternion_) in.T_dh.rotation *= 2.0;
@@ -191,7 +191,7 @@ class broken_handle {
     }
     if (prints_) std::fputs("printed in write()\n", stdout);
     if (is_real_ && (out.on_hand.force != vec3(0.0) || out.on_hand.torque != vec3(0.0))) std::raise(SIGABRT);
-    told_ = out.on_hand.force;
+    commanded_ = out.on_hand.force;
     device_command c = out;
     if (ignores_valid_until_) c.valid_until_ns = now_ns + 10'000'000'000;
     if (takes_any_frame_) c.frame = wrench_frame::device_base;
@@ -239,7 +239,7 @@ class broken_handle {
   device_sample frozen_{};
   wrench left_over_{};
   vec3 wrapped_{0.0};
-  vec3 told_{0.0};
+  vec3 commanded_{0.0};
   std::int64_t last_write_ns_ = 0;
 
   // Stands for hardware that nobody holds: a command other than zero ends it.

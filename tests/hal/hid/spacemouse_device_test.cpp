@@ -229,7 +229,7 @@ TEST(spacemouse_device, reports_buttons_battery_and_light) {
   bench b(spacemouse_kind::combined);
   ASSERT_TRUE(b.device.open());
   b.mouse.press(0, 2);
-  b.mouse.tell_battery(0, 42, true);
+  b.mouse.report_battery(0, 42, true);
   b.run_to(5 * ms);
   EXPECT_EQ(b.seen.buttons, 2U);
   EXPECT_TRUE(has_all(b.seen.valid, sample_field::buttons));

@@ -109,12 +109,12 @@ TYPED_TEST(JointDrives, a_torque_that_was_never_set_needs_no_renewing) {
   EXPECT_TRUE(r.is_limp());
 }
 
-TYPED_TEST(JointDrives, the_drives_own_fault_is_told_with_its_code) {
+TYPED_TEST(JointDrives, the_drives_own_fault_is_reported_with_its_code) {
   rig<TypeParam> r;
   ASSERT_TRUE(r.go(10.0));
   r.run(10 * ms);
-  r.peer.fail(static_cast<std::uint8_t>(TypeParam::broken.told));
-  if constexpr (requires { r.peer.leave_behind(0.0F); }) r.peer.fail(TypeParam::broken.told);
+  r.peer.fail(static_cast<std::uint8_t>(TypeParam::broken.sent));
+  if constexpr (requires { r.peer.leave_behind(0.0F); }) r.peer.fail(TypeParam::broken.sent);
   ASSERT_TRUE(r.run_until(drive_state::fault, 50 * ms));
   EXPECT_EQ(r.drive.fault().code, TypeParam::broken.code);
   EXPECT_TRUE(r.why_contains(TypeParam::broken.word)) << r.drive.fault().what;
@@ -133,7 +133,7 @@ TYPED_TEST(JointDrives, the_first_cause_of_a_fault_stays) {
   r.feeding = false;
   ASSERT_TRUE(r.run_until(drive_state::fault, 100 * ms));
   const drive_fault first = r.drive.fault();
-  r.peer.fail(static_cast<std::uint8_t>(TypeParam::broken.told));
+  r.peer.fail(static_cast<std::uint8_t>(TypeParam::broken.sent));
   r.run(30 * ms);
   r.peer.position_rad = 6.0;
   r.run(30 * ms);

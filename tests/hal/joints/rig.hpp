@@ -31,9 +31,9 @@ inline joint_drive_settings geared() {
   return o;
 }
 
-/// What a fault of the drive itself is: told to the peer, and what the driver has to say.
+/// What a fault of the drive itself is: what makes the peer have it, and what the driver has to say.
 struct own_fault {
-  std::uint32_t told;
+  std::uint32_t sent;
   std::uint32_t code;
   const char* word;
 };

@@ -167,7 +167,7 @@ TEST(MoteusDrive, every_command_carries_its_watchdog_and_its_limit) {
 }
 
 // Silent for longer than the drive's watchdog and shorter than the driver's own limits: the drive's word is passed on.
-TEST(MoteusDrive, an_expired_watchdog_is_told) {
+TEST(MoteusDrive, an_expired_watchdog_is_reported) {
   joint_drive_settings joint = geared();
   joint.quiet_ns = joint.hold_ns = joint.silence_ns = 500 * ms;
   rig<moteus_kind> r({}, moteus_kind::options(joint));

@@ -37,7 +37,7 @@ class fake_spacemouse {
     const std::array<std::uint8_t, 3> r{3, static_cast<std::uint8_t>(buttons), static_cast<std::uint8_t>(buttons >> 8)};
     send_(now_ns, r);
   }
-  void tell_battery(std::int64_t now_ns, std::uint8_t percent, bool charging) {
+  void report_battery(std::int64_t now_ns, std::uint8_t percent, bool charging) {
     const std::array<std::uint8_t, 3> r{0x17, percent, static_cast<std::uint8_t>(charging ? 1 : 0)};
     send_(now_ns, r);
   }

@@ -27,7 +27,7 @@ struct line_of_driver {
   std::int64_t at_ms = 0;
   pid_t process = 0;
 };
-std::vector<line_of_driver> told(const std::filesystem::path& log) {
+std::vector<line_of_driver> lines_of(const std::filesystem::path& log) {
   std::vector<line_of_driver> out;
   std::ifstream in(log);
   for (line_of_driver l; in >> l.what >> l.value >> l.at_ms >> l.process;) out.push_back(l);
@@ -58,12 +58,12 @@ pid_t start_program(const std::filesystem::path& log, int exit_in_fault) {
 }
 
 bool pushes(const std::filesystem::path& log) {
-  const std::vector<line_of_driver> lines = told(log);
+  const std::vector<line_of_driver> lines = lines_of(log);
   return std::count_if(lines.begin(), lines.end(),
                        [](const line_of_driver& l) { return l.what == "write" && l.value == 0.5; }) > 20;
 }
 bool ends_with(const std::filesystem::path& log, const std::string& what) {
-  const std::vector<line_of_driver> lines = told(log);
+  const std::vector<line_of_driver> lines = lines_of(log);
   return !lines.empty() && lines.back().what == what;
 }
 
@@ -99,7 +99,7 @@ TEST(child, a_program_that_is_killed_leaves_no_force_and_no_process_behind) {
   ::waitpid(program, nullptr, 0);
   ASSERT_TRUE(pushed);
   EXPECT_TRUE(wait_until(10s, [&] { return ends_with(log, "close"); }));
-  const std::vector<line_of_driver> lines = told(log);
+  const std::vector<line_of_driver> lines = lines_of(log);
   std::int64_t zero_ms = 0;
   std::int64_t disarmed_ms = 0;
   look_at_silence(lines, zero_ms, disarmed_ms);
@@ -121,7 +121,7 @@ TEST(child, a_program_that_is_stopped_is_disarmed_and_finds_its_device_in_fault)
   EXPECT_TRUE(wait_until(10s, [&] { return ends_with(log, "disarm"); }));
   std::int64_t zero_ms = 0;
   std::int64_t disarmed_ms = 0;
-  look_at_silence(told(log), zero_ms, disarmed_ms);
+  look_at_silence(lines_of(log), zero_ms, disarmed_ms);
   std::printf("zero %ld ms and disarmed %ld ms after the last push of a program that was stopped\n",
               static_cast<long>(zero_ms), static_cast<long>(disarmed_ms));
   EXPECT_GE(zero_ms, 15) << "its last command was good for 20 ms";

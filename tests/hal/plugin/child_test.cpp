@@ -300,7 +300,7 @@ TEST(child, a_tick_allocates_nothing_on_this_side) {
   }
 }
 
-TEST(child, a_program_without_the_helper_is_told_what_is_missing) {
+TEST(child, a_program_without_the_helper_reports_what_is_missing) {
   child_settings o = options_for("nothing");
   o.host_program = "/nowhere/asperity-driver-host";
   const result<std::unique_ptr<child_driver>> loaded = load(test_support::sample_driver, o);

@@ -351,24 +351,24 @@ TEST(plugin, what_reaches_a_driver_is_bounded_whatever_it_would_do_with_it) {
   plugin_device device = make_broken("echoes");
   ASSERT_TRUE(device.open());
   std::int64_t now_ns = ms;
-  const auto told = [&](const device_command& c) {
+  const auto applied = [&](const device_command& c) {
     now_ns += ms;
     device_sample in;
     static_cast<void>(device.write(now_ns, c));
     static_cast<void>(device.read(now_ns, in));
     return in.T_dh.position;
   };
-  EXPECT_EQ(told(push(now_ns, {1.0, 0.0, 0.0})), vec3(0.0)) << "ready";
+  EXPECT_EQ(applied(push(now_ns, {1.0, 0.0, 0.0})), vec3(0.0)) << "ready";
   ASSERT_TRUE(device.arm());
-  EXPECT_EQ(told(push(now_ns, {1.0, 0.0, 0.0})), vec3(0.001, 0.0, 0.0));
-  const vec3 bounded = told(push(now_ns, {0.0, -3e5, 4e5}));
+  EXPECT_EQ(applied(push(now_ns, {1.0, 0.0, 0.0})), vec3(0.001, 0.0, 0.0));
+  const vec3 bounded = applied(push(now_ns, {0.0, -3e5, 4e5}));
   EXPECT_NEAR(glm::length(bounded), 0.004, 1e-12);
   EXPECT_NEAR(bounded.y / bounded.z, -0.75, 1e-12);
   device_command old = push(now_ns, {1.0, 0.0, 0.0});
   old.valid_until_ns = now_ns;  // the clock has gone on when it arrives
-  EXPECT_EQ(told(old), vec3(0.0)) << "expired";
+  EXPECT_EQ(applied(old), vec3(0.0)) << "expired";
   EXPECT_EQ(device.disarm(), status::ok);
-  EXPECT_EQ(told(push(now_ns, {1.0, 0.0, 0.0})), vec3(0.0)) << "disarmed";
+  EXPECT_EQ(applied(push(now_ns, {1.0, 0.0, 0.0})), vec3(0.0)) << "disarmed";
 }
 
 TEST(plugin, limits_do_not_move) {

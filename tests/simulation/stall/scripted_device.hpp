@@ -40,7 +40,7 @@ struct hand_script {
 struct motor_entry {
   std::int64_t from_ns = 0;
   wrench out{};
-  bool told = false;  ///< a command began it; otherwise the last command expired
+  bool commanded = false;  ///< a command began it; otherwise the last command expired
 };
 
 /// Energy that the motors gave to the hand, J, by the script's own poses.
@@ -90,7 +90,7 @@ class scripted_device {
     settle(now_ns);
     command_ = out;
     if (!may_put_out(machine_.state())) command_.on_hand = {};
-    told_at_ns_ = now_ns;
+    commanded_at_ns_ = now_ns;
     push({now_ns, command_.on_hand, true});
     return status::ok;
   }
@@ -103,11 +103,11 @@ class scripted_device {
  private:
   // The last command from when it was told to now, or to its end.
   void settle(std::int64_t now_ns) noexcept {
-    if (told_at_ns_ < 0) return;
+    if (commanded_at_ns_ < 0) return;
     const bool expired = now_ns > command_.valid_until_ns;
     const std::int64_t end_ns = std::min(now_ns, command_.valid_until_ns);
-    const vec3 way = hand_.at(end_ns).position - hand_.at(told_at_ns_).position;
-    const double turned = hand_.angle_rad(end_ns) - hand_.angle_rad(told_at_ns_);
+    const vec3 way = hand_.at(end_ns).position - hand_.at(commanded_at_ns_).position;
+    const double turned = hand_.angle_rad(end_ns) - hand_.angle_rad(commanded_at_ns_);
     const wrench& w = command_.on_hand;
     const double given_j = glm::dot(w.force, way) + glm::dot(w.torque, hand_.axis) * turned;
     if (!expired) {
@@ -128,7 +128,7 @@ class scripted_device {
   device_capabilities capabilities_;
   device_state_machine machine_{};
   device_command command_{};
-  std::int64_t told_at_ns_ = -1;
+  std::int64_t commanded_at_ns_ = -1;
   std::uint64_t sequence_ = 0;
   std::vector<motor_entry> motors_;
   bool full_ = false;

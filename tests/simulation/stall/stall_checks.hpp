@@ -67,24 +67,25 @@ class stall_checks {
     const device_capabilities& c = s_.capabilities;
     constexpr double room = 1.0 + 1e-8;
     constexpr std::int64_t longest_slew_ns = 4'000'000;
-    std::int64_t told_ns = 0;
+    std::int64_t commanded_ns = 0;
     std::int64_t silent_until_ns = 0;
     bool shut = false;
     for (std::size_t i = 1; i < m.size(); ++i) {
-      if (!m[i].told) continue;
-      const std::int64_t gap_ns = m[i].from_ns - told_ns;
-      told_ns = m[i].from_ns;
-      if (!m[i - 1].told) silent_until_ns = told_ns + limits.settle_ns;
+      if (!m[i].commanded) continue;
+      const std::int64_t gap_ns = m[i].from_ns - commanded_ns;
+      commanded_ns = m[i].from_ns;
+      if (!m[i - 1].commanded) silent_until_ns = commanded_ns + limits.settle_ns;
       shut = shut || gap_ns > limits.longest_gap_ns;
       const wrench& now = m[i].out;
       const wrench change = now - m[i - 1].out;
       const double slew_s = 1e-9 * static_cast<double>(std::min(gap_ns, longest_slew_ns));
-      expect(glm::length(now.force) <= c.peak_force_n * room, "force past its limit", told_ns);
-      expect(glm::length(now.torque) <= c.peak_torque_n_m * room, "torque past its limit", told_ns);
-      expect(glm::length(change.force) <= c.force_slew_n_per_s * slew_s * room + 1e-12, "force steps", told_ns);
-      expect(glm::length(change.torque) <= c.torque_slew_n_m_per_s * slew_s * room + 1e-12, "torque steps", told_ns);
-      expect(is_zero(now) || told_ns >= silent_until_ns, "output too soon after a command expired", told_ns);
-      expect(is_zero(now) || !shut, "output after a gap that shuts the gate", told_ns);
+      expect(glm::length(now.force) <= c.peak_force_n * room, "force past its limit", commanded_ns);
+      expect(glm::length(now.torque) <= c.peak_torque_n_m * room, "torque past its limit", commanded_ns);
+      expect(glm::length(change.force) <= c.force_slew_n_per_s * slew_s * room + 1e-12, "force steps", commanded_ns);
+      expect(glm::length(change.torque) <= c.torque_slew_n_m_per_s * slew_s * room + 1e-12, "torque steps",
+             commanded_ns);
+      expect(is_zero(now) || commanded_ns >= silent_until_ns, "output too soon after a command expired", commanded_ns);
+      expect(is_zero(now) || !shut, "output after a gap that shuts the gate", commanded_ns);
     }
     expect(!shut || out_.fault == gate_fault::stalled, "no fault tells of a gap past its limit");
   }

@@ -80,8 +80,8 @@ TEST(Bake, ReportsWhatItMeasured) {
   EXPECT_GT(report.rms_error_m, 0.0);
   EXPECT_LT(report.rms_error_m, 5e-4 * diagonal);
   EXPECT_LT(report.max_error_m, 4e-3 * diagonal);
-  EXPECT_GT(report.relief_m, 2.0 * wavy.amplitude_m);
-  EXPECT_GE(report.max_displacement_m, 0.5 * report.relief_m);
+  EXPECT_GT(report.peak_to_valley_m, 2.0 * wavy.amplitude_m);
+  EXPECT_GE(report.max_displacement_m, 0.5 * report.peak_to_valley_m);
   EXPECT_EQ(report.fallback_texels, 0u);
 }
 
@@ -157,7 +157,7 @@ TEST(Bake, GivesTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(one->pieces.size(), four->pieces.size());
   EXPECT_EQ(one->report.rms_error_m, four->report.rms_error_m);
   EXPECT_EQ(one->report.max_error_m, four->report.max_error_m);
-  EXPECT_EQ(one->report.relief_m, four->report.relief_m);
+  EXPECT_EQ(one->report.peak_to_valley_m, four->report.peak_to_valley_m);
   EXPECT_EQ(one->report.quality->to_textured, four->report.quality->to_textured);
   EXPECT_EQ(one->report.quality->crack_max_m, four->report.quality->crack_max_m);
 }
@@ -194,7 +194,7 @@ TEST(Bake, AGivenCoarseBoxKeepsTheRidgesInTheTexture) {
   EXPECT_TRUE(validate(*model).has_value());
   EXPECT_EQ(model->mesh.triangles.size(), 12u);
   ASSERT_EQ(model->pieces.size(), 1u);
-  EXPECT_NEAR(model->report.relief_m, 0.001, 0.0001);
+  EXPECT_NEAR(model->report.peak_to_valley_m, 0.001, 0.0001);
   EXPECT_LT(model->report.rms_error_m, 1e-4 * model->box.diagonal());
   // The depth lookup is orthographic: over a point of the top the texture must hold that very point's height.
   shapes::dice roll(2);

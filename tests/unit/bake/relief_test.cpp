@@ -64,7 +64,7 @@ TEST(HeightMap, BakesToTheSurfaceThatItWasMadeFrom) {
   // The report's error is against the mesh with its relief, measured by closest points: about as small.
   EXPECT_GT(model.report.rms_error_m, 0.0);
   EXPECT_LT(model.report.rms_error_m, 0.02 * slab.amplitude_m);
-  EXPECT_NEAR(model.report.relief_m, 2.0 * slab.amplitude_m, 0.2 * slab.amplitude_m);
+  EXPECT_NEAR(model.report.peak_to_valley_m, 2.0 * slab.amplitude_m, 0.2 * slab.amplitude_m);
 }
 
 TEST(NormalMap, BakesToTheSurfaceThatItWasMadeFrom) { EXPECT_LT(miss(baked_normal_map()), 0.05); }

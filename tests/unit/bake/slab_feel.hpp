@@ -47,7 +47,7 @@ inline void expect_slab_feel(const wavy_slab& slab, const textured_model& baked,
   bowl.half_x = bowl.half_y = 0.004;
   bowl.height = [](double x, double y) { return -(x * x + y * y) / (2.0 * 0.004); };
   const model_ptr probe = make_plate(bowl);
-  depth_settings settings;
+  window_depth_settings settings;
   settings.tau_m = 5e-6;
   const scene on_baked{probe, {std::make_shared<const textured_model>(baked)}};
   const scene on_truth{probe, {make_plate(truth)}};

@@ -130,7 +130,7 @@ TEST(contact_solver, agrees_with_projected_gauss_seidel) {
   std::printf("  Gauss-Seidel took more than 60 sweeps in %d of %d\n", slow[1], compared);
 }
 
-TEST(contact_solver, tells_what_is_left_where_its_passes_run_out) {
+TEST(contact_solver, reports_what_is_left_where_its_passes_run_out) {
   drawn d(seed_of(fresh_seed("contact_solver_passes", "2,000 steps"), "passes"));
   int unfinished = 0;
   for (int trial = 0; trial < 2000; ++trial) {
@@ -304,7 +304,7 @@ TEST(probe_on_planes, stops_where_a_plane_is_not_finite) {
 }
 
 // Numbers of any size from a renderer gone wrong: the probe stays finite, moves no faster than a tool can, or stops.
-TEST(probe_on_planes, stays_finite_whatever_finite_planes_are_told) {
+TEST(probe_on_planes, stays_finite_whatever_finite_planes_are_reported) {
   drawn d(seed_of(fresh_seed("probe_on_planes_absurd", "3,000 steps"), "absurd"));
   const virtual_coupling coupling({}, 0.01, 1e-5);
   int stopped = 0;

@@ -145,11 +145,11 @@ TEST(device_loop, a_loop_that_stands_still_is_forgotten_by_the_device) {
   wall_session r(pressing_hand());
   r.run_ms(1000);
   ASSERT_GT(force_of(r.last()), 1.0);
-  const std::int64_t told_at_ns = r.last().time_ns;
+  const std::int64_t commanded_at_ns = r.last().time_ns;
   wrench held;
-  ASSERT_EQ(r.dev.applied(told_at_ns + 20 * ms, held), status::ok);
+  ASSERT_EQ(r.dev.applied(commanded_at_ns + 20 * ms, held), status::ok);
   EXPECT_EQ(held.force, r.last().on_hand_d.force);
-  ASSERT_EQ(r.dev.applied(told_at_ns + 20 * ms + 1, held), status::ok);
+  ASSERT_EQ(r.dev.applied(commanded_at_ns + 20 * ms + 1, held), status::ok);
   EXPECT_TRUE(is_zero(held));
 }
 

@@ -76,7 +76,7 @@ TEST(gap, of_a_valid_command_goes_on) {
 struct placed_device {
   using policy_tag = device_tag;
   pose T_dh{};
-  device_command told{};
+  device_command commanded{};
   device_capabilities stated = simulated_settings{}.capabilities;
 
   [[nodiscard]] const device_capabilities& capabilities() const noexcept { return stated; }
@@ -94,7 +94,7 @@ struct placed_device {
     return status::ok;
   }
   [[nodiscard]] status write(std::int64_t, const device_command& out) noexcept {
-    told = out;
+    commanded = out;
     return status::ok;
   }
 };
@@ -112,8 +112,8 @@ TEST(gap, of_a_late_tick_is_a_tick_of_the_longest_step) {
     EXPECT_EQ(loop.tick(0), status::ok);
     dev.T_dh.position = {0.0, 0.01, 0.0};
     EXPECT_EQ(loop.tick(silence_ns), status::ok);
-    EXPECT_EQ(dev.told.on_hand.force, log.back().on_hand_d.force);
-    EXPECT_EQ(dev.told.valid_until_ns, silence_ns + 20 * ms);
+    EXPECT_EQ(dev.commanded.on_hand.force, log.back().on_hand_d.force);
+    EXPECT_EQ(dev.commanded.valid_until_ns, silence_ns + 20 * ms);
     return log.back();
   };
   const session_record due = after(5 * ms);

@@ -43,11 +43,11 @@ struct plane_body {
   std::vector<wall> walls{wall{}};
   bool plate = false;  ///< walls are the two sides of a plate
 
-  bool tells_planes = true;
-  std::size_t most_told = 1000;                                 ///< the deepest so many
-  double told_gap_m = std::numeric_limits<double>::infinity();  ///< gaps beyond this are not told
-  double linear_n_per_m = 5e4;                                  ///< of W0 and J
-  bool linearised = true;                                       ///< false: J is dropped
+  bool reports_planes = true;
+  std::size_t most_reported = 1000;                                 ///< the deepest so many
+  double reported_gap_m = std::numeric_limits<double>::infinity();  ///< gaps beyond this are not told
+  double linear_n_per_m = 5e4;                                      ///< of W0 and J
+  bool linearised = true;                                           ///< false: J is dropped
 
   std::vector<support_plane> planes;
 
@@ -61,9 +61,9 @@ struct plane_body {
       for (const wall& w : walls) {
         if (plate && met != nullptr && w.depth_m(centre) >= met->depth_m(centre)) continue;
         met = &w;
-        if (!plate) tell(w, centre, c);
+        if (!plate) report(w, centre, c);
       }
-      if (plate) tell(*met, centre, c);
+      if (plate) report(*met, centre, c);
     }
     for (const support_plane& p : planes) {
       if (p.depth_m <= 0.0) continue;
@@ -71,7 +71,7 @@ struct plane_body {
       if (linearised) add_outer(out.force.stiffness, -linear_n_per_m, p.gradient);
     }
     out.centre_of_mass_w = c;
-    if (tells_planes) out.planes = told();
+    if (reports_planes) out.planes = reported();
     return status::ok;
   }
 
@@ -90,7 +90,7 @@ struct plane_body {
   }
 
  private:
-  void tell(const wall& w, const vec3& centre, const vec3& c) noexcept {
+  void report(const wall& w, const vec3& centre, const vec3& c) noexcept {
     const double depth = w.depth_m(centre) + radius_m;
     const vec3 r = centre - radius_m * w.outward_w - c;
     const vec3 slope = w.slope(centre);
@@ -102,12 +102,12 @@ struct plane_body {
                       .body = 0});
   }
 
-  [[nodiscard]] std::span<const support_plane> told() noexcept {
-    std::erase_if(planes, [&](const support_plane& p) { return p.depth_m < -told_gap_m; });
-    if (most_told < planes.size()) {
+  [[nodiscard]] std::span<const support_plane> reported() noexcept {
+    std::erase_if(planes, [&](const support_plane& p) { return p.depth_m < -reported_gap_m; });
+    if (most_reported < planes.size()) {
       std::stable_sort(planes.begin(), planes.end(),
                        [](const support_plane& a, const support_plane& b) { return a.depth_m > b.depth_m; });
-      planes.resize(most_told);
+      planes.resize(most_reported);
     }
     return planes;
   }

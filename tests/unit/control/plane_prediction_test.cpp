@@ -149,7 +149,7 @@ TEST(plane_prediction, asks_little_where_the_planes_are_the_surface) {
 }
 
 // A probe that is jolted to and fro beside a crest goes to one side of it: the one where it was going to rest before.
-TEST(plane_prediction, a_jolted_probe_is_told_the_same_rest) {
+TEST(plane_prediction, a_jolted_probe_gets_the_same_rest) {
   drawn d(seed_of(fresh_seed("plane_prediction", "200 probes, 8 jolts each"), "crests"));
   int apart_with = 0, apart_without = 0, jolts = 0;
   for (int trial = 0; trial < 200; ++trial) {
@@ -228,7 +228,7 @@ struct point_in_a_groove {
   }
 };
 
-TEST(plane_prediction, a_point_in_a_groove_is_told_both_walls) {
+TEST(plane_prediction, a_point_in_a_groove_gets_both_walls) {
   drawn d(seed_of(fresh_seed("plane_prediction", "100 points"), "grooves"));
   for (int trial = 0; trial < 100; ++trial) {
     point_in_a_groove at{{d.between(-20 * um, 20 * um), 0, d.between(10 * um, 30 * um)}};

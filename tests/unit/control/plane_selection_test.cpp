@@ -16,7 +16,7 @@ using namespace asperity;
 using namespace asperity::test_support;
 
 /// All planes of a body at one probe pose.
-std::vector<support_plane> told(plane_body body, const pose& T_wa) {
+std::vector<support_plane> reported(plane_body body, const pose& T_wa) {
   tick out;
   EXPECT_EQ(body.step({T_wa, {}}, out), status::ok);
   return {out.planes.begin(), out.planes.end()};
@@ -39,7 +39,7 @@ TEST(plane_selection, stands_for_a_face_under_every_small_motion) {
     plane_body block = block_on_plane();
     if (trial % 2 == 1) block.points_c = lower_face(0.01, 0.01, 0.01, 21);
     const vec3 tilt = 0.02 * vec3(d.between(0.0, 1.0) - 0.5, d.between(0.0, 1.0) - 0.5, d.between(0.0, 1.0) - 0.5);
-    const auto all = told(block, {exp_rotation(tilt), {0, 0, 0.01 - 2e-4 * d.between(0.0, 1.0)}});
+    const auto all = reported(block, {exp_rotation(tilt), {0, 0, 0.01 - 2e-4 * d.between(0.0, 1.0)}});
     const plane_selection s;
     support_planes kept;
     ASSERT_EQ(select_planes(all, s, kept), status::ok);
@@ -101,7 +101,7 @@ TEST(plane_selection, keeps_the_first_plane_of_every_motion) {
 TEST(plane_selection, keeps_every_direction_of_every_body) {
   plane_body corner = ball_in_corner(0.005);
   corner.points_c = lower_face(0.01, 0.01, 0.01, 9);
-  auto all = told(corner, {quat(1, 0, 0, 0), {0.015, 0.015, 0.015}});
+  auto all = reported(corner, {quat(1, 0, 0, 0), {0.015, 0.015, 0.015}});
   for (std::size_t i = 0, n = all.size(); i < n; ++i) {
     all.push_back(all[i]);
     all.back().body = 1;
@@ -138,7 +138,7 @@ TEST(plane_selection, says_when_its_list_was_full) {
 }
 
 TEST(plane_selection, keeps_gaps) {
-  const auto all = told(block_on_plane(), {quat(1, 0, 0, 0), {0, 0, 0.013}});
+  const auto all = reported(block_on_plane(), {quat(1, 0, 0, 0), {0, 0, 0.013}});
   support_planes kept;
   ASSERT_EQ(select_planes(all, {}, kept), status::ok);
   EXPECT_GE(kept.size(), 4U);
@@ -148,7 +148,7 @@ TEST(plane_selection, keeps_gaps) {
 TEST(plane_selection, refuses_candidates_that_are_not_finite) {
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     for (int where = 0; where < 14; ++where) {
-      auto all = told(block_on_plane(), {quat(1, 0, 0, 0), {0, 0, 0.01}});
+      auto all = reported(block_on_plane(), {quat(1, 0, 0, 0), {0, 0, 0.01}});
       support_plane& p = all[3];
       if (where == 0) p.depth_m = bad;
       if (where == 1) p.spread_m = bad;

@@ -87,10 +87,10 @@ TEST(plane_session, holds_a_block_that_is_pressed) {
     EXPECT_LE(o.settled_step_n_per_ms, fast ? 0.3 : 1.0);
     // The linear contact of the same stiffness, and the deepest plane alone.
     plane_case line = block(10.0, r);
-    line.body.tells_planes = false;
+    line.body.reports_planes = false;
     line.body.linear_n_per_m = 2e5 / 25.0;
     plane_case one = block(10.0, r);
-    one.body.most_told = 1;
+    one.body.most_reported = 1;
     const plane_outcome without = run(line);
     const plane_outcome single = run(one);
     EXPECT_TRUE(without.deepest_m > 3e-4 || without.settled_step_n_per_ms > 1.0) << r.contact_hz;
@@ -131,7 +131,7 @@ TEST(plane_session, never_goes_through_a_thin_plate) {
         deepest = std::max(deepest, o.deepest_m);
         surplus = std::max(surplus, o.surplus_j);
         // Where gaps are not told, a touch is not foreseen.
-        c.body.told_gap_m = 0.0;
+        c.body.reported_gap_m = 0.0;
         if (r.contact_hz <= 200 && run(c).deepest_m > 5e-4) ++through;
       }
     }
@@ -142,11 +142,11 @@ TEST(plane_session, never_goes_through_a_thin_plate) {
 }
 
 /// Deepest of presses and taps at up to 0.36 m/s where gaps beyond this are not told.
-double deepest_with_gaps(double told_gap_m, double contact_hz, int sessions, drawn d) {
+double deepest_with_gaps(double reported_gap_m, double contact_hz, int sessions, drawn d) {
   double deepest = 0.0;
   for (int i = 0; i < sessions; ++i) {
     plane_case c = block(10.0, {1000, contact_hz});
-    c.body.told_gap_m = told_gap_m;
+    c.body.reported_gap_m = reported_gap_m;
     c.hand.seed = d.bits();
     c.hand.hand = i % 3 == 0 ? soft_hand() : (i % 3 == 1 ? firm_hand() : hand_settings{});
     motion_settings& m = c.hand.motion;
@@ -162,7 +162,7 @@ double deepest_with_gaps(double told_gap_m, double contact_hz, int sessions, dra
 }
 
 // A contact is handed over one period after its pose and used for another: gaps up to three periods' way matter.
-TEST(plane_session, foresees_what_is_told_within_three_periods) {
+TEST(plane_session, foresees_what_is_reported_within_three_periods) {
   const drawn d(seed_of(fresh_seed("plane_gaps", "8 sessions for each reach"), "gaps"));
   constexpr double fastest_m_per_s = 0.5;  // of the handle, tremor and uneven taps included
   for (const double hz : {200.0, 500.0, 1000.0}) {
@@ -217,7 +217,7 @@ TEST(plane_session, makes_no_energy) {
             << " K " << c.control.coupling.stiffness_n_per_m;
         surplus = std::max(surplus, o.surplus_j);
         plane_case held = c;
-        held.body.tells_planes = false;
+        held.body.reports_planes = false;
         held.body.linearised = false;
         held.body.linear_n_per_m = 2e3 / static_cast<double>(c.body.points_c.size());
         held_j = std::max(held_j, run(held).surplus_j);
@@ -246,7 +246,7 @@ TEST(plane_session, answers_every_wall_of_a_corner) {
     }
     EXPECT_LE(o.deepest_m, 10.0 / 5e4 + 1e-4);
     // One plane is a direction that the next contact turns round: a wall gives way.
-    c.body.most_told = 1;
+    c.body.most_reported = 1;
     const plane_outcome one = run(c);
     EXPECT_TRUE(one.deepest_m > 1e-3 || one.settled_step_n_per_ms > 0.5) << one.deepest_m;
   }
@@ -262,7 +262,7 @@ double shown_n_per_m(double coupling_n_per_m, const loop_rates& r, double linear
     // A hand that damps: the device alone does not hold 5 N/mm.
     c.hand.hand.damping_n_s_per_m = 20.0;
     if (linear_n_per_m > 0.0) {
-      c.body.tells_planes = false;
+      c.body.reports_planes = false;
       c.body.linear_n_per_m = linear_n_per_m / static_cast<double>(c.body.points_c.size());
     }
     const plane_outcome o = run(c);
@@ -328,9 +328,9 @@ TEST(plane_session, is_calm_in_a_slot) {
               worst.settled_step_n_per_ms);
   for (const double contact_hz : {1000.0, 200.0}) {
     plane_case one = peg(5e-5, false, {1000, contact_hz});
-    one.body.most_told = 1;
+    one.body.most_reported = 1;
     plane_case line = peg(5e-5, false, {1000, contact_hz});
-    line.body.tells_planes = false;
+    line.body.reports_planes = false;
     const plane_outcome single = run(one);
     const plane_outcome linear = run(line);
     EXPECT_TRUE(single.settled_step_n_per_ms > 1.0 || single.deepest_m > 1e-3) << single.settled_step_n_per_ms;
@@ -376,8 +376,8 @@ TEST(plane_session, is_as_deep_as_its_law_says) {
 }
 
 // Contacts every 40 ms are old enough to surprise. A face that was told in time does not, one told by its overlap does.
-TEST(plane_session, is_surprised_by_what_was_not_told) {
-  const auto surprises = [](double told_gap_m) {
+TEST(plane_session, is_surprised_by_what_was_not_reported) {
+  const auto surprises = [](double reported_gap_m) {
     struct count {
       std::uint64_t silent = 0;
       double deepest_m = 0.0;
@@ -385,7 +385,7 @@ TEST(plane_session, is_surprised_by_what_was_not_told) {
     simulated_device dev(hand_that_presses(10.0, {0, 0, 0.01}, {0, 0, -1}, 500.0));
     EXPECT_TRUE(dev.open() && dev.arm());
     plane_body body = block_on_plane();
-    body.told_gap_m = told_gap_m;
+    body.reported_gap_m = reported_gap_m;
     virtual_session<plane_body, simulated_device> session(body, {{pose{}}, vec3(0.0)}, dev, {},
                                                           {.contact_period_ns = 40'000'000});
     for (int i = 0; i < 600; ++i) {
@@ -395,10 +395,10 @@ TEST(plane_session, is_surprised_by_what_was_not_told) {
     out.silent = session.device().rates().report().surprises;
     return out;
   };
-  const auto told = surprises(1.0);
+  const auto reported = surprises(1.0);
   const auto blind = surprises(0.0);
-  EXPECT_EQ(told.silent, 0U);
-  EXPECT_LT(told.deepest_m, 2e-4);
+  EXPECT_EQ(reported.silent, 0U);
+  EXPECT_LT(reported.deepest_m, 2e-4);
   EXPECT_GT(blind.silent, 0U);
   EXPECT_GT(blind.deepest_m, 1e-3);
 }

@@ -76,7 +76,7 @@ TEST(real_session, stops_when_it_is_destroyed_and_when_it_never_ran) {
   EXPECT_EQ(dev.state(), device_state::ready);
 }
 
-TEST(real_session, tells_the_gate_why_it_stops) {
+TEST(real_session, reports_to_the_gate_why_it_stops) {
   simulated_device dev(touching_hand());
   ASSERT_TRUE(dev.open() && dev.arm());
   real_session<analytic_wall, simulated_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
@@ -164,7 +164,7 @@ std::string real_time_session() {
   return {};
 }
 
-TEST(real_session, tells_what_the_system_gave) {
+TEST(real_session, reports_what_the_system_gave) {
   EXPECT_EQ(real_time_session(), "");
   if (device_view.policy != SCHED_FIFO) std::puts("[  NOTE    ] this user may not have a real-time class");
 }

@@ -21,11 +21,11 @@ using namespace asperity::test_support;
 
 /// Flags of all device ticks of a hand that presses with up to `newtons`. @param touch where the probe touches first
 template <class Body>
-tick_flag told_by(const Body& body, double newtons, const contact_law& law, const virtual_schedule& schedule,
-                  const vec3& touch = vec3(0.0), const vec3& direction = {0, 0, -1}) {
+tick_flag flags_reported_by(const Body& body, double newtons, const contact_law& law, const virtual_schedule& schedule,
+                            const vec3& touch = vec3(0.0), const vec3& direction = {0, 0, -1}) {
   struct watch {
-    tick_flag told = tick_flag::none;
-    void operator()(const session_record& r) noexcept { told |= r.flags; }
+    tick_flag reported = tick_flag::none;
+    void operator()(const session_record& r) noexcept { reported |= r.flags; }
   };
   control_settings control;
   control.contact = law;
@@ -34,7 +34,7 @@ tick_flag told_by(const Body& body, double newtons, const contact_law& law, cons
   EXPECT_TRUE(dev.open() && dev.arm());
   virtual_session<Body, simulated_device, watch> session(body, {{pose{}}, vec3(0.0)}, dev, control, schedule);
   static_cast<void>(session.run_until(500'000'000));
-  return session.device().observer().told;
+  return session.device().observer().reported;
 }
 
 TEST(tick_flags, are_silent_up_to_twenty_newtons) {
@@ -45,26 +45,26 @@ TEST(tick_flags, are_silent_up_to_twenty_newtons) {
     const vec3 tilt = d.inside(0.3), touch = i % 3 == 1 ? vec3(0.006, 0.006, 0.005) : vec3(0, 0, 0.01);
     const virtual_schedule schedule{.contact_period_ns = i % 2 == 0 ? 1'000'000 : 5'000'000,
                                     .contact_one_period_late = true};
-    EXPECT_EQ(told_by(body, d.between(1.0, 20.0), {}, schedule, touch, glm::normalize(vec3(0, 0, -1) + tilt)),
+    EXPECT_EQ(flags_reported_by(body, d.between(1.0, 20.0), {}, schedule, touch, glm::normalize(vec3(0, 0, -1) + tilt)),
               tick_flag::none)
         << i;
   }
 }
 
-TEST(tick_flags, tell_a_wall_that_is_too_soft_to_hold) {
-  EXPECT_EQ(told_by(plane_body{}, 10.0, {.stiffness_n_per_m = 5e3}, {}), tick_flag::not_held);
-  EXPECT_EQ(told_by(plane_body{}, 2.0, {.stiffness_n_per_m = 5e3}, {}), tick_flag::none);  // 0.4 mm
+TEST(tick_flags, report_a_wall_that_is_too_soft_to_hold) {
+  EXPECT_EQ(flags_reported_by(plane_body{}, 10.0, {.stiffness_n_per_m = 5e3}, {}), tick_flag::not_held);
+  EXPECT_EQ(flags_reported_by(plane_body{}, 2.0, {.stiffness_n_per_m = 5e3}, {}), tick_flag::none);  // 0.4 mm
 }
 
 // One pass of the solver answers a touch of a corner wrongly now and then, on planes of 50 N/mm in this one.
-TEST(tick_flags, tell_a_solver_that_was_stopped) {
+TEST(tick_flags, report_a_solver_that_was_stopped) {
   plane_body corner = ball_in_corner(0.005);
   corner.points_c = lower_face(0.005, 0.005, 0.005, 3);
   corner.radius_m = 0.0;
-  EXPECT_TRUE(has(told_by(corner, 15.0, {.stiffness_n_per_m = 5e4, .most_passes = 1}, {}, vec3(0.006, 0.006, 0.005),
-                          glm::normalize(vec3(-0.5, -0.6, -1))),
+  EXPECT_TRUE(has(flags_reported_by(corner, 15.0, {.stiffness_n_per_m = 5e4, .most_passes = 1}, {},
+                                    vec3(0.006, 0.006, 0.005), glm::normalize(vec3(-0.5, -0.6, -1))),
                   tick_flag::unbalanced));
-  EXPECT_EQ(told_by(corner, 15.0, {}, {}, vec3(0.006, 0.006, 0.005), glm::normalize(vec3(-0.5, -0.6, -1))),
+  EXPECT_EQ(flags_reported_by(corner, 15.0, {}, {}, vec3(0.006, 0.006, 0.005), glm::normalize(vec3(-0.5, -0.6, -1))),
             tick_flag::none);
 }
 
@@ -89,24 +89,24 @@ struct urchin {
   }
 };
 
-tick_flag flags_of(urchin body, std::size_t dropped, tick_flag told = tick_flag::none) {
+tick_flag flags_of(urchin body, std::size_t dropped, tick_flag reported = tick_flag::none) {
   tick found;
   EXPECT_EQ(body.step({pose{}, {}}, found), status::ok);
   found.dropped_contacts = dropped;
-  found.flags = told;
+  found.flags = reported;
   linear_contact contact;
   rest_prediction rest;
   linearise(found, status::ok, {}, {}, rest, contact);
   return contact.flags;
 }
 
-TEST(tick_flags, tell_planes_that_did_not_fit) {
+TEST(tick_flags, report_planes_that_did_not_fit) {
   EXPECT_EQ(flags_of({.directions = 12}, 0), tick_flag::none);
   EXPECT_EQ(flags_of({.directions = 400}, 0), tick_flag::planes_left_out);
   EXPECT_EQ(flags_of({.directions = 400, .depth_m = -1e-4}, 0), tick_flag::none);  // gaps hold nothing
   EXPECT_EQ(flags_of({.directions = 6}, 1), tick_flag::planes_left_out);
   EXPECT_EQ(flags_of({.directions = 6}, 0, tick_flag::passed), tick_flag::passed);
-  EXPECT_TRUE(has(told_by(urchin{.directions = 400}, 1.0, {}, {}), tick_flag::planes_left_out));
+  EXPECT_TRUE(has(flags_reported_by(urchin{.directions = 400}, 1.0, {}, {}), tick_flag::planes_left_out));
 }
 
 // A flag of one tick is in the contacts of the next 50 ms, so that a device thread that takes each twentieth sees it.

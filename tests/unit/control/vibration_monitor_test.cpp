@@ -166,7 +166,7 @@ TEST(vibration_monitor, a_step_and_what_a_moving_hand_does_are_no_vibration) {
   }
 }
 
-TEST(vibration_monitor, tells_the_worst_and_when) {
+TEST(vibration_monitor, reports_the_worst_and_when) {
   const auto burst = [](double t) {
     const double size = t > 4.0 && t < 6.0 ? 0.1 : 0.01;
     return wrench{vec3(0.0, 0.0, 2.0 + size * std::sin(2.0 * pi * 230.0 * t)), vec3(0.0)};

@@ -46,7 +46,7 @@ TEST(virtual_tool, feels_a_face_as_stiff_as_its_coupling) {
 TEST(virtual_tool, feels_a_renderer_without_planes_as_well) {
   virtual_tool tool({});
   plane_body line = block_on_plane();
-  line.tells_planes = false;
+  line.reports_planes = false;
   line.linear_n_per_m = 2000.0 / 25.0;
   const wrench felt = press_by_hand(tool, line, {quat(1, 0, 0, 0), {0, 0, 0.013}}, -0.01, 1000);
   EXPECT_NEAR(felt.force.z, 0.02 / (1.0 / 500.0 + 1.0 / 2000.0), 0.05);
@@ -54,7 +54,7 @@ TEST(virtual_tool, feels_a_renderer_without_planes_as_well) {
 }
 
 // The probe hangs on the handle by T_ha, and its centre of mass is not its origin: what is felt is about the handle.
-TEST(virtual_tool, tells_its_wrench_about_the_handle) {
+TEST(virtual_tool, reports_its_wrench_about_the_handle) {
   drawn d(seed_of(fresh_seed("virtual_tool", "20 handles"), "handle"));
   for (int i = 0; i < 20; ++i) {
     const pose T_ha{exp_rotation(d.inside(2.0)), d.inside(0.1)};

@@ -54,8 +54,8 @@ device_recording record(std::vector<wrench>* sent = nullptr) {
   call_ring ring(4096);
   recorded_device recorded(dev, ring);
   device_recording out{std::string(dev.capabilities().name), dev.capabilities(), dev.state(), {}};
-  std::vector<wrench> told = play(recorded);
-  if (sent != nullptr) *sent = std::move(told);
+  std::vector<wrench> reported = play(recorded);
+  if (sent != nullptr) *sent = std::move(reported);
   for (call_record c; ring.pop(c);) out.calls.push_back(c);
   EXPECT_EQ(ring.lost(), 0U);
   return out;
@@ -165,7 +165,7 @@ TEST(device_recording, cut_anywhere_gives_its_whole_blocks) {
     ASSERT_EQ(static_cast<bool>(read), blocks > 0) << n;
     if (!read) continue;
     EXPECT_TRUE(read->cut);
-    EXPECT_EQ(read->end, recorded_end::not_told);
+    EXPECT_EQ(read->end, recorded_end::not_reported);
     EXPECT_EQ(read->writes_before_end, 0U);
     ASSERT_EQ(read->calls.size(), 256 * blocks) << n;
     const std::string again = encode(*read);  // the same calls, and an end of their own
@@ -212,25 +212,25 @@ TEST(device_recording, reads_the_first_format_too) {
   EXPECT_FALSE(decode(mixed));
 }
 
-TEST(device_recording, tells_where_the_session_was_told_to_end) {
-  device_recording told = record();
-  told.calls.resize(40);
-  const auto writes = std::count_if(told.calls.begin(), told.calls.end(),
+TEST(device_recording, reports_where_the_session_was_told_to_end) {
+  device_recording reported = record();
+  reported.calls.resize(40);
+  const auto writes = std::count_if(reported.calls.begin(), reported.calls.end(),
                                     [](const call_record& c) { return c.call == device_call::write; });
-  told.end = recorded_end::interrupted;
-  told.writes_before_end = static_cast<std::uint64_t>(writes);
-  const result<device_recording> read = decode(encode(told));
+  reported.end = recorded_end::interrupted;
+  reported.writes_before_end = static_cast<std::uint64_t>(writes);
+  const result<device_recording> read = decode(encode(reported));
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->end, recorded_end::interrupted);
-  EXPECT_EQ(read->writes_before_end, told.writes_before_end);
+  EXPECT_EQ(read->writes_before_end, reported.writes_before_end);
 
-  ++told.writes_before_end;  // more than there are
-  EXPECT_FALSE(decode(encode(told)));
-  told.writes_before_end = 1;
-  told.end = recorded_end::not_told;  // and yet some
-  EXPECT_FALSE(decode(encode(told)));
-  told.end = static_cast<recorded_end>(recorded_end_count);
-  EXPECT_FALSE(decode(encode(told)));
+  ++reported.writes_before_end;  // more than there are
+  EXPECT_FALSE(decode(encode(reported)));
+  reported.writes_before_end = 1;
+  reported.end = recorded_end::not_reported;  // and yet some
+  EXPECT_FALSE(decode(encode(reported)));
+  reported.end = static_cast<recorded_end>(recorded_end_count);
+  EXPECT_FALSE(decode(encode(reported)));
 }
 
 // With the check sum mended, so that what is behind it is reached.

@@ -235,8 +235,8 @@ TEST(simulated_device, motors_hold_their_own_torque_and_its_slew) {
   for (std::int64_t t = 0; t < 20'000'000; t += 50'000) {
     device_sample in;
     ASSERT_EQ(dev.read(t, in), status::ok);
-    const wrench told{vec3(0.0), {0.0, 0.06, -0.08}};
-    ASSERT_EQ(dev.write(t, {told, wrench_frame::device_base, t + 20 * ms, 1}), status::ok);
+    const wrench commanded{vec3(0.0), {0.0, 0.06, -0.08}};
+    ASSERT_EQ(dev.write(t, {commanded, wrench_frame::device_base, t + 20 * ms, 1}), status::ok);
     EXPECT_LE(glm::length(dev.put_out().torque - before), 0.0005 + 1e-12);
     before = dev.put_out().torque;
   }

@@ -65,7 +65,7 @@ void expect_same(const textured_model& a, const textured_model& b) {
   EXPECT_EQ(a.box.high, b.box.high);
   EXPECT_EQ(a.report.rms_error_m, b.report.rms_error_m);
   EXPECT_EQ(a.report.max_error_m, b.report.max_error_m);
-  EXPECT_EQ(a.report.relief_m, b.report.relief_m);
+  EXPECT_EQ(a.report.peak_to_valley_m, b.report.peak_to_valley_m);
   EXPECT_EQ(a.report.max_displacement_m, b.report.max_displacement_m);
   EXPECT_EQ(a.report.full_triangles, b.report.full_triangles);
   EXPECT_EQ(a.report.fallback_texels, b.report.fallback_texels);

@@ -56,9 +56,9 @@ TEST(ExitPotential, TheWrenchIsMinusTheGradientOfTheEnergy) {
       };
       const double h = 4e-8;  // a sample that begins to touch within it leaves an error of the order of its square
       const double slope = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
-      const double told =
+      const double reported =
           i < 3 ? a.on_probe_w.force[static_cast<int>(i)] : a.on_probe_w.torque[static_cast<int>(i - 3)] / lever_m;
-      EXPECT_NEAR(told, -slope, 1e-6 * scale) << "pose " << n << ", coordinate " << i << ", ways " << a.ways.size();
+      EXPECT_NEAR(reported, -slope, 1e-6 * scale) << "pose " << n << ", coordinate " << i << ", ways " << a.ways.size();
     }
   }
 }
@@ -137,16 +137,16 @@ std::vector<double> stiffness_errors(exit_lab& lab, drawing& draw, int poses) {
     const pose T = pressed(lab, draw, draw.between(0.05, 0.5) * mm);
     const exit_answer a = lab.at(T);
     if (a.ways.size() != 1) continue;
-    mat6 told = a.stiffness;
-    for (std::size_t i = 0; i < 36; ++i) told.m[i] /= (i / 6 < 3 ? 1.0 : lever_m) * (i % 6 < 3 ? 1.0 : lever_m);
+    mat6 reported = a.stiffness;
+    for (std::size_t i = 0; i < 36; ++i) reported.m[i] /= (i / 6 < 3 ? 1.0 : lever_m) * (i % 6 < 3 ? 1.0 : lever_m);
     const mat6 measured = measured_stiffness(lab, T);
     const vec3 out = glm::normalize(a.on_probe_w.force), across = any_orthogonal(out);
     for (const vec6& m : {vec6{out, {}}, vec6{{}, across}, vec6{{}, glm::cross(out, across)}}) {
-      const vec6 right = measured * m, off = told * m - right;
+      const vec6 right = measured * m, off = reported * m - right;
       // A tilt about the contact itself has next to no stiffness.
       const double size = std::max(std::sqrt(dot(right, right)), 0.2 * lab.rule().stiffness_n_per_m);
       errors.push_back(std::sqrt(dot(off, off)) / size);
-      EXPECT_LE(dot(m, told * m), 1e-9);
+      EXPECT_LE(dot(m, reported * m), 1e-9);
     }
   }
   std::sort(errors.begin(), errors.end());
@@ -179,17 +179,17 @@ TEST(ExitPotential, LimitsAreToldAndTheWrenchStaysBounded) {
     exits::exit_rule rule;
     rule.most_readings = most;
     exit_lab lab(probe, {fixed}, rule, centre_a);
-    int told = 0;
+    int reported = 0;
     for (int n = 0; n < 20; ++n) {
       const exit_answer a = lab.at(pressed(lab, draw, draw.between(0.5, 4.0) * mm));
       EXPECT_TRUE(is_finite(a.on_probe_w));
       EXPECT_TRUE(is_finite(a.stiffness));
       EXPECT_LT(glm::length(a.on_probe_w.force), 2.0 * rule.stiffness_n_per_m * 0.02);
       EXPECT_LT(a.readings, most + most / 4 + 2000);
-      told += a.hit.any() ? 1 : 0;
+      reported += a.hit.any() ? 1 : 0;
     }
     if (most <= 2000) {
-      EXPECT_GT(told, 10) << most;
+      EXPECT_GT(reported, 10) << most;
     }
   }
   exits::exit_rule few;

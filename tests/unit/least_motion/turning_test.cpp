@@ -87,8 +87,8 @@ TEST(TurningWaysOut, TheWrenchIsMinusTheGradientOfTheEnergy) {
       };
       const double h = 2e-7;
       const double slope = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);
-      const double told = i < 3 ? to_vec6(a.on_probe_w)[i] : 100.0 * to_vec6(a.on_probe_w)[i];
-      EXPECT_NEAR(told, -slope, 1e-5 * scale) << "pose " << n << ", coordinate " << i;
+      const double reported = i < 3 ? to_vec6(a.on_probe_w)[i] : 100.0 * to_vec6(a.on_probe_w)[i];
+      EXPECT_NEAR(reported, -slope, 1e-5 * scale) << "pose " << n << ", coordinate " << i;
     }
   }
   EXPECT_GT(felt, 5);

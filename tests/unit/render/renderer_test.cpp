@@ -76,7 +76,7 @@ struct scripted_readings {
     return s->measured;
   }
 };
-struct telling_force {
+struct reporting_force {
   using policy_tag = force_tag;
   using found_type = near_samples;
   using reading_type = near_plane;
@@ -167,13 +167,13 @@ TEST_F(renderer_test, any_failing_stage_leaves_a_zero_wrench) {
 
 struct renderer_of_samples : testing::Test {
   script s;
-  basic_renderer<scripted_samples, scripted_readings, telling_force> renderer{
-      one_fixed_body(), scripted_samples{&s}, scripted_readings{&s}, telling_force{&s}, near_sample_limits{4}};
+  basic_renderer<scripted_samples, scripted_readings, reporting_force> renderer{
+      one_fixed_body(), scripted_samples{&s}, scripted_readings{&s}, reporting_force{&s}, near_sample_limits{4}};
   std::array<pose, 1> fixed{};
   tick out;
 };
 
-TEST_F(renderer_of_samples, reads_every_leaf_and_hands_out_the_contacts_that_are_told) {
+TEST_F(renderer_of_samples, reads_every_leaf_and_hands_out_the_contacts_that_are_reported) {
   s.contacts = 3;
   ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
   EXPECT_EQ(renderer.force().read, (std::vector<double>{1e-3, 2e-3, 3e-3}));
@@ -207,7 +207,7 @@ TEST_F(renderer_test, hands_out_the_planes_that_a_depth_backend_knows) {
   EXPECT_TRUE(out.planes.empty());
 }
 
-TEST_F(renderer_of_samples, tells_no_more_contacts_than_it_has_room_for) {
+TEST_F(renderer_of_samples, reports_no_more_contacts_than_it_has_room_for) {
   renderer.force().tells = 1000;
   ASSERT_EQ(renderer.step({{}, fixed}, out), status::ok);
   EXPECT_EQ(out.contacts.size(), 64U);

@@ -70,7 +70,7 @@ inline pose some_pose(dice& d) {
 }
 
 inline cpu_depth grid_backend(const scene& s, parallax_mode mode, std::uint32_t grid) {
-  depth_settings settings;
+  window_depth_settings settings;
   settings.parallax = mode;
   settings.grid = grid;
   return cpu_depth(s, settings);

@@ -29,14 +29,14 @@ struct rig {
   contact_set out;
   std::array<pose, 1> T_wb{};
 
-  rig(model_ptr probe, model_ptr fixed, const finder_settings& settings = {}, contact_limits limits = {})
+  rig(model_ptr probe, model_ptr fixed, const window_finder_settings& settings = {}, contact_limits limits = {})
       : bodies{std::move(probe), {std::move(fixed)}}, finder(bodies, settings), out(limits) {}
 
   status at(const pose& T_wa) { return finder.find({T_wa, T_wb}, out); }
   const contact& only() const { return out.contacts().front(); }
 };
 
-rig box_on_plate(cut_into how, const finder_settings& settings = {}) {
+rig box_on_plate(cut_into how, const window_finder_settings& settings = {}) {
   return {make_piece_model(box_mesh({0.02, 0.02, 0.02}, 2), how),
           make_piece_model(box_mesh({0.05, 0.05, 0.01}, 3), how), settings};
 }
@@ -244,7 +244,7 @@ TEST(finder, a_block_on_a_gear_is_one_contact_along_the_line) {
 }
 
 TEST(finder, a_pair_at_the_tolerance_weighs_nothing) {
-  finder_settings settings;
+  window_finder_settings settings;
   settings.tolerance_m = 1e-3;
   EXPECT_EQ(separation_weight(1e-3, 1e-3), 0.0);
   EXPECT_LT(separation_weight(1e-3 - 1e-9, 1e-3), 1e-11);
@@ -263,7 +263,7 @@ TEST(finder, a_pair_at_the_tolerance_weighs_nothing) {
 TEST(finder, a_new_contact_has_its_whole_window_at_once) {
   // One pair, off the middle of both boxes' overlap, a hair inside the tolerance: still the place where they touch.
   for (const cut_into how : every_cut) {
-    finder_settings settings;
+    window_finder_settings settings;
     settings.tolerance_m = 1e-3;
     rig r = box_on_plate(how, settings);
     const double corner = 0.02 * std::sqrt(3.0);
@@ -350,7 +350,7 @@ TEST(finder, a_thin_plate_pushes_out_on_the_side_that_was_entered) {
 }
 
 TEST(finder, deeper_than_the_limit_the_last_direction_is_held) {
-  finder_settings settings;
+  window_finder_settings settings;
   settings.max_depth_m = 1e-3;
   const pose above{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0302 - 1e-3}};
   const pose below{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0298 - 1e-3}};
@@ -380,7 +380,7 @@ TEST(finder, deeper_than_the_limit_the_last_direction_is_held) {
 
 TEST(finder, says_which_capacity_was_reached) {
   const pose T{{1.0, 0.0, 0.0, 0.0}, {0.0, 0.0, 0.0299}};
-  finder_settings few_pairs;
+  window_finder_settings few_pairs;
   few_pairs.close_pairs = 3;
   rig a = box_on_plate(cut_into::triangles, few_pairs);
   EXPECT_EQ(a.at(T), status::capacity_reached);
@@ -390,7 +390,7 @@ TEST(finder, says_which_capacity_was_reached) {
   const coarse_mesh l =
       test::prism_mesh({{0.08, -0.02}, {0.08, 0.02}, {0.02, 0.02}, {0.02, 0.08}, {-0.02, 0.08}, {-0.02, -0.02}}, 0.05);
   const pose corner{{1.0, 0.0, 0.0, 0.0}, {0.0299, 0.02995, 0.0}};
-  finder_settings one_cluster;
+  window_finder_settings one_cluster;
   one_cluster.clusters = 1;
   rig b(make_piece_model(box_mesh(vec3(0.01)), cut_into::triangles), make_piece_model(l, cut_into::triangles),
         one_cluster);

@@ -29,7 +29,7 @@ plate_spec plate(double half, height_function f = {}, std::uint32_t texels = 256
 TEST(CpuDepth, WitnessIsTheDeepestPointOfTheProbesFineSurface) {
   const scene s{make_plate(plate(0.01, bump(1e-3, 1e-3))), {make_plate(plate(0.01))}};
   for (const gradient_scheme g : schemes) {
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = g;
     cpu_depth backend(s, settings);
     const penetration p = measure_whole(backend, s, window_downwards(5e-3), {face_down(), {1e-3, -2e-3, 0.8e-3}});
@@ -75,7 +75,7 @@ TEST(CpuDepth, LeavesNanTexelsOutAndSaysSo) {
   const scene s{holed, {make_plate(plate(0.01))}};
   for (const gradient_scheme g : schemes) {
     for (const parallax_mode mode : {parallax_mode::exact, parallax_mode::paper_lookup}) {
-      depth_settings settings;
+      window_depth_settings settings;
       settings.gradient = g;
       settings.parallax = mode;
       cpu_depth backend(s, settings);
@@ -92,7 +92,7 @@ TEST(CpuDepth, LeavesNanTexelsOutAndSaysSo) {
 TEST(CpuDepth, ReportsNothingWithoutACommonSample) {
   const scene s{make_plate(plate(0.004)), {make_plate(plate(0.004))}};
   for (const gradient_scheme g : schemes) {
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = g;
     cpu_depth backend(s, settings);
     for (const penetration& p : {measure_whole(backend, s, window_downwards(5e-3), {face_down(), {0.009, 0.0, -1e-4}}),
@@ -129,7 +129,7 @@ TEST(CpuDepth, RefusesWhatDoesNotFit) {
 TEST(CpuDepth, ANanPoseLeavesZerosBehind) {
   const scene s{make_plate(plate(0.004)), {make_plate(plate(0.004))}};
   for (const gradient_scheme g : schemes) {
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = g;
     cpu_depth backend(s, settings);
     const pose bad{face_down(), vec3(std::numeric_limits<double>::quiet_NaN())};
@@ -143,7 +143,7 @@ TEST(CpuDepth, ANanPoseLeavesZerosBehind) {
 TEST(CpuDepth, DoesNothingThatATickMustNotDo) {
   const scene s{make_plate(plate(0.01, bump(1e-3, 1e-3))), {make_plate(plate(0.01))}};
   for (const gradient_scheme g : schemes) {
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = g;
     cpu_depth backend(s, settings);
     const contact_set contacts = whole_contact(s, window_downwards(5e-3));
@@ -161,7 +161,7 @@ TEST(CpuDepth, DoesNothingThatATickMustNotDo) {
 
 TEST(CpuDepth, RefiningFindsTheMaximumBetweenSamples) {
   const scene s{make_plate(plate(0.01, bump(1e-3, 2e-3), 2048)), {make_plate(plate(0.01))}};
-  depth_settings settings;
+  window_depth_settings settings;
   settings.grid = 50;  // no sample on the peak
   cpu_depth sampled(s, settings);
   settings.refine_maximum = true;

@@ -140,7 +140,7 @@ contact_set cut_contact(const scene& s, int pieces) {
 
 TEST(GradientPenalty, CuttingAContactDoesNotChangeTheStiffness) {
   const scene s = flat_faces();
-  depth_settings settings;
+  window_depth_settings settings;
   settings.tau_m = 1e-6;  // 0.25 % of the depth: the soft depth depends on the area by tau times its logarithm
   settings.taper_m = 2e-4;
   cpu_depth backend(s, settings);
@@ -165,7 +165,7 @@ TEST(GradientPenalty, CuttingAContactDoesNotChangeTheStiffness) {
 TEST(GradientPenalty, FlatOnFlatHasNoTorqueWithEitherScheme) {
   const scene s = flat_faces();
   for (const gradient_scheme g : {gradient_scheme::soft_max, gradient_scheme::central_difference}) {
-    depth_settings settings;
+    window_depth_settings settings;
     settings.gradient = g;
     cpu_depth backend(s, settings);
     const contact_set contacts = whole_contact(s, window_downwards(0.006));
@@ -182,7 +182,7 @@ TEST(GradientPenalty, FlatOnFlatHasNoTorqueWithEitherScheme) {
 
 TEST(GradientPenalty, StiffnessIsTheDerivativeOfTheWrench) {
   const scene s = flat_faces();
-  depth_settings settings;
+  window_depth_settings settings;
   settings.tau_m = 2e-5;
   cpu_depth backend(s, settings);
   const contact_window w = window_downwards(0.006);

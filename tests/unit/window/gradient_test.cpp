@@ -86,7 +86,7 @@ TEST(SoftMaxGradient, IsTheDerivativeOfTheSoftDepth) {
     for (const bool seams : {false, true}) {
       const scene s = textured_pair(half, seams);
       for (const parallax_mode mode : {parallax_mode::exact, parallax_mode::paper_lookup}) {
-        depth_settings settings;
+        window_depth_settings settings;
         settings.grid = 40;
         settings.tau_m = 1e-5;
         settings.parallax = mode;
@@ -109,7 +109,7 @@ TEST(SoftMaxGradient, IsTheDerivativeOfTheSoftDepth) {
 
 TEST(SoftMaxGradient, WithoutTheTapersPartIsNotTheDerivative) {
   const scene s = textured_pair(0.006, false);
-  depth_settings settings;
+  window_depth_settings settings;
   settings.grid = 40;
   settings.tau_m = 1e-5;
   settings.taper_gradient = false;
@@ -146,7 +146,7 @@ TEST(SoftMaxCurvature, IsCloseToTheSecondDerivative) {
     b.height = e.fixed;
     a.centre_of_mass = {0.002, 0.001, -0.005};
     const scene s{make_plate(a), {make_plate(b)}};
-    depth_settings settings;
+    window_depth_settings settings;
     settings.tau_m = e.tau;
     cpu_depth backend(s, settings);
     const configuration c{{exp_rotation(vec3(2e-4, -3e-4, 0.0)) * face_down(), {1e-4, 2e-4, -1e-4}},
@@ -180,7 +180,7 @@ TEST(SoftMaxCurvature, IsCloseToTheSecondDerivative) {
 
 TEST(SoftMaxCurvature, IsPositiveSemidefinite) {
   const scene s = textured_pair(0.006, true);
-  depth_settings settings;
+  window_depth_settings settings;
   settings.grid = 32;
   cpu_depth backend(s, settings);
   std::mt19937_64 bits(9);
@@ -205,7 +205,7 @@ TEST(CentralDifference, AgreesWithTheSoftGradientOnASmoothBump) {
   b.half_x = b.half_y = 0.012;
   a.centre_of_mass = {0.012, 0.005, -0.03};
   const scene s{make_plate(a), {make_plate(b)}};
-  depth_settings settings;
+  window_depth_settings settings;
   settings.tau_m = 2e-6;
   settings.grid = 128;
   settings.refine_maximum = true;

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "asperity/window/cpu_depth.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 #include "support/height_models.hpp"
 #include "support/small_models.hpp"
 
@@ -15,13 +15,13 @@ using namespace test_support;
 
 TEST(DepthSettings, NameTheOneThatIsOutOfRange) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto refused = [](const depth_settings& s, const std::string& word) {
+  const auto refused = [](const window_depth_settings& s, const std::string& word) {
     const result<void> r = check(s);
     EXPECT_FALSE(r);
     if (r) return;
     EXPECT_NE(r.error().message.find(word), std::string::npos) << r.error().message;
   };
-  EXPECT_TRUE(check(depth_settings{}));
+  EXPECT_TRUE(check(window_depth_settings{}));
   refused({.grid = 1}, "grid");
   refused({.grid = 513}, "grid");
   refused({.tau_m = -1e-6}, "tau_m");
@@ -88,7 +88,7 @@ TEST(AutomaticSettings, TheSoftDepthOfATypicalPeakIsItsDepth) {
   plate_spec ball;
   ball.texels = 1024;
   ball.height = [=](double x, double y) { return -(x * x + y * y) / (2.0 * radius); };
-  depth_settings settings;
+  window_depth_settings settings;
   settings.tau_m = 1e-6;
   settings.reference_area_m2 = 2.0 * std::numbers::pi * 1e-6 * radius;
   settings.grid = 256;

@@ -11,7 +11,7 @@ using namespace test_support;
 
 struct flat_pair {
   scene bodies;
-  depth_settings settings;
+  window_depth_settings settings;
   explicit flat_pair(double probe_half = 0.005) {
     plate_spec a, b;
     a.half_x = a.half_y = probe_half;
@@ -93,7 +93,7 @@ TEST(Taper, TheWindowsBorderFadesTooSoThatAMovingWindowIsSmooth) {
   a.texels = b.texels = 1024;
   a.height = [](double x, double y) { return 3e-4 * std::exp(-(x * x + y * y) / 1e-6); };
   const scene s{make_plate(a), {make_plate(b)}};
-  depth_settings settings;
+  window_depth_settings settings;
   settings.tau_m = 6e-6;
   const auto largest_step = [&] {
     cpu_depth backend(s, settings);

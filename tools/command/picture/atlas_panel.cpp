@@ -59,7 +59,7 @@ texel_map map_texels(const textured_model& model) {
   return map;
 }
 
-texel_window telling_window(const texel_map& map, std::size_t side, const value_range& range) {
+texel_window informative_window(const texel_map& map, std::size_t side, const value_range& range) {
   texel_window best{0, 0, std::min(side, map.width), std::min(side, map.height)};
   const std::size_t stride = std::max<std::size_t>(1, side / 3);
   double best_score = -1.0;

@@ -43,7 +43,7 @@ struct texel_window {
 
 /// The square of this side (or less, where the texture is smaller) that shows most of all three uses, and relief in
 /// many colours of the range.
-[[nodiscard]] texel_window telling_window(const texel_map& map, std::size_t side, const value_range& range);
+[[nodiscard]] texel_window informative_window(const texel_map& map, std::size_t side, const value_range& range);
 
 /// The window as an image, first texel at the upper left: heights in colours, gutter and unused texels in greys.
 [[nodiscard]] pixmap draw_texels(const texel_map& map, const texel_window& window, const value_range& range,

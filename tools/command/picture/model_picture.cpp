@@ -135,7 +135,7 @@ class page {
     std::vector<std::string> facts{brief(size.x) + " \u00d7 " + brief(size.y) + " \u00d7 " + brief(size.z) + " mm"};
     if (r.full_triangles > 0) facts.push_back("original " + count(r.full_triangles) + " triangles");
     facts.push_back("coarse mesh " + count(model_.mesh.triangles.size()) + " triangles");
-    facts.push_back("relief " + length(r.relief_m) + " peak to valley");
+    facts.push_back("relief " + length(r.peak_to_valley_m) + " peak to valley");
     facts.push_back("bake error RMS " + length(r.rms_error_m) + ", largest " + length(r.max_error_m));
     std::string line;
     for (const std::string& fact : facts) line += (line.empty() ? "" : "   \u00b7   ") + fact;
@@ -199,7 +199,7 @@ class page {
     // A part of it, large enough to see single texels.
     const double zoom_x = std::floor(x + side + 28.0);
     const double zoom_side = std::floor(left_ + panel_width - inset - zoom_x);
-    const texel_window window = telling_window(texels, 40, range);
+    const texel_window window = informative_window(texels, 40, range);
     const double pixels_per_texel = static_cast<double>(width) / static_cast<double>(texels.width);
     const auto drawn = static_cast<std::size_t>(zoom_side);
     sheet_.place(draw_texels(texels, window, range, scale, drawn, drawn), at(zoom_x), at(y));

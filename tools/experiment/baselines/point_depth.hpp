@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "asperity/render/depth_backend.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 #include "baselines/point_reading.hpp"
 #include "model/texture_tap.hpp"
 #include "window/patch_projection.hpp"
@@ -72,7 +72,7 @@ class point_depth {
     const vec3 uvh(glm::dot(window.u_w, from_centre), glm::dot(window.v_w, from_centre),
                    glm::dot(window.n_ab_w, from_centre));
     point_reading out{.point_w = point_w, .outward_w = -window.n_ab_w};
-    patch_.project(model.mesh, index, patch, map, layer::lowest, depth_settings{}.facing_cosine);
+    patch_.project(model.mesh, index, patch, map, layer::lowest, window_depth_settings{}.facing_cosine);
     for (const projected_triangle& t : patch_.triangles()) {
       if (!holds(t, uvh)) continue;
       const double coarse = t.height(uvh.x, uvh.y);

@@ -37,7 +37,7 @@ class point_finder {
   using policy_tag = collision_tag;
   using found_type = point_contacts;
 
-  explicit point_finder(const scene& s, const finder_settings& settings = {}) : finder_(s, settings) {}
+  explicit point_finder(const scene& s, const window_finder_settings& settings = {}) : finder_(s, settings) {}
   /// @rt safe
   [[nodiscard]] status find(const scene_pose& at, point_contacts& out) noexcept { return finder_.find(at, out); }
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return finder_.heap_bytes(); }

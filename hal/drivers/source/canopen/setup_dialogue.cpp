@@ -16,26 +16,26 @@ setup_dialogue::setup_dialogue(const cia402_settings& settings)
 void setup_dialogue::restart() noexcept {
   next_ = 0;
   tries_ = 0;
-  asked_ = told_pre_operational_ = false;
+  asked_ = sent_pre_operational_ = false;
 }
 
 std::optional<drive_fault> setup_dialogue::unanswered() const noexcept {
-  if (!told_pre_operational_ || tries_ < most_tries_) return std::nullopt;
+  if (!sent_pre_operational_ || tries_ < most_tries_) return std::nullopt;
   return drive_fault{"the drive does not answer a request (index of the object)", object().index};
 }
 
 can_frame setup_dialogue::frame() const noexcept {
   using enum setup_step::kind;
   // A drive that starts by itself takes no mapping before.
-  if (!told_pre_operational_) return encode_nmt(nmt_command::pre_operational, node_);
+  if (!sent_pre_operational_) return encode_nmt(nmt_command::pre_operational, node_);
   const setup_step& s = steps_[next_];
   return s.what == write || s.what == write_if_there ? encode_download_request(node_, s.at, s.value, s.size)
                                                      : encode_upload_request(node_, s.at);
 }
 
 void setup_dialogue::was_sent(std::int64_t now_ns) noexcept {
-  if (!told_pre_operational_) {
-    told_pre_operational_ = true;
+  if (!sent_pre_operational_) {
+    sent_pre_operational_ = true;
     return;
   }
   asked_ = true;

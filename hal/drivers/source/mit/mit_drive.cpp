@@ -108,9 +108,9 @@ void mit_drive::advance(std::int64_t now_ns, const mit::reply& r) noexcept {
 }
 
 void mit_drive::follow(std::int64_t now_ns, const mit::reply& r) noexcept {
-  const double wanted = std::fabs(told_n_m_);
-  const bool told = wanted > 16.0 * torque_.half_step();
-  if (!told || std::fabs(r.torque_n_m) > 0.25 * wanted) follow_ns_ = now_ns;
+  const double wanted = std::fabs(commanded_n_m_);
+  const bool commanded = wanted > 16.0 * torque_.half_step();
+  if (!commanded || std::fabs(r.torque_n_m) > 0.25 * wanted) follow_ns_ = now_ns;
   if (mit_.follow_ns > 0 && now_ns - follow_ns_ > mit_.follow_ns) {
     fail("the drive answers, but puts out no torque: it was reset or left motor mode", 0, now_ns);
   }
@@ -161,7 +161,7 @@ void mit_drive::send_due(std::int64_t now_ns, can_bus& bus) noexcept {
 
 bool mit_drive::send_torque(std::int64_t now_ns, can_bus& bus, double joint_n_m) noexcept {
   const double shaft = scale().shaft_torque(joint_n_m);
-  told_n_m_ = torque_.decode(torque_.encode(shaft));
+  commanded_n_m_ = torque_.decode(torque_.encode(shaft));
   return send(now_ns, bus, mit::encode_torque(shaft, mit_.ranges, torque_));
 }
 

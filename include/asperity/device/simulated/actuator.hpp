@@ -38,12 +38,13 @@ class simulated_actuator {
                  settings.continuous_force_n < none) {}
 
   /// What the motors put out over the next h seconds.
-  [[nodiscard]] wrench follow(const wrench& told, double h) noexcept {
-    if (!limited_) return told;
+  [[nodiscard]] wrench follow(const wrench& commanded, double h) noexcept {
+    if (!limited_) return commanded;
     const double left =
         std::clamp((settings_.burns_at - warmth_) / (settings_.burns_at - settings_.derate_from), 0.0, 1.0);
-    out_ = {bounded(told.force, out_.force, settings_.peak_force_n, left, settings_.force_slew_n_per_s * h),
-            bounded(told.torque, out_.torque, settings_.peak_torque_n_m, left, settings_.torque_slew_n_m_per_s * h)};
+    out_ = {
+        bounded(commanded.force, out_.force, settings_.peak_force_n, left, settings_.force_slew_n_per_s * h),
+        bounded(commanded.torque, out_.torque, settings_.peak_torque_n_m, left, settings_.torque_slew_n_m_per_s * h)};
     const double share =
         glm::dot(out_.force, out_.force) / (settings_.continuous_force_n * settings_.continuous_force_n);
     warmth_ += h / settings_.thermal_time_s * (share - warmth_);
@@ -58,10 +59,10 @@ class simulated_actuator {
   static constexpr double none = actuator_settings::none;
   static constexpr double most = 1e6;  // N or N m: bound_vector's largest limit stands for none
 
-  [[nodiscard]] static vec3 bounded(const vec3& told, const vec3& before, double peak, double left,
+  [[nodiscard]] static vec3 bounded(const vec3& commanded, const vec3& before, double peak, double left,
                                     double change) noexcept {
     const double limit = std::min(peak, most);
-    return bound_vector(told, before, {limit, left * limit, change}, true).value;
+    return bound_vector(commanded, before, {limit, left * limit, change}, true).value;
   }
 
   actuator_settings settings_;

@@ -23,7 +23,7 @@
 
 #include "asperity/gl/context.hpp"
 #include "asperity/render/depth_backend.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 
 namespace asperity::gl {
 
@@ -67,7 +67,7 @@ struct compute_counters {
 /// - single precision: depth to 1e-6, gradient to 2e-2, tau times the curvature to 1e-1. A weight of the soft maximum
 ///   errs by the error of a depth over tau.
 /// Which samples a patch covers is the same to the sample, and so are the flags. The same call gives the same bits on
-/// the same device. Of depth_settings, refine_maximum is not to be had.
+/// the same device. Of window_depth_settings, refine_maximum is not to be had.
 ///
 /// Where texels are NaN at the rim of an overlap, the central difference about the contact takes its angular step from
 /// the overlap of the coarse patches, the CPU backend from that of the samples that are left.
@@ -79,7 +79,7 @@ class compute_depth {
   /// The context is current in this thread afterwards only if it was before; the first measure() takes it for its own.
   /// @return what cpu_depth says about settings and scene | invalid_argument | unsupported | limit_exceeded
   [[nodiscard]] static result<compute_depth> make(context_ptr context, const scene& s,
-                                                  const depth_settings& settings = {},
+                                                  const window_depth_settings& settings = {},
                                                   const compute_settings& gpu_settings = {});
   compute_depth(compute_depth&&) noexcept;
   compute_depth& operator=(compute_depth&&) noexcept;
@@ -98,7 +98,7 @@ class compute_depth {
   [[nodiscard]] status measure_each(std::span<const pose_pair> at, const contact_set& contacts,
                                     std::span<penetration> out) noexcept;
 
-  [[nodiscard]] const depth_settings& settings() const noexcept;
+  [[nodiscard]] const window_depth_settings& settings() const noexcept;
   [[nodiscard]] const compute_counters& counters() const noexcept;
   [[nodiscard]] const context_ptr& owner() const noexcept;
   /// The arithmetic in force: never automatic.

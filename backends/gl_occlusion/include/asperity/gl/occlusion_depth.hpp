@@ -23,7 +23,7 @@
 
 #include "asperity/gl/context.hpp"
 #include "asperity/render/depth_backend.hpp"
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 
 namespace asperity::gl {
 
@@ -70,9 +70,9 @@ struct occlusion_tiles {
                                             ///< Packed: N/2 x N/2
 };
 
-/// The paper's settings as depth_settings has them: central differences and the paper's lookup.
-[[nodiscard]] inline depth_settings paper_depth_settings(std::uint32_t grid = 64) noexcept {
-  depth_settings s;
+/// The paper's settings as window_depth_settings has them: central differences and the paper's lookup.
+[[nodiscard]] inline window_depth_settings paper_depth_settings(std::uint32_t grid = 64) noexcept {
+  window_depth_settings s;
   s.gradient = gradient_scheme::central_difference;
   s.parallax = parallax_mode::paper_lookup;
   s.grid = grid;
@@ -100,7 +100,7 @@ class occlusion_depth {
   /// @return what cpu_depth says about settings and scene | invalid_argument (settings other than the paper's,
   ///         see paper_depth_settings; gpu_settings) | unsupported | limit_exceeded
   [[nodiscard]] static result<occlusion_depth> make(context_ptr context, const scene& s,
-                                                    const depth_settings& settings = paper_depth_settings(),
+                                                    const window_depth_settings& settings = paper_depth_settings(),
                                                     const occlusion_settings& gpu_settings = {});
   occlusion_depth(occlusion_depth&&) noexcept;
   occlusion_depth& operator=(occlusion_depth&&) noexcept;
@@ -124,7 +124,7 @@ class occlusion_depth {
   /// @return unsupported (ES, which cannot read a depth buffer; a lost context)
   [[nodiscard]] result<std::vector<occlusion_tiles>> read_tiles();
 
-  [[nodiscard]] const depth_settings& settings() const noexcept;
+  [[nodiscard]] const window_depth_settings& settings() const noexcept;
   [[nodiscard]] const occlusion_settings& gpu_settings() const noexcept;
   [[nodiscard]] const occlusion_counters& counters() const noexcept;
   [[nodiscard]] const context_ptr& owner() const noexcept;

@@ -44,7 +44,7 @@ class ASPERITY_API setup_dialogue {
   int tries_ = 0;
   std::uint8_t node_;
   bool asked_ = false;
-  bool told_pre_operational_ = false;
+  bool sent_pre_operational_ = false;
 };
 
 }  // namespace asperity::canopen

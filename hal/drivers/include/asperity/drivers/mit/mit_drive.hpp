@@ -56,7 +56,7 @@ class ASPERITY_API mit_drive final : public can_joint_drive {
   int answers_ = 0;  // answers in this stage
   std::int64_t counts_ = 0;
   std::int64_t follow_ns_ = 0;
-  double told_n_m_ = 0.0;  // of the shaft
+  double commanded_n_m_ = 0.0;  // of the shaft
   std::uint8_t reply_size_ = 0;
   bool clearing_ = false;
   bool fresh_lead_ = true;

@@ -23,9 +23,9 @@ namespace asperity {
 /// fields and not the planes, so a plane that is missing hides nothing. A tick that comes with another probe pose than
 /// a hand can have moved to (half of the smallest body's diagonal or half a radian away) begins anew, so unrelated
 /// poses tell no passage.
-class field_watch {
+class plane_watch {
  public:
-  explicit field_watch(const field_scene& bodies, const scene& of) : probe_(field_reach::of(bodies.probe->field)) {
+  explicit plane_watch(const field_scene& bodies, const scene& of) : probe_(field_reach::of(bodies.probe->field)) {
     double smallest_m = of.probe->box.diagonal();
     for (std::size_t b = 0; b < bodies.fixed.size(); ++b) {
       smallest_m = std::min(smallest_m, of.fixed[b]->box.diagonal());

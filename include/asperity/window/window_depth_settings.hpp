@@ -27,16 +27,16 @@ enum class rotation_origin : std::uint8_t {
 };
 
 /// Settings of a depth backend. Zero means "choose for me" where a field says so. SI units.
-struct depth_settings {
+struct window_depth_settings {
   gradient_scheme gradient = gradient_scheme::soft_max;
   parallax_mode parallax = parallax_mode::exact;
 
   /// Samples per side of the window; 2 to max_grid. 64, not the paper's 50: 50 locks to common ridge pitches.
   std::uint32_t grid = 64;
 
-  /// Softness of the maximum, m. 0: 2 % of the larger relief of the two bodies (peak to valley of the sine with the
-  /// same mean square height), and at least 20 millionths of the smaller body's diagonal, so that untextured faces do
-  /// not chatter either.
+  /// Softness of the maximum, m. 0: 2 % of the larger peak to valley of the two bodies' reliefs (of the sine with
+  /// the same mean square height), and at least 20 millionths of the smaller body's diagonal, so that untextured faces
+  /// do not chatter either.
   double tau_m = 0.0;
 
   /// A0 of the soft maximum, m^2: the contact area at which the soft depth equals the deepest sample. 0: 2 pi tau /
@@ -67,6 +67,6 @@ struct depth_settings {
 };
 
 /// Says which setting is out of range and what would do.
-[[nodiscard]] ASPERITY_API result<void> check(const depth_settings& s);
+[[nodiscard]] ASPERITY_API result<void> check(const window_depth_settings& s);
 
 }  // namespace asperity

@@ -1,14 +1,14 @@
-#include "relief_bounds.hpp"
+#include "displacement_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace asperity::gl {
 
-std::vector<relief_box> relief_bounds(const textured_model& model, const detail::surface_index& index) {
+std::vector<displacement_box> displacement_bounds(const textured_model& model, const detail::surface_index& index) {
   // Bilinear interpolation reads the corners of the cell that holds a position: the farthest lies sqrt(2) texels away.
   constexpr double reach_texels = 1.5;
-  std::vector<relief_box> out(model.mesh.triangles.size());
+  std::vector<displacement_box> out(model.mesh.triangles.size());
   for (std::size_t t = 0; t < out.size(); ++t) {
     const detail::texel_triangle& place = index.texels[t];
     if (!place.usable) continue;

@@ -1,4 +1,4 @@
-#include "asperity/planes/field_depth.hpp"
+#include "asperity/planes/plane_depth.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "asperity/core/memory.hpp"
-#include "planes/field_watch.hpp"
 #include "planes/first_met.hpp"
 #include "planes/known_depths.hpp"
 #include "planes/leaf_reader.hpp"
+#include "planes/plane_watch.hpp"
 
 namespace asperity {
 namespace {
@@ -65,31 +65,31 @@ class readers {
 
 }  // namespace
 
-field_depth::field_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most)
+plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most)
     : bodies_(std::move(bodies)),
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
       always_m_(reach_m / 9.0),
       ways_(of.fixed.size()),
-      watch_(std::make_unique<field_watch>(*bodies_, of)),
+      watch_(std::make_unique<plane_watch>(*bodies_, of)),
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
       asked_at_(std::make_unique<vec6>()) {
-  detail::reserve_resident(told_, most);
+  detail::reserve_resident(reported_, most);
   detail::reserve_resident(order_, most);
   constexpr double of_the_diagonal = 0.03;
   double smaller_m = of.probe->box.diagonal();
   for (const model_ptr& b : of.fixed) smaller_m = std::min(smaller_m, b->box.diagonal());
   sinking_m_ = of_the_diagonal * smaller_m;
 }
-field_depth::field_depth(field_depth&&) noexcept = default;
-field_depth& field_depth::operator=(field_depth&&) noexcept = default;
-field_depth::~field_depth() = default;
+plane_depth::plane_depth(plane_depth&&) noexcept = default;
+plane_depth& plane_depth::operator=(plane_depth&&) noexcept = default;
+plane_depth::~plane_depth() = default;
 
-status field_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
+status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
   readers reading(*bodies_, at, c_a_w, sinking_m_);
-  told_.clear();
+  reported_.clear();
   met_->clear();
   learn_ways(at);
   known_->begin(found, [&](const near_patch& patch) noexcept {
@@ -105,7 +105,7 @@ status field_depth::measure(const scene_pose& at, const near_samples& found, std
     read(patch, found.leaves_of(patch), reading.of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
   for (const near_plane& p : out) {
-    if (p.plane.depth_m > -reach_m_ && told_.size() < told_.capacity()) told_.push_back(p.plane);
+    if (p.plane.depth_m > -reach_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
   known_->ask(found, [&](const near_patch& patch) noexcept {
     return reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
@@ -113,11 +113,11 @@ status field_depth::measure(const scene_pose& at, const near_samples& found, std
   *asked_at_ = {};
   work_ = reading.work();
   for (const near_leaf& leaf : found.leaves()) work_.listed += leaf.count;
-  flags_ = watch_->look(*bodies_, at, told_, c_a_w);
+  flags_ = watch_->look(*bodies_, at, reported_, c_a_w);
   return status::ok;
 }
 
-void field_depth::learn_ways(const scene_pose& at) noexcept {
+void plane_depth::learn_ways(const scene_pose& at) noexcept {
   for (std::size_t b = 0; b < ways_.size(); ++b) {
     way& w = ways_[b];
     const pose T_ba = inverse(at.T_wb[b]) * at.T_wa;
@@ -127,7 +127,7 @@ void field_depth::learn_ways(const scene_pose& at) noexcept {
   }
 }
 
-void field_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
+void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
   constexpr std::size_t bins = 64;
   std::array<std::uint32_t, bins + 1> first{};
   const auto bin_of = [&](const near_patch& p) noexcept {
@@ -140,7 +140,7 @@ void field_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
   for (std::size_t i = 0; i < patches.size(); ++i) order_[first[bin_of(patches[i])]++] = static_cast<std::uint32_t>(i);
 }
 
-void field_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
+void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
                        std::span<near_plane> out) noexcept {
   // Whom a patch is compared with follows from the pose alone, and so does what is told.
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
@@ -175,7 +175,7 @@ void field_depth::read(const near_patch& patch, std::span<const near_leaf> leave
   }
 }
 
-status field_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
+status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
                               const vec6& moved, double above_m, plane_list& out) const noexcept {
   readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, sinking_m_);
   const vec6 step = moved - *asked_at_;
@@ -199,9 +199,10 @@ status field_depth::planes_at(const scene_pose& at, const near_samples& found, s
   return out.dropped() > 0 ? status::capacity_reached : status::ok;
 }
 
-std::size_t field_depth::heap_bytes() const noexcept {
-  return asperity::heap_bytes(told_, order_, ways_) + sizeof(field_watch) + watch_->heap_bytes() + sizeof(first_met) +
-         sizeof(known_depths) + sizeof(vec6) + known_->heap_bytes() + sizeof(field_scene) + bodies_->heap_bytes();
+std::size_t plane_depth::heap_bytes() const noexcept {
+  return asperity::heap_bytes(reported_, order_, ways_) + sizeof(plane_watch) + watch_->heap_bytes() +
+         sizeof(first_met) + sizeof(known_depths) + sizeof(vec6) + known_->heap_bytes() + sizeof(field_scene) +
+         bodies_->heap_bytes();
 }
 
 }  // namespace asperity

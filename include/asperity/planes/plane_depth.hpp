@@ -20,7 +20,7 @@
 
 namespace asperity {
 
-class field_watch;
+class plane_watch;
 class first_met;
 class known_depths;
 class leaf_reader;
@@ -32,13 +32,14 @@ class leaf_reader;
 /// can be sideways, where the bodies would not slide apart. A sample therefore sinks, by up to 3 % of the smallest
 /// body's diagonal, as the way turns from where its own surface looks: the plane leaves without a step.
 ///
-/// Surface that lies no further than a ninth of the reach is told in full. Of what is further away, the planes
-/// are told that a motion of up to five periods can meet first (first_met): a patch that lies behind other surface after
-/// every such motion has none. Whether it does follows from bounds of patches and leaves, so most samples are not read;
-/// what is told has exact depths and slopes. What earlier ticks know of samples spares readings as well and changes
-/// nothing: planes follow from the pose alone.
+/// Surface that lies no further than a ninth of the reach is reported in full. Of what is further away, the planes are
+/// reported that a motion of up to five periods can meet first (first_met): a patch that lies behind other surface
+/// after every such motion has none. Whether it does follows from bounds of patches and leaves, so most samples are not
+/// read; what is reported has exact depths and slopes. What earlier ticks know of samples spares readings as well and
+/// changes nothing: planes follow from the pose alone.
+///
 /// A reading whose depth is -infinity stands for a leaf that has no plane.
-class ASPERITY_API field_depth {
+class ASPERITY_API plane_depth {
  public:
   using policy_tag = depth_tag;
   using found_type = near_samples;
@@ -47,10 +48,10 @@ class ASPERITY_API field_depth {
   /// @param bodies   the scene's, in its order
   /// @param reach_m  gaps up to this are told, m
   /// @param most     planes that a tick may tell: near_sample_limits::readings()
-  field_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most);
-  field_depth(field_depth&&) noexcept;
-  field_depth& operator=(field_depth&&) noexcept;
-  ~field_depth();
+  plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most);
+  plane_depth(plane_depth&&) noexcept;
+  plane_depth& operator=(plane_depth&&) noexcept;
+  ~plane_depth();
 
   /// @return ok
   /// @rt safe
@@ -65,7 +66,7 @@ class ASPERITY_API field_depth {
                                  const vec6& moved, double above_m, plane_list& out) const noexcept;
 
   /// The planes of the last measure(), gaps included.
-  [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return told_; }
+  [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return reported_; }
   /// What these planes do not answer.
   [[nodiscard]] tick_flag flags() const noexcept { return flags_; }
   /// What the last measure() cost.
@@ -87,7 +88,7 @@ class ASPERITY_API field_depth {
   double reach_m_;
   double always_m_ = 0.0;   // gaps up to this are told whatever lies before them
   double sinking_m_ = 0.0;  // of a sample that looks away
-  std::vector<support_plane> told_;
+  std::vector<support_plane> reported_;
   std::vector<std::uint32_t> order_;  // of patches
   // How the probe has moved from the tick before, seen from each body.
   struct way {
@@ -95,7 +96,7 @@ class ASPERITY_API field_depth {
     double slid_m = std::numeric_limits<double>::infinity(), chord = 0.0;
   };
   std::vector<way> ways_;
-  std::unique_ptr<field_watch> watch_;
+  std::unique_ptr<plane_watch> watch_;
   std::unique_ptr<first_met> met_;
   std::unique_ptr<known_depths> known_;
   std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
@@ -103,7 +104,7 @@ class ASPERITY_API field_depth {
   tick_flag flags_ = tick_flag::none;
 };
 
-static_assert(depth_backend<field_depth>);
-static_assert(tells_planes_nearby<field_depth>);
+static_assert(depth_backend<plane_depth>);
+static_assert(reports_planes_nearby<plane_depth>);
 
 }  // namespace asperity

@@ -1,5 +1,5 @@
-// The planes that the field renderer tells, against closed forms; and what it refuses.
-#include "asperity/planes/field_renderer.hpp"
+// The planes that the plane renderer tells, against closed forms; and what it refuses.
+#include "asperity/planes/plane_renderer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "asperity/field/field_body.hpp"
-#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
 
@@ -33,10 +33,10 @@ std::shared_ptr<const field_scene> fields_of(const scene& bodies) {
   return made;
 }
 
-field_renderer make_boxes() {
+plane_renderer make_boxes() {
   scene bodies = two_boxes();
   auto fields = fields_of(bodies);
-  return make_field_renderer(std::move(bodies), std::move(fields)).value();
+  return make_plane_renderer(std::move(bodies), std::move(fields)).value();
 }
 
 struct drawn_pose {
@@ -71,7 +71,7 @@ pose lowered(drawn_pose& draw, double depth_m) {
 
 TEST(FieldRenderer, TellsDepthAndDirectionDeepDown) {
   drawn_pose draw{std::mt19937_64(fresh_seed("FieldRenderer.TellsDepthAndDirection", "300 poses"))};
-  field_renderer feel = make_boxes();
+  plane_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   tick t;
   for (int n = 0; n < 300; ++n) {
@@ -91,7 +91,7 @@ TEST(FieldRenderer, TellsDepthAndDirectionDeepDown) {
 // A control loop keeps the probe this near, and there one spring on the deepest plane is the force.
 TEST(FieldRenderer, PushesByItsSpringAtTheSurface) {
   drawn_pose draw{std::mt19937_64(fresh_seed("FieldRenderer.PushesByItsSpringAtTheSurface", "200 poses"))};
-  field_renderer feel = make_boxes();
+  plane_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   tick t;
   for (int n = 0; n < 200; ++n) {
@@ -105,7 +105,7 @@ TEST(FieldRenderer, PushesByItsSpringAtTheSurface) {
 // Beside a sharp corner a smooth distance is less than the true one by a part of the field's pitch.
 TEST(FieldRenderer, TellsGapsTooSmallRatherThanTooLarge) {
   drawn_pose draw{std::mt19937_64(fresh_seed("FieldRenderer.TellsGapsTooSmall", "200 poses"))};
-  field_renderer feel = make_boxes();
+  plane_renderer feel = make_boxes();
   const double pitch = fields_of(feel.scene())->probe->field.smooth.pitch_m;
   const std::vector<pose> T_wb{pose{}};
   tick t;
@@ -121,7 +121,7 @@ TEST(FieldRenderer, TellsGapsTooSmallRatherThanTooLarge) {
 
 TEST(FieldRenderer, PlanesFollowTheProbe) {
   drawn_pose draw{std::mt19937_64(fresh_seed("FieldRenderer.PlanesFollowTheProbe", "200 poses"))};
-  field_renderer feel = make_boxes();
+  plane_renderer feel = make_boxes();
   const std::vector<pose> T_wb{{draw.rotation(), 0.3 * draw.vector()}};
   const vec3 c_a = feel.scene().probe->mass.centre_of_mass;
   tick t;
@@ -141,9 +141,9 @@ TEST(FieldRenderer, PlanesFollowTheProbe) {
 TEST(FieldRenderer, TellsGapsUpToItsReachOnly) {
   const scene bodies = two_boxes();
   for (const double reach : {0.5e-3, 2e-3, 5e-3}) {
-    field_renderer_settings s;
+    plane_renderer_settings s;
     s.reach_m = reach;
-    field_renderer feel = make_field_renderer(bodies, fields_of(bodies), s).value();
+    plane_renderer feel = make_plane_renderer(bodies, fields_of(bodies), s).value();
     const std::vector<pose> T_wb{pose{}};
     tick t;
     ASSERT_EQ(feel.step({{quat(1, 0, 0, 0), {0.0, 0.0, 0.014 + 0.9 * reach}}, T_wb}, t), status::ok);
@@ -159,7 +159,7 @@ TEST(FieldRenderer, TellsGapsUpToItsReachOnly) {
 TEST(FieldRenderer, FeelsASmallFixedBodyUnderALargeFace) {
   const scene given = two_boxes();
   const scene swapped{given.fixed[0], {given.probe}};
-  field_renderer feel = make_field_renderer(swapped).value();
+  plane_renderer feel = make_plane_renderer(swapped).value();
   const std::vector<pose> T_wb{{glm::normalize(quat(0.9, 0.3, 0.2, 0.1)), vec3(0.0)}};
   double highest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -177,9 +177,9 @@ TEST(FieldRenderer, FeelsASmallFixedBodyUnderALargeFace) {
 
 TEST(FieldRenderer, SaysWhenItsListIsFull) {
   const scene bodies = two_boxes();
-  field_renderer_settings s;
+  plane_renderer_settings s;
   s.limits.leaves = 5;
-  field_renderer feel = make_field_renderer(bodies, fields_of(bodies), s).value();
+  plane_renderer feel = make_plane_renderer(bodies, fields_of(bodies), s).value();
   const std::vector<pose> T_wb{pose{}};
   tick t;
   EXPECT_EQ(feel.step({{quat(1, 0, 0, 0), {0.0, 0.0, 0.0139}}, T_wb}, t), status::capacity_reached);
@@ -189,28 +189,28 @@ TEST(FieldRenderer, SaysWhenItsListIsFull) {
 
 TEST(FieldRenderer, RefusesWhatItCannotRender) {
   const scene bodies = two_boxes();
-  EXPECT_EQ(make_field_renderer(scene{bodies.probe, {}}).error().code, error_code::invalid_argument);
-  EXPECT_EQ(make_field_renderer(scene{nullptr, bodies.fixed}).error().code, error_code::invalid_argument);
-  EXPECT_EQ(make_field_renderer(scene{bodies.probe, {nullptr}}).error().code, error_code::invalid_argument);
-  EXPECT_EQ(make_field_renderer(bodies, nullptr).error().code, error_code::invalid_argument);
+  EXPECT_EQ(make_plane_renderer(scene{bodies.probe, {}}).error().code, error_code::invalid_argument);
+  EXPECT_EQ(make_plane_renderer(scene{nullptr, bodies.fixed}).error().code, error_code::invalid_argument);
+  EXPECT_EQ(make_plane_renderer(scene{bodies.probe, {nullptr}}).error().code, error_code::invalid_argument);
+  EXPECT_EQ(make_plane_renderer(bodies, nullptr).error().code, error_code::invalid_argument);
   const scene more{bodies.probe, {bodies.fixed[0], bodies.fixed[0]}};
-  EXPECT_EQ(make_field_renderer(more, fields_of(bodies)).error().code, error_code::invalid_argument);
+  EXPECT_EQ(make_plane_renderer(more, fields_of(bodies)).error().code, error_code::invalid_argument);
   for (const double reach : {-1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    field_renderer_settings s;
+    plane_renderer_settings s;
     s.reach_m = reach;
-    EXPECT_EQ(make_field_renderer(bodies, fields_of(bodies), s).error().code, error_code::invalid_argument);
+    EXPECT_EQ(make_plane_renderer(bodies, fields_of(bodies), s).error().code, error_code::invalid_argument);
   }
-  field_renderer_settings s;
+  plane_renderer_settings s;
   s.springs.same_direction = 1.5;
-  EXPECT_EQ(make_field_renderer(bodies, fields_of(bodies), s).error().code, error_code::invalid_argument);
+  EXPECT_EQ(make_plane_renderer(bodies, fields_of(bodies), s).error().code, error_code::invalid_argument);
   s = {};
   s.bodies.sample_pitch_m = -1.0;
-  EXPECT_EQ(make_field_renderer(bodies, s).error().code, error_code::invalid_argument);
+  EXPECT_EQ(make_plane_renderer(bodies, s).error().code, error_code::invalid_argument);
 }
 
 TEST(FieldRenderer, CountsItsFieldsAsItsMemory) {
   const scene bodies = two_boxes();
-  const field_renderer feel = make_field_renderer(bodies, fields_of(bodies)).value();
+  const plane_renderer feel = make_plane_renderer(bodies, fields_of(bodies)).value();
   const std::size_t fields = fields_of(bodies)->heap_bytes();
   EXPECT_GT(fields, 1'000'000U);
   EXPECT_GT(feel.memory_bytes(), fields + near_sample_limits{}.leaves * (sizeof(near_leaf) + sizeof(near_plane)));
@@ -218,7 +218,7 @@ TEST(FieldRenderer, CountsItsFieldsAsItsMemory) {
 }
 
 TEST(FieldRenderer, RefusesPosesThatAreNone) {
-  field_renderer feel = make_boxes();
+  plane_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   tick t;
   EXPECT_EQ(feel.step({{quat(2, 0, 0, 0), vec3(0.0)}, T_wb}, t), status::invalid_pose);

@@ -14,13 +14,13 @@ namespace asperity {
 /// Lists the patches of samples whose depth may be more than -reach, with a bound of it: of the probe in each fixed
 /// body's field, and of each fixed body in the probe's. It keeps nothing between ticks, and what it lists decides
 /// nothing: a patch too many gives planes that are far from active.
-class ASPERITY_API field_finder {
+class ASPERITY_API plane_finder {
  public:
   using policy_tag = collision_tag;
   using found_type = near_samples;
 
   /// @param reach_m gaps up to this are told, m
-  field_finder(std::shared_ptr<const field_scene> bodies, double reach_m) noexcept
+  plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m) noexcept
       : bodies_(std::move(bodies)), reach_m_(reach_m) {}
 
   /// @return ok | capacity_reached
@@ -32,6 +32,6 @@ class ASPERITY_API field_finder {
   double reach_m_;
 };
 
-static_assert(collision_finder<field_finder>);
+static_assert(collision_finder<plane_finder>);
 
 }  // namespace asperity

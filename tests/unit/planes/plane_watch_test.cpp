@@ -1,4 +1,4 @@
-// What the field renderer tells of presses that its planes do not answer: poses that go through bodies, whatever holds
+// What the plane renderer tells of presses that its planes do not answer: poses that go through bodies, whatever holds
 // or does not hold the probe there, and poses of ordinary sessions, in which nothing is told.
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "asperity/planes/field_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
 
@@ -28,9 +28,9 @@ const scene& bodies() {
   return made;
 }
 
-field_renderer make_boxes() {
+plane_renderer make_boxes() {
   static const auto fields = std::make_shared<const field_scene>(make_field_scene(bodies()).value());
-  return make_field_renderer(bodies(), fields).value();
+  return make_plane_renderer(bodies(), fields).value();
 }
 
 struct drawn_pose {
@@ -60,12 +60,12 @@ std::vector<pose> placed(drawn_pose& draw) {
 }
 
 /// Far away, so that what comes is no motion from what was.
-void leave(field_renderer& feel, const std::vector<pose>& T_wb) {
+void leave(plane_renderer& feel, const std::vector<pose>& T_wb) {
   tick away;
   EXPECT_EQ(feel.step({T_wb[0] * pose{quat(1, 0, 0, 0), {0, 0, 1}}, T_wb}, away), status::ok);
 }
 
-struct told {
+struct reported {
   std::size_t beyond_field = 0, passed = 0, not_held = 0;
   double passed_at_m = 0.0;  ///< depth of the probe's lowest corner below the face when it was told
 
@@ -80,12 +80,12 @@ struct told {
 
 /// A corner of the probe goes straight down on the middle of the upper face of body b to `depth_m` and back, in steps
 /// of step_m.
-told press(field_renderer& feel, drawn_pose& draw, std::size_t b, double depth_m, double step_m) {
+reported press(plane_renderer& feel, drawn_pose& draw, std::size_t b, double depth_m, double step_m) {
   const std::vector<pose> T_wb = placed(draw);
   const double face = (b == 0 ? plate_half : block_half).z;
   const quat rotation = draw.rotation();
   const vec3 at = vec3(5e-4 * draw.unit(), 5e-4 * draw.unit(), face) - lowest_corner(rotation);
-  told out;
+  reported out;
   const auto look = [&](double d) {
     const pose T_wa = T_wb[b] * pose{rotation, at - vec3(0, 0, d)};
     tick t;
@@ -100,23 +100,23 @@ told press(field_renderer& feel, drawn_pose& draw, std::size_t b, double depth_m
 }
 
 // As deep as planes let 20 N press: neither on the thin plate nor on the block is anything told.
-TEST(field_watch, is_silent_in_ordinary_presses) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("field_watch.is_silent_in_ordinary_presses", "30 presses"))};
-  field_renderer feel = make_boxes();
+TEST(plane_watch, is_silent_in_ordinary_presses) {
+  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.is_silent_in_ordinary_presses", "30 presses"))};
+  plane_renderer feel = make_boxes();
   for (int n = 0; n < 30; ++n) {
     const double depth = draw.between(5e-5, n % 2 == 0 ? 3e-4 : 4e-4), step = draw.between(1e-5, 1e-4);
-    const told t = press(feel, draw, static_cast<std::size_t>(n % 2), depth, step);
+    const reported t = press(feel, draw, static_cast<std::size_t>(n % 2), depth, step);
     EXPECT_EQ(t.beyond_field + t.passed + t.not_held, 0U) << n << ": depth " << depth << " step " << step;
   }
 }
 
 // Through the plate at up to 4 m/s, in ticks of a millisecond: told, and not before it is half way.
-TEST(field_watch, tells_every_passage_of_a_plate) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("field_watch.tells_every_passage_of_a_plate", "30 presses"))};
-  field_renderer feel = make_boxes();
+TEST(plane_watch, reports_every_passage_of_a_plate) {
+  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.reports_every_passage_of_a_plate", "30 presses"))};
+  plane_renderer feel = make_boxes();
   for (int n = 0; n < 30; ++n) {
     const double step = 2e-5 * std::pow(200.0, draw.between(0.0, 1.0));
-    const told t = press(feel, draw, 0, 1.6e-3 + 2.0 * step, step);
+    const reported t = press(feel, draw, 0, 1.6e-3 + 2.0 * step, step);
     EXPECT_GE(t.passed, 1U) << n << ": step " << step;
     EXPECT_GT(t.passed_at_m, plate_half.z) << n;
     EXPECT_LT(t.passed_at_m, 2.1 * plate_half.z + step) << n << ": step " << step;
@@ -127,16 +127,16 @@ TEST(field_watch, tells_every_passage_of_a_plate) {
 }
 
 // Into the block: not held from a millimetre on, beyond its field near the middle, passed behind it.
-TEST(field_watch, tells_how_deep_a_block_was_left) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("field_watch.tells_how_deep_a_block_was_left", "8 presses"))};
-  field_renderer feel = make_boxes();
+TEST(plane_watch, reports_how_deep_a_block_was_left) {
+  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.reports_how_deep_a_block_was_left", "8 presses"))};
+  plane_renderer feel = make_boxes();
   for (int n = 0; n < 8; ++n) {
     const double step = draw.between(1e-4, 1e-3);
-    const told shallow = press(feel, draw, 1, 5e-4, 1e-4);
+    const reported shallow = press(feel, draw, 1, 5e-4, 1e-4);
     EXPECT_EQ(shallow.not_held + shallow.beyond_field + shallow.passed, 0U);
-    const told deep = press(feel, draw, 1, 3e-3, step);
+    const reported deep = press(feel, draw, 1, 3e-3, step);
     EXPECT_GE(deep.not_held, 1U);
-    const told through = press(feel, draw, 1, 0.014, step);
+    const reported through = press(feel, draw, 1, 0.014, step);
     EXPECT_GE(through.beyond_field, 1U);
     EXPECT_GE(through.passed, 1U);
     EXPECT_GT(through.passed_at_m, 0.8 * probe_half.z);  // the block's face is through half of the probe before
@@ -144,16 +144,16 @@ TEST(field_watch, tells_how_deep_a_block_was_left) {
 }
 
 // A probe that is led round the plate's rim, 0.1 mm deep, is on the other side and has not passed.
-TEST(field_watch, is_silent_round_a_rim) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("field_watch.is_silent_round_a_rim", "6 ways"))};
-  field_renderer feel = make_boxes();
+TEST(plane_watch, is_silent_round_a_rim) {
+  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.is_silent_round_a_rim", "6 ways"))};
+  plane_renderer feel = make_boxes();
   for (int n = 0; n < 6; ++n) {
     const std::vector<pose> T_wb = placed(draw);
     const double depth = draw.between(2e-5, 1e-4), y = 0.008 * draw.unit();
     // A ball's way would be a stadium; a box that keeps its attitude goes along three sides.
     const double x = plate_half.x + probe_half.x - depth, z = plate_half.z + probe_half.z - depth;
     std::vector<vec3> corners{{x - 0.004, y, z}, {x, y, z}, {x, y, -z}, {x - 0.004, y, -z}};
-    told t;
+    reported t;
     leave(feel, T_wb);
     for (std::size_t c = 0; c + 1 < corners.size(); ++c) {
       for (double s = 0.0; s < 1.0; s += 0.01) {
@@ -168,9 +168,9 @@ TEST(field_watch, is_silent_round_a_rim) {
 }
 
 // Poses that have nothing to do with each other are no passage.
-TEST(field_watch, is_silent_between_unrelated_poses) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("field_watch.is_silent_between_unrelated_poses", "30 pairs"))};
-  field_renderer feel = make_boxes();
+TEST(plane_watch, is_silent_between_unrelated_poses) {
+  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.is_silent_between_unrelated_poses", "30 pairs"))};
+  plane_renderer feel = make_boxes();
   for (int n = 0; n < 30; ++n) {
     const std::vector<pose> T_wb = placed(draw);
     const quat rotation = draw.rotation();

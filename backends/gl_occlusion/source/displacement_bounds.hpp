@@ -9,11 +9,12 @@
 namespace asperity::gl {
 
 /// Box of (fine point - coarse point) over a coarse triangle, body frame, m.
-struct relief_box {
+struct displacement_box {
   vec3 low{0.0}, high{0.0};
 };
 
 /// A box per coarse triangle, over every texel that a lookup inside of it can touch.
-[[nodiscard]] std::vector<relief_box> relief_bounds(const textured_model& model, const detail::surface_index& index);
+[[nodiscard]] std::vector<displacement_box> displacement_bounds(const textured_model& model,
+                                                                const detail::surface_index& index);
 
 }  // namespace asperity::gl

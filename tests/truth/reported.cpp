@@ -1,28 +1,29 @@
-#include "truth/told.hpp"
+#include "truth/reported.hpp"
 
 #include <array>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "asperity/least_motion/default_renderer.hpp"
-#include "asperity/planes/field_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
 #include "truth/made_or_thrown.hpp"
 
 namespace asperity::truth {
 namespace {
 
 // The two places where these tests name how a renderer is made.
-field_renderer planes_of(const scene& bodies, std::shared_ptr<const field_scene> fields, double reach_m) {
-  field_renderer_settings settings;
+plane_renderer planes_of(const scene& bodies, std::shared_ptr<const field_scene> fields, double reach_m) {
+  plane_renderer_settings settings;
   settings.reach_m = reach_m;
-  return made_or_thrown(make_field_renderer(bodies, std::move(fields), settings));
+  return made_or_thrown(make_plane_renderer(bodies, std::move(fields), settings));
 }
-renderer force_of(const scene& bodies, std::shared_ptr<const field_scene> fields, const pose_law_settings& with) {
-  renderer_settings settings;
+least_motion_renderer force_of(const scene& bodies, std::shared_ptr<const field_scene> fields,
+                               const pose_law_settings& with) {
+  least_motion_renderer_settings settings;
   settings.force.softness_m = with.softness_m;
   settings.force.period_s = with.period_s;
-  return made_or_thrown(make_renderer(bodies, std::move(fields), settings));
+  return made_or_thrown(make_least_motion_renderer(bodies, std::move(fields), settings));
 }
 
 template <class Renderer>
@@ -36,7 +37,7 @@ status step(Renderer& feel, const pose& T_wa, const pose& T_wb, tick& t) {
 }  // namespace
 
 struct plane_law::made {
-  field_renderer feel;
+  plane_renderer feel;
   bool crowded = false;
 };
 
@@ -47,7 +48,7 @@ plane_law::~plane_law() = default;
 
 bool plane_law::crowded() const noexcept { return made_->crowded; }
 
-std::optional<told_plane> plane_law::deepest(const pose& T_wa, const pose& T_wb) {
+std::optional<reported_plane> plane_law::deepest(const pose& T_wa, const pose& T_wb) {
   tick t;
   made_->crowded = step(made_->feel, T_wa, T_wb, t) == status::capacity_reached;
   const support_plane* deepest = nullptr;
@@ -55,11 +56,11 @@ std::optional<told_plane> plane_law::deepest(const pose& T_wa, const pose& T_wb)
     if (deepest == nullptr || p.depth_m > deepest->depth_m) deepest = &p;
   }
   if (deepest == nullptr) return std::nullopt;
-  return told_plane{deepest->depth_m, deepest->n_ab_w, t.centre_of_mass_w + deepest->r_w, deepest->gradient};
+  return reported_plane{deepest->depth_m, deepest->n_ab_w, t.centre_of_mass_w + deepest->r_w, deepest->gradient};
 }
 
 struct pose_law::made {
-  renderer feel;
+  least_motion_renderer feel;
 };
 
 pose_law::pose_law(const scene& bodies, std::shared_ptr<const field_scene> fields, const pose_law_settings& settings)
@@ -71,9 +72,9 @@ pose_law::~pose_law() = default;
 double pose_law::stiffness_n_per_m() const noexcept { return made_->feel.force().settings().stiffness_n_per_m; }
 double pose_law::softness_m() const noexcept { return made_->feel.force().settings().softness_m; }
 
-told_force pose_law::at(const pose& T_wa, const pose& T_wb) {
+reported_force pose_law::at(const pose& T_wa, const pose& T_wb) {
   tick t;
-  told_force out;
+  reported_force out;
   out.complete = step(made_->feel, T_wa, T_wb, t) == status::ok;
   out.on_probe_w = t.force.on_probe_w;
   out.energy_j = made_->feel.force().energy_j();

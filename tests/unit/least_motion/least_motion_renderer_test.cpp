@@ -1,5 +1,5 @@
 // The default renderer, from end to end.
-#include "asperity/least_motion/default_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,8 +33,8 @@ std::shared_ptr<const field_scene> fields_once() {
   return made;
 }
 
-renderer make_boxes(const renderer_settings& settings = {}) {
-  return make_renderer(box_over_box(), fields_once(), settings).value();
+least_motion_renderer make_boxes(const least_motion_renderer_settings& settings = {}) {
+  return make_least_motion_renderer(box_over_box(), fields_once(), settings).value();
 }
 
 struct pose_drawing {
@@ -58,7 +58,7 @@ pose lowered_box(pose_drawing& draw, double depth_m) {
 
 TEST(DefaultRenderer, PushesByItsStiffnessAtAnyDepth) {
   pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.PushesByItsStiffnessAtAnyDepth", "100 poses"))};
-  renderer feel = make_boxes();
+  least_motion_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   const double k = feel.force().settings().stiffness_n_per_m, soft = feel.force().settings().softness_m;
   tick t;
@@ -77,7 +77,7 @@ TEST(DefaultRenderer, PushesByItsStiffnessAtAnyDepth) {
 
 TEST(DefaultRenderer, FeelsNothingWhereNothingOverlaps) {
   pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.FeelsNothing", "100 poses"))};
-  renderer feel = make_boxes();
+  least_motion_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   tick t;
   for (int n = 0; n < 100; ++n) {
@@ -91,7 +91,7 @@ TEST(DefaultRenderer, FeelsNothingWhereNothingOverlaps) {
 // The wrench does not change where all bodies are carried elsewhere, but for being carried along.
 TEST(DefaultRenderer, TheWorldDoesNotMatter) {
   pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.TheWorldDoesNotMatter", "20 poses"))};
-  renderer feel = make_boxes();
+  least_motion_renderer feel = make_boxes();
   tick t;
   for (int n = 0; n < 20; ++n) {
     const pose T_wa = lowered_box(draw, 1e-3);
@@ -107,9 +107,9 @@ TEST(DefaultRenderer, TheWorldDoesNotMatter) {
 }
 
 TEST(DefaultRenderer, TellsPlanesWhereAskedTo) {
-  renderer_settings settings;
+  least_motion_renderer_settings settings;
   settings.reach_m = 1e-3;
-  renderer feel = make_boxes(settings);
+  least_motion_renderer feel = make_boxes(settings);
   const std::vector<pose> T_wb{pose{}};
   tick t;
   ASSERT_EQ(feel.step({{quat(1, 0, 0, 0), {0.0, 0.0, 0.0145}}, T_wb}, t), status::ok);
@@ -119,28 +119,28 @@ TEST(DefaultRenderer, TellsPlanesWhereAskedTo) {
 
 TEST(DefaultRenderer, SaysWhenItsReadingsAreSpent) {
   pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.SaysWhenItsReadingsAreSpent", "20 poses"))};
-  renderer_settings settings;
+  least_motion_renderer_settings settings;
   settings.force.most_readings = 1000;
-  renderer feel = make_boxes(settings);
+  least_motion_renderer feel = make_boxes(settings);
   const std::vector<pose> T_wb{pose{}};
   tick t;
-  int told = 0;
+  int reported = 0;
   for (int n = 0; n < 20; ++n) {
     const status s = feel.step({lowered_box(draw, 4e-3), T_wb}, t);
     EXPECT_TRUE(s == status::ok || s == status::capacity_reached);
     EXPECT_EQ(s == status::capacity_reached, feel.force().hit().any());
     EXPECT_TRUE(is_finite(t.force.on_probe_w));
     if (s == status::capacity_reached) {
-      ++told;
+      ++reported;
       for (const penetration& d : t.depths) EXPECT_TRUE(has(d.flags, depth_flag::unresolved));
     }
   }
-  EXPECT_GT(told, 5);
+  EXPECT_GT(reported, 5);
 }
 
 TEST(DefaultRenderer, AllocatesNothingInATick) {
   pose_drawing draw{std::mt19937_64(fresh_seed("DefaultRenderer.AllocatesNothingInATick", "50 poses"))};
-  renderer feel = make_boxes();
+  least_motion_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   std::vector<pose> at;
   for (int n = 0; n < 50; ++n) at.push_back(lowered_box(draw, 3e-3 * draw.unit()));
@@ -169,9 +169,9 @@ TEST(DefaultRenderer, ALightTouchSettles) {
 
 TEST(DefaultRenderer, RefusesSettingsOutOfRange) {
   const auto refuses = [](auto change) {
-    renderer_settings s;
+    least_motion_renderer_settings s;
     change(s);
-    const auto made = make_renderer(box_over_box(), fields_once(), s);
+    const auto made = make_least_motion_renderer(box_over_box(), fields_once(), s);
     return !made && made.error().code == error_code::invalid_argument;
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -185,7 +185,7 @@ TEST(DefaultRenderer, RefusesSettingsOutOfRange) {
   EXPECT_TRUE(refuses([](auto& s) { s.reach_m = -1.0; }));
   EXPECT_FALSE(refuses([](auto&) {}));
   EXPECT_FALSE(make_renderer(scene{box_over_box().probe, {}}));
-  EXPECT_FALSE(make_renderer(box_over_box(), nullptr));
+  EXPECT_FALSE(make_least_motion_renderer(box_over_box(), nullptr));
 }
 
 // A quicker loop can follow a sharper contact; no softness blurs a texel.
@@ -197,13 +197,13 @@ TEST(DefaultRenderer, SoftnessFollowsTheLoop) {
   EXPECT_LT(fast.softness_m, 0.2 * slow.softness_m);
   EXPECT_GT(fast.sharpness, 2.5 * slow.sharpness);
   EXPECT_NEAR(fine.softness_m, 5e-6, 1e-9);
-  renderer_settings settings;
+  least_motion_renderer_settings settings;
   settings.force.period_s = 1e-4;
   EXPECT_LT(make_boxes(settings).force().settings().softness_m, make_boxes().force().settings().softness_m);
 }
 
 TEST(DefaultRenderer, CountsItsMemory) {
-  renderer feel = make_boxes();
+  least_motion_renderer feel = make_boxes();
   const std::size_t fields = fields_once()->heap_bytes();
   EXPECT_GT(feel.memory_bytes(), fields + feel.force().settings().most_samples * sizeof(exits::mark));
   EXPECT_LT(feel.memory_bytes(), 4 * fields + 20'000'000U);

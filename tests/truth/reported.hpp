@@ -1,4 +1,4 @@
-// What the library tells at a pose: the deepest support plane of the field renderer, and the wrench of the renderer for
+// What the library tells at a pose: the deepest support plane of the plane renderer, and the wrench of the renderer for
 // poses alone. Compiled once, optimised.
 #pragma once
 
@@ -15,7 +15,7 @@
 namespace asperity::truth {
 
 /// The deepest support plane of a pose, as the renderer told it. World axes.
-struct told_plane {
+struct reported_plane {
   double depth_m = 0.0;  ///< negative: a gap
   vec3 n_ab_w{0.0};
   vec3 point_w{0.0};  ///< the sample
@@ -31,7 +31,7 @@ class plane_law {
   ~plane_law();
 
   /// Nothing where no plane is within reach.
-  [[nodiscard]] std::optional<told_plane> deepest(const pose& T_wa, const pose& T_wb = {});
+  [[nodiscard]] std::optional<reported_plane> deepest(const pose& T_wa, const pose& T_wb = {});
   /// Whether the last tick had to leave planes out.
   [[nodiscard]] bool crowded() const noexcept;
 
@@ -47,7 +47,7 @@ struct pose_law_settings {
 };
 
 /// A wrench as it was told.
-struct told_force {
+struct reported_force {
   wrench on_probe_w{};
   double energy_j = 0.0;
   std::size_t contacts = 0;
@@ -63,7 +63,7 @@ class pose_law {
   pose_law& operator=(pose_law&&) noexcept;
   ~pose_law();
 
-  [[nodiscard]] told_force at(const pose& T_wa, const pose& T_wb = {});
+  [[nodiscard]] reported_force at(const pose& T_wa, const pose& T_wb = {});
   [[nodiscard]] double stiffness_n_per_m() const noexcept;
   [[nodiscard]] double softness_m() const noexcept;
 

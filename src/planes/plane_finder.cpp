@@ -1,4 +1,4 @@
-#include "asperity/planes/field_finder.hpp"
+#include "asperity/planes/plane_finder.hpp"
 
 #include <cstdint>
 #include <span>
@@ -34,7 +34,7 @@ void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, con
 
 }  // namespace
 
-status field_finder::find(const scene_pose& at, near_samples& out) noexcept {
+status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
   out.clear();
   for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[b];

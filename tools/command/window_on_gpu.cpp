@@ -1,4 +1,4 @@
-#include "paper_on_gpu.hpp"
+#include "window_on_gpu.hpp"
 
 #include <memory>
 #include <utility>
@@ -6,7 +6,7 @@
 #include "asperity/gl/compute_depth.hpp"
 #include "asperity/gl/occlusion_depth.hpp"
 #include "asperity/window/fallback_depth.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 
 namespace asperity::command {
 namespace {
@@ -47,7 +47,7 @@ struct absent_depth {
   }
 };
 
-result<any_depth> open(const scene& bodies, const render_options& options, const depth_settings& settings,
+result<any_depth> open(const scene& bodies, const render_options& options, const window_depth_settings& settings,
                        const contact_limits& limits, gpu_depth_maker* make_depth, gpu_use& use) {
   const result<gl::context_ptr> context = gl::open_context({.device = options.gpu.value_or("")});
   if (!context) return context.error();
@@ -66,9 +66,9 @@ bool is_the_gpu_s(error_code code) { return code == error_code::unsupported || c
 
 }  // namespace
 
-result<any_renderer> make_paper_on_gpu(scene bodies, const render_options& options, gpu_depth_maker* make_depth) {
+result<any_renderer> make_window_on_gpu(scene bodies, const render_options& options, gpu_depth_maker* make_depth) {
   if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
-  const paper_settings settings{.depth = grid_settings(options)};
+  const window_renderer_settings settings{.depth = grid_settings(options)};
   result<cpu_depth> cpu = make_cpu_depth(bodies, settings.depth);  // refuses what no backend can use
   if (!cpu) return cpu.error();
   const auto use = std::make_shared<gpu_use>();
@@ -99,7 +99,7 @@ std::shared_ptr<gpu_use> gpu_use_of(any_renderer& feel) {
 }
 
 result<any_depth> make_gl_compute_depth(const gl::context_ptr& context, const scene& bodies,
-                                        const depth_settings& settings, const contact_limits& limits) {
+                                        const window_depth_settings& settings, const contact_limits& limits) {
   result<gl::compute_depth> made =
       gl::compute_depth::make(context, bodies, settings, {.contacts = limits.contacts, .triangles = limits.triangles});
   if (!made) return made.error();
@@ -107,19 +107,19 @@ result<any_depth> make_gl_compute_depth(const gl::context_ptr& context, const sc
 }
 
 result<any_depth> make_gl_occlusion_depth(const gl::context_ptr& context, const scene& bodies,
-                                          const depth_settings& settings, const contact_limits& limits) {
+                                          const window_depth_settings& settings, const contact_limits& limits) {
   result<gl::occlusion_depth> made = gl::occlusion_depth::make(
       context, bodies, settings, {.contacts = limits.contacts, .triangles = limits.triangles});
   if (!made) return made.error();
   return any_depth(std::move(made).value());
 }
 
-result<any_renderer> make_paper_with_gl_compute(scene bodies, const render_options& options) {
-  return make_paper_on_gpu(std::move(bodies), options, make_gl_compute_depth);
+result<any_renderer> make_window_with_gl_compute(scene bodies, const render_options& options) {
+  return make_window_on_gpu(std::move(bodies), options, make_gl_compute_depth);
 }
 
-result<any_renderer> make_paper_with_gl_occlusion(scene bodies, const render_options& options) {
-  return make_paper_on_gpu(std::move(bodies), options, make_gl_occlusion_depth);
+result<any_renderer> make_window_with_gl_occlusion(scene bodies, const render_options& options) {
+  return make_window_on_gpu(std::move(bodies), options, make_gl_occlusion_depth);
 }
 
 }  // namespace asperity::command

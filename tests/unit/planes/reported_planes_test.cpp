@@ -1,4 +1,4 @@
-// Which planes a tick of the field renderer tells: what bounds leave out is what nobody meets, and what a renderer
+// Which planes a tick of the plane renderer tells: what bounds leave out is what nobody meets, and what a renderer
 // knows from ticks before changes nothing.
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "asperity/field/field_body.hpp"
-#include "asperity/planes/field_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
 #include "planes/ball_bound.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
@@ -38,7 +38,7 @@ const bodies& ridged() {
   return made;
 }
 
-field_renderer make_ridged() { return make_field_renderer(ridged().of, ridged().fields).value(); }
+plane_renderer make_ridged() { return make_plane_renderer(ridged().of, ridged().fields).value(); }
 
 struct draws {
   std::mt19937_64 bits;
@@ -54,7 +54,7 @@ double deepest_m(const tick& t) {
 }
 
 // A probe in any orientation that lies on the bodies with about this depth, between them or on one.
-pose laid_down(draws& draw, field_renderer& feel, const std::vector<pose>& T_wb, double depth_m) {
+pose laid_down(draws& draw, plane_renderer& feel, const std::vector<pose>& T_wb, double depth_m) {
   pose T_wa{draw.rotation(), {0.02 * draw.unit(), 0.02 * draw.unit(), 0.03}};
   tick t;
   for (int i = 0; i < 100; ++i) {
@@ -79,21 +79,21 @@ void expect_same(std::span<const support_plane> a, std::span<const support_plane
 // Steps of a slow hand, of a fast one, and leaps: a renderer that went all the way tells what a new one tells.
 TEST(ToldPlanes, DoNotDependOnTheTicksBefore) {
   draws draw{std::mt19937_64(fresh_seed("ToldPlanes.DoNotDependOnTheTicksBefore", "40 walks of 20 ticks"))};
-  field_renderer old = make_ridged();
+  plane_renderer old = make_ridged();
   const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
-  std::size_t told = 0;
+  std::size_t reported = 0;
   for (int walk = 0; walk < 40; ++walk) {
     pose T_wa = laid_down(draw, old, T_wb, 1e-4 * draw.unit());
     const double step_m = walk % 3 == 0 ? 1e-6 : (walk % 3 == 1 ? 5e-5 : 3e-4);
     for (int n = 0; n < 20; ++n) {
       T_wa.position += step_m * draw.vector();
       T_wa.rotation = glm::normalize(exp_rotation(20.0 * step_m * draw.vector()) * T_wa.rotation);
-      field_renderer fresh = make_ridged();
+      plane_renderer fresh = make_ridged();
       tick a, b;
       ASSERT_EQ(old.step({T_wa, T_wb}, a), status::ok);
       ASSERT_EQ(fresh.step({T_wa, T_wb}, b), status::ok);
       expect_same(a.planes, b.planes, n);
-      told += a.planes.size();
+      reported += a.planes.size();
       EXPECT_EQ(a.force.on_probe_w.force, b.force.on_probe_w.force);
       // Questions about poses near by: the old renderer is asked for a few, the new one for the last alone.
       vec6 moved{};
@@ -106,13 +106,13 @@ TEST(ToldPlanes, DoNotDependOnTheTicksBefore) {
       expect_same({of_old.data(), of_old.size()}, {of_fresh.data(), of_fresh.size()}, n);
     }
   }
-  EXPECT_GT(told, 10'000U);
+  EXPECT_GT(reported, 10'000U);
 }
 
 // Every sample that is near has a plane beside it that is as deep, at the tick's pose and at poses that are asked for.
 TEST(ToldPlanes, HoldEverySampleThatIsNear) {
   draws draw{std::mt19937_64(fresh_seed("ToldPlanes.HoldEverySampleThatIsNear", "60 poses"))};
-  field_renderer feel = make_ridged();
+  plane_renderer feel = make_ridged();
   const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
   const vec3 c_a = feel.scene().probe->mass.centre_of_mass;
   int near = 0, asked_near = 0;
@@ -163,7 +163,7 @@ TEST(ToldPlanes, HoldEverySampleThatIsNear) {
 // how deep it is; those that are near alone do not.
 TEST(ToldPlanes, KnowWhatMotionsMeetFirst) {
   draws draw{std::mt19937_64(fresh_seed("ToldPlanes.KnowWhatMotionsMeetFirst", "60 poses, 20 motions each"))};
-  field_renderer feel = make_ridged();
+  plane_renderer feel = make_ridged();
   const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
   const vec3 c_a = feel.scene().probe->mass.centre_of_mass;
   int met = 0, unknown = 0, unknown_to_near = 0;

@@ -1,14 +1,14 @@
-#include "asperity/window/depth_settings.hpp"
+#include "asperity/window/window_depth_settings.hpp"
 
 #include <cmath>
 #include <string>
 
 namespace asperity {
 
-result<void> check(const depth_settings& s) {
+result<void> check(const window_depth_settings& s) {
   const auto bad = [](std::string what) { return error{error_code::invalid_argument, "depth settings: " + what}; };
-  if (s.grid < 2 || s.grid > depth_settings::max_grid) {
-    return bad("grid is " + std::to_string(s.grid) + "; give 2 to " + std::to_string(depth_settings::max_grid) +
+  if (s.grid < 2 || s.grid > window_depth_settings::max_grid) {
+    return bad("grid is " + std::to_string(s.grid) + "; give 2 to " + std::to_string(window_depth_settings::max_grid) +
                " samples per side");
   }
   const auto length = [](double x) { return std::isfinite(x) && x >= 0.0; };

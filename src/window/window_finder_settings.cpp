@@ -4,7 +4,7 @@
 
 namespace asperity {
 
-finder_settings resolve(finder_settings s, const textured_model& a, const textured_model& b) noexcept {
+window_finder_settings resolve(window_finder_settings s, const textured_model& a, const textured_model& b) noexcept {
   const double diagonal = std::min(a.box.diagonal(), b.box.diagonal());
   const auto thinnest = [](const bounds& box) {
     const vec3 size = box.high - box.low;
