@@ -37,7 +37,7 @@ namespace asperity::detail {
   return t[0] + vb * per_sum * ab + vc * per_sum * ac;
 }
 
-/// Distances by sweeping: nodes beside a triangle ask it, all others ask those that their neighbours are nearest to.
+/// Distances by sweeping: nodes beside a triangle measure it, all others the triangles nearest to their neighbours.
 class distance_sweep {
  public:
   distance_sweep(std::span<const fine_triangle> surface, const coarse_grid& grid)
@@ -57,7 +57,7 @@ class distance_sweep {
     }
   }
 
-  /// Nodes in the box of a triangle, a pitch wider, ask it: exact for all nodes within a pitch of the surface.
+  /// Measures each triangle from the nodes in its box, a pitch wider: exact within a pitch of the surface.
   void ask_beside() {
     for (std::uint32_t t = 0; t < surface_.size(); ++t) {
       const fine_triangle& f = surface_[t];
@@ -84,7 +84,7 @@ class distance_sweep {
     const std::size_t count = nearest_.size();
     const auto [nx, ny, nz] = grid_.nodes;
     handed_ = nearest_;
-    // What the nodes beside the surface know is exact and stays.
+    // Distances of the nodes beside the surface are exact and stay.
     square_.assign(count, std::numeric_limits<float>::max());
     for (std::vector<float>& m : middle_) m.assign(count, 1e18F);
     for (std::size_t n = 0; n < count; ++n) {
@@ -118,15 +118,15 @@ class distance_sweep {
           distance_[node] = std::numeric_limits<float>::max();
           const glm::vec3 p = place(i, j, k);
           ask(node, p, handed_[node]);
-          if (distance_[node] > 6.0F * pitch_) continue;  // one triangle or the next is all the same
+          if (distance_[node] > 6.0F * pitch_) continue;  // which of two triangles is taken hardly matters there
           if (i > 0) ask_of(node, p, node - 1);
           if (i + 1 < nx) ask_of(node, p, node + 1);
           if (j > 0) ask_of(node, p, node - nx);
           if (j + 1 < ny) ask_of(node, p, node + nx);
           if (k > 0) ask_of(node, p, node - nx * ny);
           if (k + 1 < nz) ask_of(node, p, node + nx * ny);
-          // Near by triangles are large as seen from the node, and inside a press is as deep as this says. The grid
-          // goes on for a node more at least, in both cases.
+          // Near the surface triangles are large as seen from the node, and inside the depth of a press is read here.
+          // The grid has at least one node more on each side, in both cases.
           if (distance_[node] > 3.0F * pitch_ && votes[node] <= 0) continue;
           for (const std::size_t layer : {node - nx * ny, node, node + nx * ny}) {
             for (const std::size_t row : {layer - nx, layer, layer + nx}) {
@@ -140,7 +140,7 @@ class distance_sweep {
     }
   }
 
-  /// Signs the distances and gives them out. @param votes of vote_inside()
+  /// Gives the distances their signs and hands them over. @param votes of vote_inside()
   [[nodiscard]] std::vector<float> finish(std::span<const std::int8_t> votes) {
     for (std::size_t n = 0; n < distance_.size(); ++n) {
       bool inside = votes[n] > 0;
@@ -168,7 +168,7 @@ class distance_sweep {
     return pitch_ * glm::vec3(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k));
   }
 
-  /// Offers a row of nodes what a row beside it has.
+  /// Offers the triangles of one row of nodes to the row beside it.
   void take_from(std::size_t row, std::size_t other, const glm::vec3& p) noexcept {
     float *const x = middle_[0].data() + row, *const y = middle_[1].data() + row, *const z = middle_[2].data() + row;
     const float *const ox = middle_[0].data() + other, *const oy = middle_[1].data() + other;

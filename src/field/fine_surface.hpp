@@ -22,8 +22,8 @@ using fine_triangle = std::array<vec3, 3>;
 
 /// Cuts the coarse triangles until no edge is longer than `edge_m`, then moves every corner onto the fine surface.
 ///
-/// Edges alone decide where to cut, so neighbours agree and there are no gaps but those of the texture's own seams. A
-/// sliver is cut along its length only.
+/// Edges alone decide where to cut, so two neighbours cut their common edge in the same place, and only the texture's
+/// own seams leave gaps. A sliver is cut along its length only.
 [[nodiscard]] inline std::vector<fine_triangle> cut_fine_surface(const textured_model& model, double edge_m) {
   struct corner {
     vec3 p;

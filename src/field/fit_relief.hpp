@@ -35,7 +35,7 @@ class relief_fit {
     out_.index.assign(out_.bricks_along[0] * out_.bricks_along[1] * out_.bricks_along[2], 0);
   }
 
-  /// Takes a point of the fine surface. What the smooth part has lost or buried (a fold of the texture) is left out.
+  /// Takes a point of the fine surface. Leaves out points that the smooth part has lost or covered (folds).
   void add(const vec3& p_b) {
     const coarse_reading at = read_smooth(p_b);
     if (!(std::fabs(at.value_m) < 1.25 * field_.smooth.pitch_m)) return;
@@ -107,7 +107,7 @@ class relief_fit {
     std::uint32_t cell;  // of its brick in the index
   };
 
-  /// Four nodes of a brick along x, together because they are asked for together.
+  /// Four nodes of a brick along x, stored together because they are read together.
   struct work_row {
     lanes value{}, sum{}, weight{};
   };
@@ -213,7 +213,7 @@ class relief_fit {
     return out;
   }
 
-  /// Numbers the bricks that are asked for.
+  /// Numbers the bricks that points need.
   void mark(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last,
             std::array<std::array<std::size_t, 3>, 2>& before) {
     if (first == before[0] && last == before[1]) return;
@@ -230,7 +230,7 @@ class relief_fit {
     }
   }
 
-  /// Brings the points in the order of their bricks.
+  /// Sorts the points by their bricks.
   void sort() {
     first_.assign(cells_.size() + 1, 0);
     for (const point& p : points_) ++first_[out_.index[p.cell] + 1];
@@ -282,7 +282,7 @@ class relief_fit {
     });
   }
 
-  /// What the points of a brick want, above and below the surface.
+  /// Sums of the relief that the points of a brick ask for, above and below the surface.
   void average(std::size_t brick) noexcept {
     if (first_[brick] == first_[brick + 1]) return;
     dense sum, weight;
@@ -303,7 +303,7 @@ class relief_fit {
     scatter(weight, around, rows, &work_row::weight);
   }
 
-  /// What the points of a brick want, less what is read at their feet.
+  /// Sums of the residuals of a brick's points: their relief less what is read at their feet.
   void compare(std::size_t brick, bool weigh) noexcept {
     if (first_[brick] == first_[brick + 1]) return;
     const auto around = beside(brick);
@@ -327,7 +327,7 @@ class relief_fit {
     if (weigh) scatter(weight, around, rows_[brick], &work_row::weight);
   }
 
-  /// Whether points of a brick or beside it are not met yet. @param residual by brick
+  /// Whether points of a brick or beside it still have residuals. @param residual by brick
   [[nodiscard]] bool unsettled(std::size_t brick, const std::vector<float>& residual) const noexcept {
     if (first_[brick] == first_[brick + 1]) return false;
     bool out = false;
@@ -346,7 +346,7 @@ class relief_fit {
     work_[0] = {};
   }
 
-  /// Hands the coefficients over. Bricks with next to nothing in them, on flat faces, are left out.
+  /// Hands the coefficients over. Leaves out bricks whose coefficients are next to zero, on flat faces.
   void finish() {
     points_ = std::vector<point>();  // gives its memory back, as = {} does not
     const float nothing = 0.01F * fine_enough_;
@@ -365,7 +365,7 @@ class relief_fit {
       relief_bricks::brick& to = out_.bricks.emplace_back();
       for (std::size_t row = 0; row < side * side; ++row) {
         for (std::size_t i = 0; i < side; ++i) {
-          // Beside few points, at sharp corners, a coefficient is not well known, and all of them bound the relief.
+          // At sharp corners few points determine a coefficient; it is limited because coefficients bound the relief.
           to[row * side + i] = std::min(std::max(1.25F * lowest_, work_[b][row].value[i]), 1.25F * highest_);
         }
       }

@@ -64,8 +64,8 @@ using axis_crossings = std::array<std::vector<line_crossing>, 3>;
   return out;
 }
 
-/// Calls visit(crossings of one line) for each line whose crossings cancel. A line that slips through a hairline gap at
-/// a seam of the atlas, or hits a corner twice, does not close and is left out.
+/// Calls visit(crossings of one line) for each line whose crossings cancel. The crossings of a line that passes through
+/// a narrow gap at a seam of the atlas, or hits a corner twice, do not cancel: it is left out.
 template <class Visit>
 void for_each_closed_line(std::span<const line_crossing> all, Visit&& visit) {
   for (std::size_t i = 0; i < all.size();) {
@@ -86,7 +86,7 @@ void for_each_closed_line(std::span<const line_crossing> all, Visit&& visit) {
   for (std::size_t a = 0; a < 3; ++a) {
     const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
     const std::vector<line_crossing>& all = crossings[a];
-    // A line without crossings votes outside, as all do to begin with; one that does not close takes that back.
+    // Every line votes outside at first: right for one without crossings. One that does not close loses its vote.
     for (std::size_t i = 0; i < all.size();) {
       std::size_t end = i;
       int total = 0;

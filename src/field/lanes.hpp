@@ -1,11 +1,11 @@
-// Four floats at once, where a loop over four does not become that by itself.
+// Four floats in one register, for loops over four that compilers do not vectorise by themselves.
 #pragma once
 
 #include <cstring>
 
 namespace asperity::detail {
 
-/// Four floats that are added and multiplied together, one machine register. Of GCC and Clang, for every processor.
+/// Four floats that are added and multiplied together, one machine register. A type of GCC and Clang.
 using lanes = float __attribute__((vector_size(16)));
 
 [[nodiscard]] inline lanes load_lanes(const float* from) noexcept {

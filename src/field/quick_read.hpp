@@ -1,4 +1,4 @@
-// The smooth part of a depth field in single precision: enough to tell which samples need a reading of their own.
+// The smooth part of a depth field in single precision: it decides which samples need an exact reading.
 #pragma once
 
 #include <cmath>
@@ -10,13 +10,13 @@
 
 namespace asperity::detail {
 
-/// A smooth part with its derivatives, wrong by a little.
+/// A smooth part with its derivatives, with an error bound.
 struct quick_reading {
   coarse_reading at;
-  double error_m = 0.0;  ///< value and relief read by it differ by less from what exact readings say
+  double error_m = 0.0;  ///< value and relief differ by less from exact readings
 };
 
-/// What a quick reading reads beside the value and its slope.
+/// Whether a quick reading has second derivatives as well.
 enum class quick_part { slope, bend };
 
 /// A third of the cost of coarse_grid::read(): four nodes in a row are one register, on every processor. Single

@@ -1,4 +1,4 @@
-// Lays out the samples that other bodies are felt with.
+// Lays out the samples of a body, which contacts are measured with.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct texel_range {
         last(static_cast<std::size_t>(std::clamp(std::ceil(std::max({a, b, c}) + extra), 0.0, size - 1.0))) {}
 };
 
-/// Fine surface at a fraction f of edge k of triangle t, from its first corner on. Both charts have a say.
+/// Fine surface at a fraction f of edge k of triangle t, from its first corner on: the mean of both charts.
 [[nodiscard]] inline vec3 fine_edge_point(const textured_model& model, const surface_index& index, std::uint32_t t,
                                           std::size_t k, double f) noexcept {
   const coarse_triangle& tri = model.mesh.triangles[t];
@@ -35,10 +35,10 @@ struct texel_range {
   return 0.5 * (p + model.texture.sample((1.0 - f) * other.uv[(m + 1) % 3] + f * other.uv[m]));
 }
 
-/// Lays out a body's samples: on its faces the highest texel of every block a pitch wide, because peaks are what
-/// touches; along its sharp edges, where no texel centre lies, points a pitch apart; and every vertex, whatever its
-/// edges: the tip of a cone of many sides has no sharp edge and is felt all the same. Valleys need no samples of their
-/// own: what reaches down into one is a peak of the other body.
+/// Lays out a body's samples: on its faces the highest texel of every block a pitch wide, because peaks touch first;
+/// along its sharp edges, where no texel centre lies, points a pitch apart; and every vertex, because the tip of a cone
+/// of many sides touches although it has no sharp edge. Valleys need no samples: only a peak of the other body reaches
+/// into them.
 class surface_samples {
  public:
   /// @param pitch_m distance between samples, at least a texel is used
@@ -64,7 +64,7 @@ class surface_samples {
     if (is_finite(p_b)) to.push_back({glm::vec3(p_b), glm::vec3(axis_b), static_cast<float>(cone_rad)});
   }
 
-  // Edges that turn by less lie on a curved surface, and its texels are as high as they are.
+  // Edges that turn by less lie on a curved surface, where texels are as high as the edge.
   [[nodiscard]] bool is_sharp(std::uint32_t t, std::uint32_t across) const noexcept {
     constexpr double cos_smooth = 0.97;
     return across == surface_index::none || !(glm::dot(index_.normal[t], index_.normal[across]) > cos_smooth);
@@ -86,7 +86,7 @@ class surface_samples {
         add_highest(t, {column * block, row * block, block}, texel_m, to);
       }
     }
-    // A sliver that holds no texel centre still is a piece of surface.
+    // A sliver that holds no texel centre gets a sample too.
     if (to.size() == before) {
       const coarse_triangle& tri = model_.mesh.triangles[t];
       add(model_.texture.sample((tri.uv[0] + tri.uv[1] + tri.uv[2]) / 3.0), index_.normal[t], 0.0, to);
@@ -145,7 +145,7 @@ class surface_samples {
     return std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
   }
 
-  // At the mean of what the charts around a vertex say of it, looking to all its triangles.
+  // At the mean position that the charts around a vertex give it, facing as all its triangles do.
   void add_vertices(std::vector<field_sample>& to) const {
     const std::size_t vertices = model_.mesh.positions.size();
     std::vector<vec3> place(vertices, vec3(0.0)), axis(vertices, vec3(0.0));

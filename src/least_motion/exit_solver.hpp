@@ -12,13 +12,12 @@
 #include "least_motion/exit_rule.hpp"
 #include "least_motion/mix.hpp"
 #include "least_motion/posed_samples.hpp"
-#include "least_motion/stiffness.hpp"
 #include "least_motion/way_finder.hpp"
 #include "least_motion/way_out.hpp"
 
 namespace asperity::exits {
 
-/// Solves, for one pose q,
+/// Solves, for one pose q (least_motion.cpp),
 ///
 ///     U(q) = min over ways out z and weights w of   sum w (K/2 z^2 + bed(q, z)) + K^2 / (2 (C - K)) (sum w z)^2
 ///
@@ -43,17 +42,7 @@ class exit_solver {
   ~exit_solver() = default;
 
   /// @pre one pose per fixed body   @rt safe
-  void solve(const scene_pose& at) noexcept {
-    energy_j_ = 0.0;
-    wrench_ = {};
-    stiffness_ = {};
-    const bool any = finder_.find(at);
-    hit_ = finder_.hit();
-    if (!any) return;
-    posed().count.most += rule_.most_readings / 4;
-    add_up();
-    hit_.readings |= posed().count.cut;
-  }
+  void solve(const scene_pose& at) noexcept;
 
   [[nodiscard]] const wrench& on_probe_w() const noexcept { return wrench_; }
   /// dW/dq; the weights count as fixed.
@@ -69,57 +58,11 @@ class exit_solver {
  private:
   [[nodiscard]] posed_samples& posed() noexcept { return finder_.samples(); }
 
-  void add_up() noexcept {
-    energy_j_ = mixed_energy_j(finder_.ways(), springs_);
-    unsettled_stiffness_ = {};
-    mixed_stiffness stiffness(springs_);
-    for (const way_out& w : finder_.ways()) {
-      if (!(w.weight > 0.0)) continue;
-      bed_patch& patch = finder_.gathered_at(w.moved());
-      const double share = w.weight;
-      if (!w.settled) {
-        pull_out(w);
-        continue;
-      }
-      way_out_stiffness own;
-      const pivot& about = posed().about();
-      vec3 pushed_n(0.0);
-      patch.for_each_inside(w.moved(), posed(), [&](const mark& m, const coarse_reading& d) noexcept {
-        const bool of_probe = posed().meeting_of(m).of_probe;
-        const vec3 rest = posed().lever_w(m), arm = rest - about.centre, relief = posed().relief_slope(m);
-        const vec3 turned_slope = glm::cross(d.slope, w.turn_w);
-        // Where the sample meets the field, as seen from the probe as given; a fixed one comes nearer by the motion.
-        const vec3 lever = of_probe ? rest : rest - w.z_w - glm::cross(w.turn_w, arm);
-        vec6 by_pose{d.slope + relief, glm::cross(lever, d.slope) + glm::cross(rest, relief)};
-        if (of_probe) {
-          by_pose.angular += glm::cross(rest, turned_slope);
-        } else {
-          by_pose.linear -= turned_slope;
-        }
-        for (int i = 0; i < 3; ++i) by_pose += (-turned_slope[i]) * about.centre_by_pose[i];
-        const double push_n = bed_.push_n(d.value_m);
-        pushed_n += push_n * d.slope;
-        wrench_ += to_wrench((-share * push_n) * by_pose);
-        own.add(bed_.rise_n_per_m(d.value_m), push_n, {by_pose, d.slope, d.hessian_per_m, arm, rest, lever, of_probe});
-      });
-      wrench_ += to_wrench((-0.5 * share * rule_.stiffness_n_per_m * glm::dot(w.turn_w, w.turn_w)) *
-                           about.arm_squared_by_pose);
-      own.add_pivot(about, rule_.stiffness_n_per_m, w.turn_w, pushed_n);
-      stiffness.add(share, own);
-    }
-    stiffness_ = stiffness.sum() + unsettled_stiffness_;
-  }
-
-  // Where an iteration was cut short the bed's push may be anything. In balance it is the spring's pull: that, at the
-  // deepest sample.
-  void pull_out(const way_out& w) noexcept {
-    const vec3 pull_n = (w.weight * springs_.one) * w.z_w, lever = posed().lever_w(finder_.deepest());
-    wrench_ += wrench{pull_n, glm::cross(lever, pull_n)};
-    const double length = glm::length(w.z_w);
-    if (!(length > 0.0)) return;
-    const vec3 along = w.z_w / length;
-    add_outer(unsettled_stiffness_, -w.weight * rule_.stiffness_n_per_m, {along, glm::cross(lever, along)});
-  }
+  // Adds up the wrench and the stiffness of the ways out that have weight.
+  void add_up() noexcept;
+  // Where an iteration was cut short the bed's push may be anything. In balance it is the spring's pull: this adds that,
+  // at the deepest sample.
+  void pull_out(const way_out& w) noexcept;
 
   exit_rule rule_;
   exit_springs springs_;

@@ -1,4 +1,4 @@
-// What the depth of one body needs and no pose changes: normals, neighbours, and where each triangle lies in the
+// What measuring a depth needs of one body at every pose: normals, neighbours, and where each triangle lies in the
 // texture.
 #pragma once
 
@@ -34,8 +34,8 @@ struct texel_triangle {
     const double d0 = bary.x * altitude[0], d1 = bary.y * altitude[1], d2 = bary.z * altitude[2];
     return d0 <= d1 && d0 <= d2 ? 0 : (d1 <= d2 ? 1 : 2);
   }
-  /// True up to so many texels outside. An acute corner reaches far beyond itself where only the distances from its
-  /// edges count, which is why it is the distance from the triangle that does. @param bary  barycentric(z)
+  /// True up to so many texels outside of the triangle. Its own distance counts, because a limit on the distances from
+  /// the edges would reach far beyond an acute corner. @param bary  barycentric(z)
   [[nodiscard]] bool within(const vec2& z, const vec3& bary, double reach_texels) const noexcept {
     bool inside = true;
     for (std::size_t k = 0; k < 3; ++k) {

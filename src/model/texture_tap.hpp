@@ -18,8 +18,8 @@ struct surface_tap {
 };
 
 /// Bilinear patch between four texel centres; its value is that of haptic_texture::sample.
-/// Made and read for every sample of every tick: what GCC 12 would call, with the patch in memory, is inlined by order,
-/// which makes a tick of `cpu_depth` a sixth shorter.
+/// Made and read for every sample of every tick. Inlining is forced, because GCC 12 would make calls with the patch in
+/// memory: a tick of `cpu_depth` is a sixth shorter so.
 struct texture_cell {
   double column, row;                               ///< texel of the lower corner
   vec3 corner, along_x, along_y, twist;             ///< point = corner + along_x f + along_y g + twist f g
@@ -64,7 +64,7 @@ struct texture_cell {
     return z.x >= column && z.x <= column + 1.0 && z.y >= row && z.y <= row + 1.0;
   }
 
-  /// Most that the tangents change by in a step of one texel, m.
+  /// Largest change of the tangents in a step of one texel, m.
   [[nodiscard]] double largest_twist() const noexcept {
     return std::max({std::fabs(twist.x), std::fabs(twist.y), std::fabs(twist.z)});
   }

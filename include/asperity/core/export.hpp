@@ -1,4 +1,4 @@
-// What a shared build of the library shows of itself: the library is compiled with hidden names, and these are not.
+// Marks the names that a shared build of the library exports; all others are hidden.
 #pragma once
 
 #if defined(__GNUC__)

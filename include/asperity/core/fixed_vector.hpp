@@ -1,4 +1,4 @@
-// A vector whose capacity is part of its type and whose overflow is counted, not hidden.
+// A vector whose capacity is part of its type. It counts the elements that did not fit.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Text that others wrote, as it may stand on a terminal: names in files and of devices, paths, messages of libraries.
+// Makes text from outside safe to print: names in files and of devices, paths, messages of libraries.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ struct character {
   std::size_t bytes = 0;  // 0: the text does not begin with a character of UTF-8
 };
 
-/// The first character of a text that is not empty. Overlong forms and surrogates are none.
+/// The first character of a text that is not empty. Overlong forms and surrogates are not accepted.
 [[nodiscard]] inline character first_of(std::string_view text) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<char32_t>(static_cast<unsigned char>(text[i])); };
   const char32_t first = byte(0);
@@ -63,8 +63,9 @@ inline void append_escaped(std::string& to, char32_t code) {
 }  // namespace printable_detail
 
 /// The text as one line of valid UTF-8 that no terminal acts on: control characters become \n, \r, \t or \x1b, bytes
-/// that are not UTF-8 \xff, and what turns the direction of writing or is not seen \u{202e}. The rest stays as it is,
-/// a backslash too: the line is for people, and does not tell such a text from one that was written so.
+/// that are not UTF-8 become \xff, and characters that are invisible or turn the direction of writing become \u{202e}.
+/// The rest stays as it is. A backslash does too, so an escape cannot be told from the same characters in the text: the
+/// line is for people.
 /// @param keep a control character that stays, such as the line end of a text of several lines; 0: none
 [[nodiscard]] inline std::string printable(std::string_view text, char keep = '\0') {
   using namespace printable_detail;

@@ -104,7 +104,7 @@ struct mat6 {
   return true;
 }
 
-/// Adds s * a * a^T; what was symmetric stays so to the bit.
+/// Adds s * a * a^T; a symmetric matrix stays symmetric to the bit.
 /// @rt safe
 inline void add_outer(mat6& to, double s, const vec6& a) noexcept {
   for (std::size_t i = 0; i < 6; ++i) {

@@ -10,7 +10,7 @@ namespace asperity {
 /// Single producer, single consumer, wait-free; the newest published value wins and older ones are skipped.
 /// Three slots: one being written, one being read, one in the middle that the two sides swap with theirs.
 /// The swap is acquire-release on both sides: what the producer wrote before publish() is seen after refresh().
-/// @tparam Atomic  std::atomic; tests put something in its place that orders the accesses as they want
+/// @tparam Atomic  std::atomic; tests replace it by a type that chooses the order of the accesses
 /// @rt safe on both sides
 template <class T, template <class> class Atomic = std::atomic>
 class triple_buffer {

@@ -24,7 +24,7 @@ struct foot_and_fade {
   vec3 foot_b{0.0};
   double fade = 0.0;        ///< 1 near the surface and wherever S has a direction, 0 half way through a body
   double fade_slope = 0.0;  ///< derivative of the fade by |grad S|^2
-  double by_value = 0.0;    ///< what a change of S does, in terms of |grad S|^2
+  double by_value = 0.0;    ///< derivative of the fade by S, divided by fade_slope
   double per_square = 0.0;  ///< 1 / |grad S|^2, kept finite
 };
 
@@ -42,7 +42,7 @@ struct body_field {
   detail::relief_bricks fine;
   detail::third_bounds most_third;                       ///< of the smooth part
   detail::relief_bounds most_relief;                     ///< of the fine part
-  double lowest_relief_m = 0.0, highest_relief_m = 0.0;  ///< no relief lies beyond these; at most, at least 0
+  double lowest_relief_m = 0.0, highest_relief_m = 0.0;  ///< bounds of the relief; at most and at least 0
   double thickness_m = 0.0;          ///< of the thinnest parts of the body; 0 where no two walls face each other
   double thinnest_resolved_m = 0.0;  ///< parts thinner than this are blurred: three pitches of the smooth part
 
@@ -109,9 +109,9 @@ struct body_field {
   }
 
  private:
-  static constexpr double fade_none = 0.4;        // |grad S|^2 from which there is some relief, far from the surface
-  static constexpr double fade_full = 0.8;        // and all of it
-  static constexpr double distance_slack = 0.25;  // what swept distances may be wrong by, in pitches
+  static constexpr double fade_none = 0.4;        // |grad S|^2 above which relief counts in part, far from the surface
+  static constexpr double fade_full = 0.8;        // |grad S|^2 above which it counts in full
+  static constexpr double distance_slack = 0.25;  // largest error of swept distances, in pitches
 };
 
 }  // namespace asperity

@@ -15,8 +15,8 @@ namespace asperity {
 
 namespace detail {
 
-/// Signed distances at nodes, read as coefficients of a cubic B-spline: continuous with two derivatives. A B-spline's
-/// coefficients are the values of a function that it smooths over a pitch; for the smooth part that is wanted.
+/// Signed distances at nodes, read as coefficients of a cubic B-spline: continuous with two derivatives. With values of
+/// a function as its coefficients a B-spline smooths the function over a pitch, which the smooth part needs.
 struct coarse_grid {
   vec3 low{0.0};  ///< the first node, body frame
   double pitch_m = 1.0;
@@ -32,13 +32,13 @@ struct coarse_grid {
     vec3 out;
     for (int k = 0; k < 3; ++k) {
       const double last = static_cast<double>(nodes[static_cast<std::size_t>(k)]) - 2.0;
-      // std::max first, so that a NaN becomes a number: an index is made of it.
+      // std::max comes first because it makes a number of a NaN: an index is computed from the result.
       out[k] = std::min(std::max(low[k] + pitch_m, p_b[k]), low[k] + last * pitch_m);
     }
     return out;
   }
 
-  /// Value of the node next to a point, plus how far off it is: nowhere less than a distance at the point. @rt safe
+  /// Value of the node next to a point plus how far off it is: an upper bound of the distance there. @rt safe
   [[nodiscard]] double most_beside(const vec3& p_b) const noexcept {
     std::array<std::size_t, 3> n{};
     vec3 off(0.0);
@@ -95,7 +95,7 @@ struct coarse_grid {
     return c_b == p_b ? at_c : at_c - glm::length(p_b - c_b);
   }
 
-  /// Makes a reading at the border one beyond it.
+  /// Turns a reading at the border into one beyond it.
   static void go_on_beyond(const vec3& beyond, coarse_reading& out) noexcept {
     const double away = std::sqrt(glm::dot(beyond, beyond));
     const vec3 n = beyond / away;

@@ -1,4 +1,4 @@
-// The 64 nodes of a cubic B-spline about a point, and what they say there.
+// The 64 nodes of a cubic B-spline about a point, and its value and derivatives there.
 #pragma once
 
 #include <cstddef>

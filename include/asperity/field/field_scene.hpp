@@ -18,7 +18,7 @@ struct field_settings {
   double relief_pitch_m = 0.0;            ///< of the relief; automatic: a texel, at most a third of the pitch above
   double margin_m = 0.0;                  ///< of the grid around the body; automatic: 4 % of its diagonal
   std::size_t most_nodes = 4'000'000;     ///< of the smooth part; 4 bytes each
-  std::size_t relief_bytes = 40'000'000;  ///< about what the relief may take
+  std::size_t relief_bytes = 40'000'000;  ///< about how much memory the relief may take
 
   friend bool operator==(const field_settings&, const field_settings&) = default;
 };

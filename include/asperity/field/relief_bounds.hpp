@@ -1,4 +1,4 @@
-// What bounds the relief of a depth field in a ball.
+// Upper bounds of the relief of a depth field in a ball.
 #pragma once
 
 #include <algorithm>

@@ -57,11 +57,11 @@ class sample_tree {
 
   [[nodiscard]] std::span<const field_sample> samples() const noexcept { return samples_; }
 
-  /// What a visitor says of a ball.
+  /// What a visitor answers about a ball.
   enum class branch_answer : std::uint8_t {
-    away,   ///< nothing in it counts
-    open,   ///< look at its halves
-    taken,  ///< visit all of its leaves without another look
+    away,   ///< leave it out
+    open,   ///< ask about its halves
+    taken,  ///< visit all of its leaves without asking again
   };
 
   /// Calls look(sample_ball, is_leaf), which answers a branch_answer, from the largest ball down, and
@@ -164,8 +164,8 @@ class sample_tree {
     return out;
   }
 
-  // The direction that samples spread least along, by the power method on what is left of their spread's trace. A
-  // direction that is not quite the best makes bounds a little wider, not wrong.
+  // The direction along which samples spread least, by the power method on the trace of their covariance less the
+  // covariance. A direction that is not quite the best makes bounds a little wider, not wrong.
   [[nodiscard]] static vec3 thinnest(std::span<const field_sample> part, const vec3& middle_b) noexcept {
     mat3 rest(0.0);
     vec3 sum(0.0);

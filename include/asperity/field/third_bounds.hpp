@@ -1,4 +1,4 @@
-// What bounds the third derivatives of a body's smooth distance near a point.
+// Upper bounds of the third derivatives of a body's smooth distance near a point.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ class third_bounds {
  public:
   third_bounds() = default;
 
-  /// Allocates a number per seven nodes; while it is made, three.
+  /// Allocates a number per seven nodes, and three while it is made.
   explicit third_bounds(const coarse_grid& of) : low_(of.low), pitch_m_(of.pitch_m) {
     level& least = levels_[0];
     for (std::size_t k = 0; k < 3; ++k) least.along[k] = (of.nodes[k] + 1) / 2;

@@ -20,7 +20,7 @@ struct exit_scene;
 class exit_solver;
 }  // namespace exits
 
-/// W = -dU/dq with U the energy of the least motion that clears (src/least_motion/exit_solver.hpp): a function of the
+/// W = -dU/dq with U the energy of the least motion that clears (src/least_motion/least_motion.cpp): a function of the
 /// pose alone that has a potential, held at any depth up to the middle of a body.
 ///
 /// It needs the bodies and their poses, and no contacts: what finder and depth backend hand on is left as it is.

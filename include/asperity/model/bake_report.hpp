@@ -17,7 +17,7 @@ struct length_spread {
   friend bool operator==(const length_spread&, const length_spread&) = default;
 };
 
-/// How good a bake is, in all that its model needs it for. Distances in metres, shares from 0 to 1.
+/// Measures of how good a bake is. Distances in metres, shares from 0 to 1.
 struct bake_quality {
   length_spread to_original;       ///< from the textured surface to the original
   length_spread to_textured;       ///< from the original to the textured surface
@@ -29,8 +29,8 @@ struct bake_quality {
   double atlas_utilisation = 0.0;  ///< share of the image that coarse triangles cover
   length_spread texel_spacing;     ///< between neighbouring texels on the fine surface; each pair counts the same
 
-  /// Share of the original's area that no texel represents: what has no point of the textured surface that faces the
-  /// same way within two texels. Undercuts, above all.
+  /// Share of the original's area that no texel represents: no point of the textured surface within two texels of it
+  /// faces the same way. Most of it is undercuts.
   double lost_share = 0.0;
   double lost_part_share = 0.0;  ///< of the largest connected part of it, as a share of the original's area
   vec3 lost_part_centre{0.0};    ///< mean over that part's area; zero where nothing is lost

@@ -19,7 +19,7 @@ struct coarse_triangle {
   std::array<vec2, 3> uv{};
 };
 
-/// Closed, 2-manifold, welded triangle mesh in the body frame, metres. No fine relief left in it (paper, section 6.2).
+/// Closed, 2-manifold, welded triangle mesh in the body frame, metres. It holds no relief (paper, section 6.2).
 struct coarse_mesh {
   std::vector<vec3> positions;
   std::vector<coarse_triangle> triangles;

@@ -24,9 +24,9 @@ struct map_image {
 
 /// What a map shows beyond its border.
 enum class map_wrap : std::uint8_t {
-  repeat,    ///< itself again: what mesh formats mean where they say nothing
-  clamp,     ///< its border
-  mirrored,  ///< itself, mirrored in every second tile
+  repeat,    ///< the map again; what mesh formats mean where they do not say
+  clamp,     ///< the nearest pixel of its border
+  mirrored,  ///< the map again, mirrored in every second tile
 };
 
 }  // namespace asperity

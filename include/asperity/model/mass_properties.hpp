@@ -13,7 +13,7 @@ struct mass_properties {
 };
 
 /// Mass properties of the solid that the mesh encloses, of uniform density, by summing signed tetrahedra.
-/// @pre closed and outward oriented; otherwise volume_m3 is not positive and the rest is of no use
+/// @pre closed and outward oriented; otherwise volume_m3 is not positive and the rest means nothing
 [[nodiscard]] inline mass_properties compute_mass_properties(const coarse_mesh& mesh) noexcept {
   mass_properties out;
   if (mesh.positions.empty()) return out;

@@ -18,7 +18,7 @@ struct scene {
   std::vector<model_ptr> fixed;
 };
 
-/// Says so where a scene has nothing for the probe to touch. @return invalid_argument
+/// Checks that a scene has a body for the probe to touch. @return invalid_argument
 [[nodiscard]] inline result<void> check_has_fixed_body(const scene& bodies) {
   if (!bodies.fixed.empty()) return {};
   return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};

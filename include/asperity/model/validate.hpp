@@ -17,7 +17,7 @@ namespace asperity {
 
 /// Largest magnitude of a coordinate in a model, metres. More than this is a wrong unit or a broken file.
 inline constexpr double max_coordinate_m = 1e4;
-/// Most triangles of a coarse mesh. A tick looks at some hundred; this is where memory and checks end.
+/// Largest number of triangles of a coarse mesh. A tick reads some hundred; the limit bounds memory and checks.
 inline constexpr std::size_t max_coarse_triangles = 1'000'000;
 
 namespace detail {
@@ -30,7 +30,7 @@ inline bool is_usable(const vec3& p) noexcept {
   return a.x <= max_coordinate_m && a.y <= max_coordinate_m && a.z <= max_coordinate_m;  // false for NaN
 }
 
-/// Indices, coordinates and areas. Comes first: the other checks index by what this one has seen.
+/// Indices, coordinates and areas. Comes first: the other checks use indices that this one has checked.
 inline result<void> check_triangles(const coarse_mesh& mesh) {
   if (mesh.triangles.size() < 4) {
     return error{error_code::bad_mesh, "the coarse mesh has " + std::to_string(mesh.triangles.size()) +
@@ -120,8 +120,8 @@ inline result<void> check_closed(const coarse_mesh& mesh) {
   return {};
 }
 
-/// The triangles around a vertex form one fan: nowhere does the surface touch itself in a point, where no direction
-/// could be told from its two sides. @pre check_closed() passed
+/// The triangles around a vertex form one fan. Where the surface touched itself in a single point, inside and outside
+/// could not be told apart there. @pre check_closed() passed
 inline result<void> check_fans(const coarse_mesh& mesh) {
   // A corner is where a triangle leaves a vertex along an edge. The corner after it, counter-clockwise, leaves along
   // the edge by which the triangle comes back. Where more than one cycle of corners has the same vertex, fans touch.
