@@ -15,16 +15,16 @@
 
 namespace asperity::exits {
 
-/// What one sample at depth D costs. Its push rises from zero without a kink: stiffness D^2 / (D + onset).
-/// One sample is as good as a face of thousands, since the bed is far stiffer than the spring that presses on it.
+/// Cost of one sample at depth D. Its push rises from zero without a kink: stiffness D^2 / (D + onset).
+/// One sample and a face of thousands hold alike, because the bed is far stiffer than the spring that presses on it.
 struct bed_rule {
   double stiffness_n_per_m = 0.0;
-  double onset_m = 0.0;  ///< from several of these on, the push grows by the stiffness
+  double onset_m = 0.0;  ///< several times deeper than this, the push grows with the full stiffness
 
   /// Integral of the push, J.   @pre depth_m >= 0
   [[nodiscard]] double energy_j(double depth_m) const noexcept {
     const double u = depth_m / onset_m, scale = stiffness_n_per_m * onset_m * onset_m;
-    // The three terms cancel to third order; below this the series is the more exact.
+    // The three terms cancel to third order; below this depth the series is more exact.
     if (u < 1e-2) return scale * u * u * u * (1.0 / 3.0 + u * (-0.25 + u * (0.2 - u * (1.0 / 6.0 - u / 7.0))));
     return scale * (0.5 * u * u - u + std::log1p(u));
   }
@@ -47,7 +47,7 @@ struct bed_sum {
   mat6 hessian;
 };
 
-/// Adds s A^T h A to one half of a matrix, A = (1, -[arm]): what a sample's second derivatives are by shift and turn.
+/// Adds s A^T h A to one half of a matrix, A = (1, -[arm]): a sample's second derivatives by shift and turn.
 /// @rt safe
 inline void add_at_arm(mat6& to, double s, const mat3& h, const vec3& arm) noexcept {
   vec3 by_turn[3];  // column j of h (-[arm]): h (e_j x arm)
@@ -72,7 +72,7 @@ inline void add_at_arm(mat6& to, double s, const mat3& h, const vec3& arm) noexc
 /// The samples that can be inside at motions near one place: gathered once, summed often.
 class bed_patch {
  public:
-  /// @param most marks that are kept; what is more is left out and told
+  /// @param most marks that are kept; further ones are left out and reported
   explicit bed_patch(std::size_t most) { detail::reserve_resident(marks_, most); }
 
   /// Forgets what was gathered. @rt safe
@@ -104,8 +104,8 @@ class bed_patch {
     return out;
   }
 
-  /// Calls take(mark, its reading at x) for every sample that is inside at x. What it learns of the others bounds their
-  /// depths at the next place: the steps of an iteration become short, and few are read again.   @pre covers(x_w)
+  /// Calls take(mark, its reading at x) for every sample that is inside at x. Readings of the others bound their depths
+  /// at the next place: the steps of an iteration become short, and few are read again.   @pre covers(x_w)
   template <class Take>
   void for_each_inside(const motion& x_w, posed_samples& samples, Take&& take) noexcept {
     const double far_m = samples.steepest() * distance_m(x_w, bounded_at_w_, samples);
@@ -124,11 +124,11 @@ class bed_patch {
     return gathered_ && distance_m(x_w, place_w_, samples) <= reach_m_;
   }
   void gather(const motion& x_w, posed_samples& samples) noexcept {
-    // Who gathers again is under way to somewhere: the next time will be later.
+    // A caller that gathers again is on the move: a larger reach makes the next time come later.
     reach_m_ = gathered_ ? std::min(2.0 * reach_m_, longest_reach_m) : reach_m;
     place_w_ = bounded_at_w_ = x_w;
     gathered_ = true;
-    // Where more are near than fit, only those nearer by: what lacks samples gives way.
+    // Where more are near than fit, only the nearest are kept: a bed that lacks samples is softer.
     for (bool fits = false; !fits;) {
       fits = true;
       marks_.clear();
@@ -152,7 +152,7 @@ class bed_patch {
 
   /// How far from where samples were gathered the sum is right: several steps of a Newton iteration. Doubled each time.
   static constexpr double reach_m = 40e-6, longest_reach_m = 0.32e-3, least_reach_m = 2e-6;
-  bool crowded = false;  ///< samples were left out where it was gathered last
+  bool crowded = false;  ///< samples were left out at the last gathering
 
  private:
   // No sample moves further from y to x.

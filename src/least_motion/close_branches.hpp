@@ -1,4 +1,4 @@
-// Where two bodies are close at a pose: what the pivot of ways out is the middle of.
+// Where two bodies are close at a pose; the pivot of ways out is the middle of that.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace asperity::exits {
 
-/// Adds the branches of a fixed size, as points: close ones count, whatever the pose the same branches.
+/// Adds the close ones of the branches of a fixed size, as points. The branches are the same at every pose.
 /// @param most_relief_m no sample has more   @param size_m of the branches   @param count of readings
 /// @rt safe
 inline void add_close(const meeting& m, const vec3& centre_w, double most_relief_m, double size_m, reading_count& count,
@@ -22,7 +22,7 @@ inline void add_close(const meeting& m, const vec3& centre_w, double most_relief
   const std::span<const branch> branches = m.of_x->marks.branches();
   if (branches.empty()) return;
   const detail::coarse_grid& grid = m.in_y->body->field.smooth;
-  // By S: what notches add to its slope says nothing of how close the bodies are.
+  // By S alone: the slope that notches add does not depend on how close the bodies are.
   const double steepest = m.in_y->bounds.steepest_of_smooth();
   const mat3 to_w = glm::transpose(m.motion_y), turn_wx = glm::mat3_cast(m.T_wx.rotation);
   std::array<std::uint32_t, 64> waiting;

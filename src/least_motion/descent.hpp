@@ -78,14 +78,14 @@ inline void planes_at(const vec3& x, std::span<const mark> of, posed_samples& sa
     const coarse_reading d = samples.read(m, x);
     static_cast<void>(out.push_back({d.value_m, d.slope}));
   }
-  // The least motion over them, which follows, takes as long as a few more readings of each.
+  // The least motion over them, which comes next, takes as long as a few more readings of each.
   samples.count.spent += 3 * of.size();
 }
 
-/// Planes of earlier steps that still hold. In a notch whose bottom is round the plane of one place swings about with
-/// the place, further each time where the way out is longer than the radius; two planes of one sample, from either
-/// side, hold the bottom between them. Where the surface bends the other way, an earlier plane would be a wall that is
-/// not there: it goes as soon as the sample is found to be less deep than the plane has it.
+/// Planes of earlier steps that still hold. In a notch with a round bottom the plane of one place turns with the place,
+/// further each time where the way out is longer than the radius; two planes of one sample, one from each side, enclose
+/// the bottom. Where the surface bends the other way, an earlier plane would be a wall that does not exist: it is
+/// dropped as soon as the sample is found to be less deep than the plane says.
 class earlier_planes {
  public:
   /// Adds those that hold at x to the planes of the witnesses there, and keeps these for later.
@@ -149,13 +149,13 @@ class earlier_planes {
 
 /// From x to near a way out as seen from y. Adds the deepest samples that it meets to the witnesses.
 /// @param deepest_known the deepest sample at x is among them
-/// @param useful_m ends where what they make of a way out is longer
+/// @param useful_m ends where their way out is longer
 /// @param known ends, after some steps, next to one of these
 /// @rt safe: at most 14 steps, each with a search for the deepest sample
 [[nodiscard]] inline vec3 descend(const vec3& y, vec3 x, const descent_rule& rule, witnesses& met, bool deepest_known,
                                   double useful_m, std::span<const vec3> known, posed_samples& samples) noexcept {
   constexpr double next_to_m = 60e-6;
-  constexpr double near_m = 1e-3;  // how far outside a sample may be and still tell its plane
+  constexpr double near_m = 1e-3;  // how far outside a sample may be for its plane to count
   double longest_m = rule.longest_m;
   exit_planes planes;
   earlier_planes earlier;
@@ -166,7 +166,7 @@ class earlier_planes {
     const bool ask = i > 0 || !deepest_known;
     if (ask && samples.deepest(x, above_m + 1e-9, m)) {
       above_m = m.depth_m;
-      // The first half are the older and stay; the newer half is a queue.
+      // The older half stays; the newer half is a queue.
       if (met.full()) {
         std::copy(met.begin() + met.size() / 2 + 1, met.end(), met.begin() + met.size() / 2);
         met.truncate(met.size() - 1);

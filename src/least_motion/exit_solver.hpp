@@ -60,8 +60,8 @@ class exit_solver {
 
   // Adds up the wrench and the stiffness of the ways out that have weight.
   void add_up() noexcept;
-  // Where an iteration was cut short the bed's push may be anything. In balance it is the spring's pull: this adds that,
-  // at the deepest sample.
+  // Adds the spring's pull, at the deepest sample, for a way out that did not settle: the bed's push, which equals the
+  // pull in balance, may be anything there.
   void pull_out(const way_out& w) noexcept;
 
   exit_rule rule_;

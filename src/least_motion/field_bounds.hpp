@@ -1,4 +1,4 @@
-// What bounds the moving shape of a body in a ball.
+// Upper bounds of the moving shape of a body in a ball.
 #pragma once
 
 #include <algorithm>
@@ -154,7 +154,7 @@ class field_bounds {
     }
   }
 
-  // What a cell of S with finer nodes has at most.
+  // Bounds of a cell of S with finer nodes.
   struct finer_cell {
     float highest_m = 0.0F, bend_per_m = 0.0F;
     double steepest = 0.0;
@@ -261,7 +261,8 @@ class field_bounds {
     for (std::size_t z = 1; z + 2 < n[2]; ++z) {
       for (std::size_t y = 1; y + 2 < n[1]; ++y) {
         for (std::size_t x = 1; x + 2 < n[0]; ++x) {
-          // Cheap, and sharper than most slopes of the spline, which averages: only where it is larger they are read.
+          // Cheap, and mostly larger than the spline's slopes, which are averages: those are read only where it exceeds
+          // the largest so far.
           const vec3 middle = middle_slope(grid_->value.data() + grid_->at(x, y, z), stride) / grid_->pitch_m;
           if (glm::dot(middle, middle) <= most) continue;
           for (std::size_t c = 0; c < 8; ++c) {

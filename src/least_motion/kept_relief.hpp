@@ -13,15 +13,15 @@
 
 namespace asperity::exits {
 
-/// Relief of the size of the texture, as it is; more than that, which is what a sharp edge rises above the smooth part,
-/// no further than the limit; and none where the smooth part is no distance, beside edges and deep behind them.
+/// Keeps relief of the size of a texture as it is. Keeps larger relief, which is how far a sharp edge rises above the
+/// smooth part, up to the limit; and none where the smooth part is not a distance, beside edges and deep behind them.
 ///
-/// A texture has to stay as it is at the pose: if it moved, a way out would snap from valley to valley. An edge must
-/// not stay: its relief is a part of the shape, and held beside it where the probe has moved on it would be a wall that
-/// is not there. In a notch the relief moves with the smooth part, see moving_m(). Over a sharp edge the shape is the
-/// smooth part's, which is a little rounder; the samples along the edge tell of it in the other body's field. Behind an
-/// edge the feet of neighbouring points lie far apart, and relief would change with the place many times as fast as the
-/// surface has it.
+/// A texture has to stay as it is at the pose, because a way out would jump from valley to valley if it moved. The
+/// relief of an edge must not stay, because it is part of the shape: kept at its place after the probe has moved on, it
+/// would be a wall that does not exist. In a notch the relief moves with the smooth part, see moving_m(). Over a sharp
+/// edge the moving shape is the smooth part, which is a little rounder; the samples along the edge are measured in the
+/// other body's field. Behind an edge the feet of neighbouring points lie far apart, so relief would change with the
+/// place many times as fast as on the surface.
 class kept_relief {
  public:
   kept_relief() = default;
@@ -29,7 +29,7 @@ class kept_relief {
 
   [[nodiscard]] double limit_m() const noexcept { return limit_m_; }
 
-  /// What is kept of a relief, at least up to half the limit as it is. With its sign, and rising with it. @rt safe
+  /// The part of a relief that is kept: all up to half the limit, less beyond; monotonic, of the same sign. @rt safe
   [[nodiscard]] double limited(double relief_m) const noexcept { return limited({relief_m, {}}).value_m; }
 
   /// The relief at a place of a field, and its slope by the place. @rt safe
@@ -41,8 +41,8 @@ class kept_relief {
     return {share.value * t.value_m, share.value * t.slope + t.value_m * share.slope};
   }
 
-  /// What of the relief moves with the smooth part, m: in notches, next to the surface, what is not kept of relief
-  /// below zero; the smooth part fills notches. Zero elsewhere; textures are kept. @rt safe
+  /// The part of the relief that moves with the smooth part, m. In notches, which the smooth part fills, and next to
+  /// the surface: the negative relief that is not kept. Zero elsewhere. @rt safe
   [[nodiscard]] double moving_m(const body_field& field, const vec3& p_b) const noexcept {
     const coarse_reading s = field.coarse(p_b);
     const kept_share share(s);
@@ -51,7 +51,7 @@ class kept_relief {
     const double in_notch = smoothstep((bend_of(s, field.smooth.pitch_m) - notch_none) / (notch_full - notch_none));
     if (!(in_notch > 0.0)) return 0.0;
     const double all_m = field.relief(p_b, s).value_m, more_m = all_m - share.value * limited(all_m);
-    // All of it wherever little of the relief is kept, none where all is.
+    // All of it where little of the relief is kept, none where all is.
     const double squared = share.value * share.value, moves = 1.0 - squared * squared;
     return in_notch * moves * smoothstep((layer_none - off) / (layer_none - layer_full)) * std::min(0.0, more_m);
   }
@@ -64,7 +64,7 @@ class kept_relief {
     return !keeps_all(s) && std::fabs(s.value_m) < layer_none * pitch_m && bend_of(s, pitch_m) > 0.0;
   }
 
-  static constexpr double layer_full = 0.8, layer_none = 1.4;  ///< |S| of what moves wholly, and not, in pitches
+  static constexpr double layer_full = 0.8, layer_none = 1.4;  ///< pitches: |S| of what moves in full, and not
 
  private:
   static constexpr double kept_none = 0.75, kept_full = 0.95;  // |grad S|^2 from which some relief is kept, and all
@@ -89,7 +89,7 @@ class kept_relief {
     }
   };
 
-  // As it is up to half the limit, then less and less; two continuous derivatives.
+  // The identity up to half the limit, then less and less; two continuous derivatives.
   [[nodiscard]] field_reading limited(const field_reading& t) const noexcept {
     const double half = 0.5 * limit_m_, more = std::fabs(t.value_m) - half;
     if (!(more > 0.0)) return t;

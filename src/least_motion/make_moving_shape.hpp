@@ -67,7 +67,7 @@ class shape_bricks {
     for (std::size_t k = 0; k < grid.nodes[2]; ++k) {
       for (std::size_t j = 0; j < grid.nodes[1]; ++j) {
         for (std::size_t i = 0; i < grid.nodes[0]; ++i) {
-          // The nodes' own values are a pitch off at most.
+          // The nodes' own values differ from S by a pitch at most.
           const double about_m = std::fabs(static_cast<double>(grid.value[grid.at(i, j, k)]));
           if (about_m > (kept_relief::layer_none + 1.0) * grid.pitch_m) continue;
           if (!kept_relief::may_move(field_.coarse(grid.low + grid.pitch_m * vec3(i, j, k)), grid.pitch_m)) continue;
@@ -84,7 +84,7 @@ class shape_bricks {
     }
   }
 
-  // Reads what moves at the nodes of the marked bricks.
+  // Reads the relief that moves, at the nodes of the marked bricks.
   void measure() {
     const detail::coarse_grid& grid = field_.smooth;
     const double pitch_m = grid.pitch_m / static_cast<double>(finer);
@@ -140,7 +140,7 @@ class shape_bricks {
     return out;
   }
 
-  // What moves at the nodes of a brick and its rim. False where nothing does.
+  // The relief that moves, at the nodes of a brick and its rim. False where none does.
   [[nodiscard]] bool moves_about(std::size_t x, std::size_t y, std::size_t z, rim_nodes& v) const noexcept {
     const measured_row along_x = row_of(0, x), along_y = row_of(1, y), along_z = row_of(2, z);
     bool any = false;

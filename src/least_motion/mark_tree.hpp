@@ -86,8 +86,8 @@ class mark_tree {
     return out;
   }
 
-  // The direction that samples spread least along, by the power method on what is left of their spread's trace. A
-  // direction that is not quite the best makes the bounds a little wider, not wrong.
+  // The direction along which samples spread least, by the power method on the trace of their covariance less the
+  // covariance. A direction that is not quite the best makes the bounds a little wider, not wrong.
   [[nodiscard]] static vec3 thinnest(std::span<const field_sample> part, const vec3& mean) noexcept {
     mat3 rest(0.0);
     double trace = 1e-30;

@@ -27,18 +27,18 @@ struct meeting {
   pose T_wx;
   mat3 turn_yx{1.0};  ///< with shift_y: from X's frame to Y's, at the pose as given
   vec3 shift_y{0.0};
-  mat3 motion_y{1.0};            ///< what a motion of the probe, world axes, does to X's points in Y's frame
+  mat3 motion_y{1.0};            ///< from a motion of the probe, world axes, to that of X's points in Y's frame
   vec3 pivot_y{0.0};             ///< in Y's frame, at the pose as given
   std::uint32_t body = 0;        ///< index in scene::fixed of the body that is not the probe
   bool of_probe = true;          ///< X is the probe
-  std::size_t first_sample = 0;  ///< in what posed_samples keeps per sample, and
-  std::size_t first_branch = 0;  ///< per branch
+  std::size_t first_sample = 0;  ///< in the list that posed_samples keeps per sample
+  std::size_t first_branch = 0;  ///< in its list per branch
 };
 
 /// What a solve may spend, and what it has spent: readings of a field or of a table of its bounds.
 struct reading_count {
   std::size_t spent = 0, most = 0;
-  bool cut = false;  ///< something was left out because nothing was left
+  bool cut = false;  ///< something was left out because no readings were left
 
   [[nodiscard]] bool left() noexcept {
     if (spent < most) return true;

@@ -16,7 +16,7 @@ namespace asperity::exits {
 /// Ways out of one pose.
 using ways_out = fixed_vector<way_out, 24>;
 
-/// The place that ways out with these weights look from.
+/// The place y to which the springs of ways out with these weights pull back.
 [[nodiscard]] inline vec3 seen_from(const ways_out& ways, const exit_springs& k) noexcept {
   vec3 mean(0.0);
   for (const way_out& w : ways) mean += w.weight * w.z_w;
@@ -34,7 +34,7 @@ using ways_out = fixed_vector<way_out, 24>;
   return sum + 0.5 * k.each * k.each / (k.mixed - k.each) * glm::dot(mean, mean);
 }
 
-/// The weights of a few ways out that make them equally dear, adding up to 1; some may be negative. Where the ways out
+/// The weights of a few ways out at which all cost the same, adding up to 1; some may be negative. Where the ways out
 /// do not determine them, being more than four or in one line, those that lead to the cheapest mixture. False where a
 /// number is not finite.
 /// @param cost  each/2 z^2 + bed, in the order of z, N/m times square metres   @rt safe
@@ -77,10 +77,10 @@ template <std::size_t N>
   return true;
 }
 
-/// Sets the weights to those of the least energy, a convex problem, and returns the place that they look from.
+/// Sets the weights to those of the least energy, a convex problem, and returns seen_from() for them.
 ///
-/// By active sets: makes the ways out with weight equally dear; where one would get less than none it goes; where
-/// another is cheaper it comes. Four are enough in general, since their motions lie in three dimensions.
+/// By active sets: finds the weights at which all ways out with weight cost the same; drops one whose weight would be
+/// negative; adds one that is cheaper. Four are enough in general, since their motions lie in three dimensions.
 /// @rt safe: at most 100 sets
 inline vec3 mix(ways_out& ways, const exit_springs& k) noexcept {
   constexpr std::size_t most_active = 8;

@@ -1,4 +1,4 @@
-// What a way out moves of a body: the smooth part of its field, and what notches lie below that.
+// The part of a body that a way out moves: the smooth part of its field, and the relief of notches below it.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace asperity::exits {
 
-/// S' = S + what moves of the relief (kept_relief::moving_m()): a cubic B-spline with two continuous derivatives, as S
+/// S' = S + the relief that moves (kept_relief::moving_m()): a cubic B-spline with two continuous derivatives, as S
 /// is. In notches, which S fills by up to a third of its pitch, its nodes lie a third of the pitch apart.
 ///
 /// Nodes between those of S continue the same spline exactly (knot insertion), so that S' is S wherever nothing is

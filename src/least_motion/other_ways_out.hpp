@@ -1,4 +1,4 @@
-// Are there other ways out, as near as those that are known? Rays from one place, stepped by the depths of witnesses.
+// Searches for other ways out, as near as those that are known, by rays from one place.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +26,9 @@ struct search_region {
 using found_places = fixed_vector<vec3, 24>;
 
 /// A search with its memory. A sample that is deep at a place is deep in a ball about it, because depths change by a
-/// metre per metre at most. So a ray goes from ball to ball, each of the sample that is deepest among a few witnesses;
-/// where all of them let go, it asks for the deepest sample of all, and where there is none it is outside: from there a
-/// descent leads to a way out. A ray that comes to where the witnesses alone would lead to a way out that is known
-/// ends.
+/// metre per metre at most. So a ray steps from ball to ball, each of the sample that is deepest among a few witnesses.
+/// Where no witness is inside, it asks for the deepest sample of all. Where no sample is inside, the ray is outside,
+/// and a descent from there leads to a way out. A ray ends where the witnesses alone would lead to a known way out.
 class other_ways_out {
  public:
   explicit other_ways_out(const descent_rule& rule) noexcept : rule_(rule) {}
@@ -63,7 +62,7 @@ class other_ways_out {
         double go = stride(x, in, samples);
         if (go <= 0.0) {
           const vec3 z = relax(in.y_w, x, seen(), rule_, {leads_to_.data(), leads_to_.size()}, same_m, samples);
-          // More samples make it longer, never shorter.
+          // More samples make a way out longer, never shorter.
           if (leads_to_known(z) || glm::length(z - in.y_w) > in.useful_m) break;
           if (!samples.deep_one(x, in.deepest_m, m)) {
             follow(z, in, known, samples, out);
@@ -81,12 +80,12 @@ class other_ways_out {
   static constexpr std::size_t witnesses_from_known = 24, most_witnesses = 32;
   static constexpr double same_m = 10e-6, least_step = 0.002;
 
-  // A sample this deep is inside within this of where it is.
+  // Radius of the ball in which a sample this deep stays inside.
   [[nodiscard]] static double ball(double depth_m, const search_region& in, const posed_samples& samples) noexcept {
     return (depth_m - in.deepest_m) / samples.steepest();
   }
 
-  // The first witness that is inside; those that were of use come to the front.
+  // The first witness that is inside; witnesses that were of use move to the front.
   [[nodiscard]] double stride(const vec3& x, const search_region& in, posed_samples& samples) noexcept {
     for (std::size_t i = 0; i < met_.size(); ++i) {
       const double d = samples.depth(met_[i], x);
@@ -99,7 +98,7 @@ class other_ways_out {
 
   [[nodiscard]] std::span<const mark> seen() const noexcept { return {met_.data(), met_.size()}; }
 
-  // A new witness. Where it is inside, or nearly, at what the others make of a way out, that has to move.
+  // Adds a witness. A way out of the others at which it is inside, or nearly so, has to be found anew.
   void remember(const mark& m, const search_region& in, posed_samples& samples) noexcept {
     constexpr double nearly_m = 2e-6;
     if (met_.size() < most_witnesses) {
@@ -113,7 +112,7 @@ class other_ways_out {
     }
   }
 
-  // From outside to a way out, with witnesses of its own; those that decide it are remembered.
+  // From outside to a way out, with witnesses of its own; it remembers those that decide the way out.
   void follow(const vec3& from, const search_region& in, std::span<const way_out> known, posed_samples& samples,
               found_places& out) noexcept {
     own_ = met_;
@@ -150,7 +149,7 @@ class other_ways_out {
 
   descent_rule rule_;
   witnesses met_, own_;
-  fixed_vector<vec3, 48> leads_to_;  // what the witnesses alone make of the ways out that are known
+  fixed_vector<vec3, 48> leads_to_;  // the ways out of the witnesses alone, near those that are known
 };
 
 }  // namespace asperity::exits

@@ -1,4 +1,4 @@
-// Where a way out turns about, and how stiff the spring is that resists the turn.
+// The point about which a way out turns, and the stiffness of the spring that resists the turn.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@ namespace asperity::exits {
 /// The middle of where the bodies are close at a pose, its spread, and the derivatives of both by the pose. From the
 /// probe's centre of mass, world axes; derivatives by a translation of the probe and a rotation about that centre.
 ///
-/// Where a corner touches, the middle is next to it and a turn about it does not let it out: the contact keeps its
-/// stiffness. Where a face lies on a face the middle is the face's, and a turn lets out what rocks.
+/// Where a corner touches, the middle is next to it and a turn about it does not free it: the contact keeps its
+/// stiffness. Where a face lies on a face the middle is the face's, and a turn frees a face that rocks.
 struct pivot {
   vec3 centre{0.0};
   vec6 centre_by_pose[3];    ///< of each coordinate
@@ -22,7 +22,7 @@ struct pivot {
   vec6 arm_squared_by_pose;
 };
 
-/// Sums over points that are close, and what they make.
+/// Sums over points that are close, and the pivot that they make.
 class pivot_sum {
  public:
   /// @param weight of a point of full depth   @param reach_m how far outside a point counts

@@ -130,8 +130,7 @@ class posed_samples {
     return out;
   }
 
-  /// Slope of the relief by the sample's place at the pose, world axes; as for read(), what a translation of the probe
-  /// does to it.
+  /// Slope of the relief by the sample's place at the pose, world axes; as for read(), by a translation of the probe.
   [[nodiscard]] vec3 relief_slope(const mark& m) noexcept {
     const meeting& a = meetings_[m.meeting];
     ++count.spent;
@@ -163,8 +162,8 @@ class posed_samples {
     });
     return any;
   }
-  /// A sample at x that is deeper than above_m and half as deep as any, where one is. Where whole faces lie in each
-  /// other, thousands are nearly as deep as the deepest; telling which one that is would take a reading of each.
+  /// A sample at x that is deeper than above_m and at least half as deep as the deepest. Where whole faces lie in each
+  /// other, thousands are nearly as deep as the deepest; finding the deepest would take a reading of each.
   [[nodiscard]] bool deep_one(const motion& x_w, double above_m, mark& out) noexcept {
     constexpr double beyond = 2.0;
     bool any = false;
@@ -186,8 +185,8 @@ class posed_samples {
   // How the spring that resists a turn grows with the contact, and how finely the contact's middle is found.
   static constexpr double arm_per_spread = 8.0, patches_per_radius = 12.0;
 
-  // What was read of a branch at the pose, where a motion had taken its middle: S' and its slope there bound S' for
-  // other motions near by, without another reading.
+  // A reading of a branch at the pose, where a motion had taken its middle: S' and its slope there bound S' for other
+  // motions near by, without another reading.
   struct kept_branch {
     vec3 moved_y{0.0}, place_y{0.0};
     coarse_reading at;
@@ -221,9 +220,9 @@ class posed_samples {
     k.bend_per_m = bounds.bend_per_m(k.place_y, k.bend_within_m);
   }
 
-  // Upper bound of the relief that points within radius_m of where a branch was read have at the pose. Their feet lie
-  // no further apart than they do, but for what the slope turns. Where the slope is too short to say so, the bound
-  // stays what it was.
+  // Upper bound of the relief, at the pose, of points within radius_m of where a branch was read. Their feet lie no
+  // further apart than the points, but for the turn of the slope. Where the slope is too short for that, the bound
+  // stays as it was.
   [[nodiscard]] static double most_relief_near(const meeting& m, kept_branch& k, double radius_m) noexcept {
     constexpr double kept_from = 0.75;  // |grad S|^2, as kept_relief has it
     const double square = glm::dot(k.at.slope, k.at.slope);
@@ -238,8 +237,8 @@ class posed_samples {
     return m.in_y->relief.limited(m.in_y->body->field.most_relief.most_m(foot_y, far_m));
   }
 
-  // No sample of a branch, moved, is deeper. Bounds from the cheap to the sharp: what was read of it for another
-  // motion, the table, and along the branch's planes the slope and the bend.
+  // Upper bound of the depth of a branch's samples, moved. Bounds come from the cheap to the sharp: an earlier reading
+  // for another motion, the table, and along the branch's planes the slope and the bend.
   [[nodiscard]] double most_in(const meeting& m, std::uint32_t index, const moved_by& by, double most_relief_m,
                                double above_m) noexcept {
     constexpr double table_beyond = 15.0;  // pitches: larger balls are bounded by the table alone
@@ -297,7 +296,7 @@ class posed_samples {
       std::uint32_t branch;
       double most_m;
     };
-    // Halving leaves a waiting sibling and a parent that is to learn at each of at most 32 levels.
+    // At each of at most 32 levels a sibling waits, and a parent whose bound is updated later.
     std::array<item, 96> waiting;
     constexpr double learns = std::numeric_limits<double>::infinity();
     std::size_t n = 0;

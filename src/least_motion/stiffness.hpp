@@ -1,4 +1,4 @@
-// The stiffness of a mixture of ways out: what is left of the bed's when the motions follow the pose.
+// The stiffness of a mixture of ways out: that of the bed, reduced because the motions follow the pose.
 #pragma once
 
 #include <cstddef>
@@ -30,7 +30,7 @@ struct way_out_stiffness {
   vec6 by_both[6];  ///< column i: by the pose and the motion's coordinate i, shift and turn
   mat6 by_motion;
 
-  /// One sample's share. The curvature of the relief is left out.
+  /// Adds one sample. The curvature of the relief is left out.
   /// @param rise_n_per_m of its push by its depth   @param push_n 0 leaves the curvature of the bodies out
   void add(double rise_n_per_m, double push_n, const sample_depth& d) noexcept {
     add_outer(by_pose, rise_n_per_m, d.by_pose);
@@ -74,7 +74,7 @@ struct way_out_stiffness {
     add_at_arm(by_motion, push_n, h, d.arm);
   }
 
-  /// The pivot's way with the pose, and the spring's change, once for all samples.
+  /// Adds how the pivot and the spring follow the pose, once for all samples.
   /// @param turn_w of the way out   @param pushed_n sum of push times slope
   void add_pivot(const pivot& about, double k_n_per_m, const vec3& turn_w, const vec3& pushed_n) noexcept {
     for (std::size_t r = 0; r < 3; ++r) {
@@ -92,7 +92,7 @@ struct way_out_stiffness {
 ///
 ///     v_qq = by_pose - by_both M^-1 by_both^T,   v_yq = K M^-1 by_both^T,   v_yy = K - K^2 M^-1
 ///
-/// and y, the place that they look from, follows too: U_qq = sum w v_qq + v_yq^T (C - v_yy)^-1 v_yq. The weights count
+/// and y, where the springs pull to, follows too: U_qq = sum w v_qq + v_yq^T (C - v_yy)^-1 v_yq. The weights count
 /// as fixed.
 class mixed_stiffness {
  public:
@@ -131,7 +131,7 @@ class mixed_stiffness {
   /// dW/dq: symmetric, negative semidefinite. Directions in which the bodies' curvature makes the force fall count as
   /// without stiffness.
   [[nodiscard]] mat6 sum() const noexcept {
-    constexpr double length_m = 0.01;  // a lever: what rotations are compared with translations by
+    constexpr double length_m = 0.01;  // the lever that compares rotations with translations
     const mat3 inverse = glm::inverse(k_.mixed * mat3(1.0) - by_place_);
     mat6 out;
     for (std::size_t r = 0; r < 6; ++r) {

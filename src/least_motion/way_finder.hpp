@@ -27,8 +27,8 @@
 
 namespace asperity::exits {
 
-/// The ways out of one pose: a first one, and those that would be cheaper than the mixture of those there are, until
-/// none is missing. Keeps nothing from pose to pose. All memory is taken when it is made.
+/// The ways out of one pose: a first one, then others as long as one is found that is cheaper than the mixture of those
+/// known. Keeps nothing from pose to pose. All memory is taken when it is made.
 /// @rt find() and all that follows: safe, no more readings than the rule has
 class way_finder {
  public:
@@ -54,7 +54,7 @@ class way_finder {
     if (any) {
       find_others();
       for (const way_out& w : ways_) hit_.unsettled |= w.weight > 0.0 && !w.settled;
-      if (samples_.count.cut) forget_patches();  // what was being gathered then lacks samples
+      if (samples_.count.cut) forget_patches();  // a patch that was being gathered lacks samples
     }
     hit_.readings = samples_.count.cut;
     return any;
@@ -82,10 +82,10 @@ class way_finder {
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  // A way out, as if it were alone: the one that a descent from here leads to, or the nearest that a search finds where
-  // the descent ends inside, half way between two walls. False where nothing overlaps.
+  // The first way out, settled as if it were alone: the one that a descent from here leads to, or the nearest that a
+  // search finds where the descent ends inside, half way between two walls. False where nothing overlaps.
   [[nodiscard]] bool find_first() noexcept {
-    constexpr double shallow_m = 30e-6;  // from here the iteration finds its way alone
+    constexpr double shallow_m = 30e-6;  // up to here the iteration needs no descent
     mark m;
     if (!samples_.deepest(vec3(0.0), 0.0, m)) return false;
     deepest_ = m;
@@ -109,7 +109,7 @@ class way_finder {
       }
     }
     if (samples_.count.cut) {
-      // Too little to settle. What a cut descent has come to may lie anywhere: out of the deepest sample is near by.
+      // Too few readings to settle. A descent that was cut may end anywhere; out of the deepest sample is near by.
       if (!(first.settled && is_out(first))) {
         first = {};
         first.z_w = out_of(m);
@@ -131,8 +131,8 @@ class way_finder {
     return length > 0.0 ? (-m.depth_m / length) * slope : vec3(0.0);
   }
 
-  // The bed gives way by a fiftieth of the motion, and costs as much of what the motion costs. Where it gives way by
-  // more than a tenth, or costs as much as the motion, it pushes from both sides: that is inside.
+  // Where a way out is clear, the bed gives way by a fiftieth of the motion and costs a fiftieth as much. Where it
+  // gives way by more than a tenth, or costs as much as the motion, it pushes from both sides: the place is inside.
   [[nodiscard]] bool is_out(const way_out& w) const noexcept {
     const double length = length_m(w.z_w, w.turn_w), light = 4.0 * bed_.onset_m;
     return w.bed.deepest_m <= 0.1 * length + light &&
@@ -147,7 +147,7 @@ class way_finder {
     return length_m(a.z_w - b.z_w, a.turn_w - b.turn_w);
   }
 
-  // Adds ways out until none is missing that would be cheaper than the mixture of those there are.
+  // Adds ways out until none is found that would be cheaper than the mixture of those known.
   void find_others() noexcept {
     constexpr int most_rounds = 60;
     constexpr double beyond = 1.3;       // a ray comes out beside a way out, further away; with 1.1 some are missed
@@ -179,13 +179,13 @@ class way_finder {
     hit_.rounds = true;
   }
 
-  // A way out past several walls, or over a crest, can have another one beside it, closer than the search tells them
-  // apart. It is found by descents from beside the first. True where there is a new one.
+  // Finds another way out close beside one past several walls or over a crest, closer than the search can separate, by
+  // descents from places beside it. True where there is a new one.
   [[nodiscard]] bool look_beside(const vec3& y, double least_j, double useful_m) noexcept {
     constexpr int starts = 12;                      // around it, near and far in turn
     constexpr double near_by = 0.1, far_by = 0.22;  // of the way; with one of them, or four sides, some are missed
-    // Descents are dear where whole faces lie in each other: they may take as much as the search did so far, and leave
-    // an eighth of all for what they find.
+    // Descents cost much where whole faces lie in each other: they may spend as much as the search has so far, and
+    // leave an eighth of all readings for settling what they find.
     const std::size_t hard = samples_.count.most, spent = samples_.count.spent;
     samples_.count.most = std::min(hard - hard / 8, spent + std::max<std::size_t>(spent, 60'000));
     bool any = false;
@@ -203,7 +203,7 @@ class way_finder {
         const double turned = 2.0 * std::numbers::pi * n / starts;
         const double beside_m = std::max(60e-6, (n % 2 == 0 ? near_by : far_by) * length);
         const vec3 start = w.z_w + 0.1 * length * along + beside_m * (std::cos(turned) * u + std::sin(turned) * v);
-        // Where its own samples lead back to it, others could only make another way longer.
+        // Where its own samples lead back to it, further samples could only make another way out longer.
         if (glm::length(relax(y, start, own, descent_, {&home, 1}, 10e-6, samples_) - home) < 10e-6) continue;
         met_.clear();
         for (const mark& m : own) static_cast<void>(met_.push_back(m));
@@ -214,7 +214,7 @@ class way_finder {
     samples_.count.most = hard;
     if (samples_.count.cut) {
       samples_.count.cut = false;
-      forget_patches();  // what was being gathered lacks samples
+      forget_patches();  // a patch that was being gathered may lack samples
     }
     return any;
   }
@@ -238,7 +238,7 @@ class way_finder {
     return false;
   }
 
-  // Settles the ways out that count, or nearly so, as seen from y. True where none has moved.
+  // Settles the ways out that have weight, or nearly so, as seen from y. True where none has moved.
   [[nodiscard]] bool settle_again(const vec3& y) noexcept {
     constexpr double still_m = 1e-10, same_m = 50e-6, nearly = 1.05;
     bool at_rest = true;
@@ -304,7 +304,7 @@ class way_finder {
     return patches_[next_patch_];
   }
 
-  // True where it is new and cheaper than all there are.
+  // True where it is new and cheaper than all known ones.
   bool add(way_out w, const vec3& y, double least_j) noexcept {
     constexpr double same_m = 5e-7, cheaper = 1.0 - 1e-10;
     if (samples_.count.cut || !is_out(w)) return false;  // where the count is cut its bed may lack samples

@@ -19,17 +19,17 @@ namespace asperity::exits {
 /// Springs of the law, N/m: see exit_rule.
 struct exit_springs {
   double one = 0.0;    ///< to the pose, where there is one way out
-  double each = 0.0;   ///< to the place that several ways out look from
+  double each = 0.0;   ///< to the place y, where there are several
   double mixed = 0.0;  ///< bound of the force's slope where several are mixed
 
-  /// What each way out costs at y besides the bed's energy, and where ways out with this mean are looked at from.
+  /// The spring's energy of a way out as seen from y, and the place y that belongs to ways out with this mean.
   [[nodiscard]] double pull_j(const vec3& z, const vec3& y) const noexcept {
     return 0.5 * each * glm::dot(z - y, z - y);
   }
   [[nodiscard]] vec3 seen_from(const vec3& mean_z) const noexcept { return (-each / (mixed - each)) * mean_z; }
 };
 
-/// A motion of the probe that clears the bodies, but for what the bed gives way.
+/// A motion of the probe that clears the bodies, up to how far the bed gives way.
 struct way_out {
   vec3 z_w{0.0};     ///< of the pivot
   vec3 turn_w{0.0};  ///< about the pivot, rad
@@ -46,7 +46,7 @@ struct way_out {
   }
 };
 
-/// Keeps the deepest of what it is shown. @rt safe
+/// Keeps the deepest of the marks it is given. @rt safe
 template <std::size_t N>
 void keep_deepest(fixed_vector<mark, N>& among, const mark& m) noexcept {
   if (among.push_back(m)) return;
@@ -69,7 +69,7 @@ struct settling {
                                     posed_samples& samples) noexcept {
   constexpr int most_steps = 60, most_dampings = 40;
   constexpr double longest_step_m = 2e-4;
-  constexpr double rounded_m = 1e-16;  // places in a body of a decimetre are no finer
+  constexpr double rounded_m = 1e-16;  // rounding of places in a body of a decimetre
   // Turns count as the way that they move a point an arm away.
   const double k = by.k_n_per_m, arm_m = std::sqrt(std::max(1e-12, by.turn_n_m_per_rad / k));
   way_out out;
@@ -85,7 +85,7 @@ struct settling {
   for (int step = 0; step < most_steps && !out.settled && samples.count.left(); ++step) {
     const vec6 r = residual(x, out.bed);
     const double left = std::sqrt(dot(r, r)), scale = 1e-12 + glm::length(out.bed.gradient.linear);
-    // Below a millionth the steps go on while they help: rounding ends that.
+    // Below a millionth the steps go on as long as they help, until rounding ends the progress.
     if (left < 1e-9 * scale || (left < 1e-6 * scale && left > 0.3 * before)) {
       out.settled = true;
       break;
@@ -111,7 +111,7 @@ struct settling {
       const motion next(x.shift_w + dx.linear, x.turn_w + dx.angular / arm_m);
       const bed_sum bed = patch.at(next, by.turn_n_m_per_rad, rule, samples);
       const double now_j = cost(next, bed);
-      // Near rest the cost no longer tells two places apart; the residual does. Under a light touch that is soon.
+      // Near rest two places have the same cost to rounding, soon so under a light touch; the residual still differs.
       const vec6 now_r = residual(next, bed);
       const double now_left = std::sqrt(dot(now_r, now_r));
       if (now_j < cost_j * (1.0 - 1e-14) || (now_j <= cost_j * (1.0 + 1e-13) + rounded_m * scale && now_left < left)) {

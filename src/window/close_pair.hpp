@@ -14,7 +14,7 @@ namespace asperity {
 enum class pair_kind : std::uint8_t {
   apart,    ///< further apart than the tolerance, and not through the inside of a body either
   active,   ///< close, with a direction that leaves the real surface of both pieces
-  passive,  ///< close, but only along ghost directions: it widens a contact's region, without a say in its direction
+  passive,  ///< close, but in no direction of the real surface: it widens a contact's region only
 };
 
 /// A pair in the frame of A. Fields after `weight` are set for active pairs only.
@@ -42,23 +42,23 @@ struct narrow_phase_limits {
   return x * x;
 }
 
-/// Distances of the pairs that a pass over the candidates is after, metres: beyond `inner_m` up to `outer_m`.
-/// The near pass has a negative inner limit and ends at the tolerance. The deep pass lies beyond it and only wants
-/// pairs whose surfaces have passed through each other.
+/// Distances of the pairs that a pass over the candidates looks for, metres: beyond `inner_m` up to `outer_m`.
+/// The near pass has a negative inner limit and ends at the tolerance. The deep pass begins there and takes only pairs
+/// whose surfaces have passed through each other.
 struct distance_shell {
   double inner_m = -1.0;
   double outer_m = 0.0;
   [[nodiscard]] bool deep() const noexcept { return inner_m >= 0.0; }
 };
 
-/// What a pair cost.
+/// Cost of a pair, and whether its hulls overlap.
 struct narrow_phase_cost {
   std::uint32_t gjk_iterations = 0;  ///< most of one call
   bool overlapping = false;          ///< the hulls share a point
 };
 
-/// False where no two faces of the pieces can have passed through each other: they do not look at each other, or one
-/// piece's bounding sphere lies wholly outside the other's face. A filter before the deep pass, far cheaper than GJK.
+/// False where no two faces of the pieces can have passed through each other: they do not face each other, or one
+/// piece's bounding sphere lies wholly outside the other's face. A filter for the deep pass, far cheaper than GJK.
 /// @rt safe
 [[nodiscard]] inline bool may_have_passed(const convex_shape& A, const convex_shape& B,
                                           const placement& T_ab) noexcept {
@@ -81,7 +81,7 @@ namespace detail {
 inline constexpr double cone_slack = 0.1;
 
 /// The least depth among directions that leave the real surface of both pieces and along which the pieces meet: moved
-/// a tolerance apart along the direction, GJK must find them a tolerance apart. Everything else would push sideways
+/// a tolerance apart along the direction, GJK must find them a tolerance apart. Any other direction would push sideways
 /// out of a cut between two pieces.
 inline bool find_penetration(const convex_shape& A, const convex_shape& B, const placement& T_ab,
                              const narrow_phase_limits& limits, close_pair& pair, narrow_phase_cost& cost) noexcept {
@@ -91,11 +91,11 @@ inline bool find_penetration(const convex_shape& A, const convex_shape& B, const
   separating_directions directions;
   find_separating_directions(A, B, T_ab, directions);
   for (const separating_direction& d : directions) {
-    // Far deeper than the pieces need to part: it belongs to some other place of contact, or to none.
+    // Far deeper than what parts the pieces: the direction belongs to another place of contact, or to none.
     const double deepest = 2.0 * directions[0].separation_m - tolerance;
     if (d.separation_m < -limits.max_depth_m || d.separation_m < deepest) return false;
     if (d.separation_m >= tolerance) continue;
-    // Spheres that miss each other across the direction: far cheaper to know than the two tests below.
+    // Spheres that miss each other across the direction: far cheaper to test than the two conditions below.
     const vec3 across = apart - glm::dot(apart, d.n_ab) * d.n_ab;
     if (glm::dot(across, across) > reach * reach) continue;
     const double share =
@@ -124,8 +124,8 @@ inline bool find_penetration(const convex_shape& A, const convex_shape& B, const
 }  // namespace detail
 
 /// Kind, direction, separation and witness points of a pair whose a and b are set.
-/// A gap takes GJK's direction. An overlap, or a gap across which both pieces turn their backs, takes the least depth
-/// of the real surface.
+/// A gap takes GJK's direction. An overlap, or a gap across which the pieces do not face each other, takes the least
+/// depth of the real surface.
 /// @rt safe
 inline void evaluate_pair(const convex_shape& A, const convex_shape& B, const placement& T_ab,
                           const narrow_phase_limits& limits, const distance_shell& shell, gjk_cache& cache,
@@ -142,7 +142,7 @@ inline void evaluate_pair(const convex_shape& A, const convex_shape& B, const pl
 
   cost.overlapping = g.outcome == gjk_outcome::overlapping || g.distance < direction_limit * (A.radius + B.radius);
   const bool behind = !cost.overlapping && A.looks_away(g.n_ab) && B.looks_away(T_ab.to_local(-g.n_ab));
-  // A region that came at once, at the tolerance, would make the window jump; it grows over an eighth of it.
+  // A region that appeared in full at the tolerance would make the window jump; it grows over an eighth of it.
   pair.presence = cost.overlapping || behind ? 1.0 : std::min(1.0, 8.0 * (1.0 - g.distance / limits.tolerance_m));
   if (cost.overlapping || behind) {
     if (!detail::find_penetration(A, B, T_ab, limits, pair, cost)) pair.kind = pair_kind::passive;

@@ -1,4 +1,4 @@
-// Close pairs to clusters: pairs that push in similar directions at the same place are one contact.
+// Joins close pairs to clusters: pairs that push in similar directions at the same place are one contact.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct pair_cluster {
   std::uint32_t first = 0, count = 0;  ///< range of its pairs in pair_clustering::members(): active, then passive
   std::uint32_t active = 0;            ///< how many of them are active
   vec3 n_ab{0.0};                      ///< unit: mean of the pairs' directions by weight
-  vec3 place{0.0};                     ///< mean of the regions' centres by weight: does not jump between flat faces
+  vec3 place{0.0};                     ///< mean of the regions' centres by weight; it does not jump between flat faces
   vec3 p_a{0.0}, p_b{0.0};             ///< witness points of the heaviest pair
   double height_a_m = 0.0;             ///< mean of n . p_a by weight
   double height_b_m = 0.0;             ///< mean of n . p_b by weight
@@ -31,8 +31,9 @@ struct pair_cluster {
 ///
 /// The heaviest free pair is a seed. Active pairs within the merge angle of the seed's direction join while their
 /// region touches that of a member. What is left gives the next seed. Passive pairs join every cluster that they
-/// touch. Merging by the seed, not pair by pair, keeps a contact that runs round a bore from eating its own tail.
-/// Where two seeds are equally heavy a small motion may exchange them: this is the known jump of the paper's contacts.
+/// touch. Directions are compared with the seed's and not from pair to pair, because inside a bore neighbouring pairs
+/// would join one after the other until one contact held opposite directions. Where two seeds are equally heavy a small
+/// motion may exchange them: this is the known jump of the paper's contacts.
 /// @source paper section 6.4 (104 close pairs, up to 7 contacts); the rule is our choice
 class pair_clustering {
  public:

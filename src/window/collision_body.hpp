@@ -1,4 +1,4 @@
-// A body as the convex-piece finder sees it: what it prepares once.
+// What the convex-piece finder prepares once for a body.
 #pragma once
 
 #include <cstddef>

@@ -29,7 +29,7 @@ namespace asperity {
 ///   of A's and B's part along u and v are intersected.
 /// - Window: the square about the region's centre, 5 % larger than its longer side, within the size limits. It moves
 ///   continuously with the pose while the cluster keeps its pieces and even where the witness points jump.
-/// - Patch: every facing triangle of the body, from whatever piece, that may reach into the window grown by a tenth
+/// - Patch: every facing triangle of the body, of any piece, that may reach into the window grown by a tenth
 ///   (gradients move A a little) and whose heights come within 2 t + 2 d of the window's centre. Sheets further off,
 ///   and the far side of a thin part, stay out.
 /// - Witness points: over the middle of the place where both surfaces are within t / 20 of their extreme height in the
@@ -52,7 +52,7 @@ class contact_builder {
     place_window(T_wa, cluster, out.window);
     const window_projection onto_a(out.window, T_wa);
     plane_box near;
-    // Presence counts against the nearest pair's: a contact that is new as a whole is whole at once.
+    // Presence is relative to the nearest pair's, so that a contact that is new as a whole counts in full at once.
     double presence = 0.0;
     for (const std::uint32_t m : members) presence = std::max(presence, pairs[m].presence);
     for (const std::uint32_t m : members) near.add(onto_a, pairs[m].region, pairs[m].presence / presence);

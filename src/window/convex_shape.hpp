@@ -31,9 +31,10 @@ struct shape_edge {
 
 /// Hull vertices of one piece with the real surface around them. Body frame, metres.
 ///
-/// A piece is the hull of a patch of surface: part of its hull lies inside the body and is no surface at all. So the
-/// hull serves for distances only. Directions to push along come from the coarse mesh: normals of covered triangles,
-/// and cones of its convex edges and vertices, neighbours in other pieces included. A flat piece has one normal.
+/// A piece is the hull of a patch of surface: part of its hull lies inside the body and is not surface. The hull
+/// therefore serves for distances only. Directions to push along come from the coarse mesh: normals of covered
+/// triangles, and cones of its convex edges and vertices, neighbours in other pieces included. A flat piece has one
+/// normal.
 struct convex_shape {
   std::vector<double> x, y, z;  ///< vertices, one array per coordinate
   std::vector<shape_face> faces;
@@ -71,15 +72,15 @@ struct convex_shape {
   /// True where d, unit, points into the body behind every covered triangle.
   /// @rt safe
   [[nodiscard]] bool looks_away(const vec3& d) const noexcept {
-    constexpr double grazing = 0.1;  // the sine that science, section 2, puts between facing and not
+    constexpr double grazing = 0.1;  // sine between facing and not facing; science, section 2
     return std::all_of(faces.begin(), faces.end(),
                        [&](const shape_face& f) { return glm::dot(f.normal, d) < -grazing; });
   }
 };
 
-/// How truly the unit direction d leaves the real surface of a shape: 1 where it lies in the normal cone of a face, a
-/// convex edge or a vertex of the coarse mesh, falling to 0 where it is `slack` (a sine) outside all of them.
-/// It falls smoothly, so that a pair whose direction turns into a ghost normal loses its weight without a jump.
+/// How far the unit direction d is a direction of a shape's real surface: 1 where it lies in the normal cone of a face,
+/// a convex edge or a vertex of the coarse mesh, falling to 0 where it is `slack` (a sine) outside all of them.
+/// It falls smoothly, so that a pair whose direction leaves the real surface's loses its weight without a jump.
 /// @pre slack > 0   @rt safe
 [[nodiscard]] inline double normal_cone_share(const convex_shape& shape, const vec3& d, double slack) noexcept {
   double violation = slack;
@@ -91,7 +92,7 @@ struct convex_shape {
   }
   for (const shape_edge& e : shape.edges) {
     if (violation <= 0.0) break;
-    // The bisector of the outside is opposite to the sum of the in-face directions: it tells outside from inside.
+    // The bisector on the outside is opposite to the sum of the in-face directions: its sign separates out from in.
     if (glm::dot(e.in_face[0] + e.in_face[1], d) > 0.0) continue;
     const double out = std::max(glm::dot(e.in_face[0], d), glm::dot(e.in_face[1], d));
     violation = std::min(violation, std::max({0.0, out, std::fabs(glm::dot(e.direction, d))}));

@@ -15,7 +15,7 @@ struct deepest_sample {
   double inner_depth_m = 0.0;  ///< the same without the outermost ring of samples
   double half_width_m = 0.0;   ///< largest |u| or |v| of a sample where both exist, to its cell's border
   std::size_t index = 0;       ///< the deepest sample; of equals the one nearest to the centre
-  std::uint32_t samples = 0;   ///< samples where both exist; 0: everything else means nothing
+  std::uint32_t samples = 0;   ///< samples where both exist; 0: the other members mean nothing
   std::uint32_t inner_samples = 0;
 };
 

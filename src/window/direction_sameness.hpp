@@ -1,4 +1,4 @@
-// How much two contact directions are one.
+// How nearly two contact directions are the same.
 #pragma once
 
 #include <cmath>

@@ -1,8 +1,8 @@
 // Weights that let samples fade in from the edges of a patch, so that the sum over samples is smooth while the patch
 // moves through the fixed grid.
 //
-// An edge counts as far as the triangle beyond it is missing from the patch or turned away from n. Its strength goes
-// smoothly with the angle, so a face that comes into view takes the taper at its edges away little by little.
+// An edge counts where the triangle beyond it is missing from the patch or turned away from n. Its strength changes
+// smoothly with the angle, so the taper at an edge vanishes gradually as the face beyond it comes into view.
 // The taper is a weight of the soft maximum, and moves with its body: its gradient belongs to the potential's gradient.
 #pragma once
 

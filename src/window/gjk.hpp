@@ -160,8 +160,8 @@ inline bool reduce_tetrahedron(simplex& s) noexcept {
 
 }  // namespace detail
 
-/// Distance between shapes A and B (B placed in A's frame), given up as soon as it is known to exceed `limit`.
-/// The cache is read for a start and written for the next call; a cache of size 0 starts cold.
+/// Distance between shapes A and B (B placed in A's frame); stops as soon as it is known to exceed `limit`.
+/// The search starts from the cache and writes it for the next call; with a cache of size 0 it starts from nothing.
 /// @param limit metres; infinity for the exact distance always
 /// @pre the cache's indices belong to these shapes   @rt safe: at most 64 iterations, twice
 [[nodiscard]] inline gjk_result gjk_distance(const convex_shape& A, const convex_shape& B, const placement& T_ab,
@@ -229,7 +229,7 @@ inline bool reduce_tetrahedron(simplex& s) noexcept {
     if (known) break;
     s.v[s.size++] = next;
   }
-  // A stale simplex can be degenerate and stop short of the closest points. Then the cold start answers.
+  // A stale simplex can be degenerate and stop short of the closest points. Then the search starts again from nothing.
   constexpr double stopped_short = 1e-9;
   if (warm && out.outcome != gjk_outcome::beyond && std::sqrt(glm::dot(v, v)) - proven > stopped_short * proven) {
     cache.size = 0;

@@ -12,7 +12,7 @@
 
 namespace asperity::detail {
 
-/// What was found over a sample.
+/// Kind of surface found over a sample.
 enum class hit : std::uint8_t {
   none,    ///< no surface, or a NaN texel
   coarse,  ///< a coarse triangle; the texture was not read yet
@@ -23,7 +23,7 @@ enum class hit : std::uint8_t {
 /// Structure of arrays over the grid's samples, row by row.
 struct height_field {
   std::vector<double> height;        ///< along n from the window's centre, m
-  std::vector<hit> kind;             ///< where it is none, the other arrays mean nothing
+  std::vector<hit> kind;             ///< where it is hit::none, the other arrays mean nothing
   std::vector<std::uint32_t> owner;  ///< index in patch_projection::triangles() of the coarse triangle that is seen
   std::vector<vec2> texel;           ///< where the texture was read, texels
 
@@ -100,7 +100,7 @@ inline void rasterise(const patch_projection& patch, const sample_grid& grid, la
   for (std::uint32_t t = 0; t < patch.triangles().size(); ++t) {
     const projected_triangle& tri = patch.triangles()[t];
     const auto [c0, c1, c2] = tri.corner;
-    // The box is a shade larger than the triangle, so that only the edges decide about a sample that lies on one.
+    // The box is slightly larger than the triangle, so that only the edges decide about a sample that lies on one.
     const double slack = 1e-3 * grid.pitch_m;
     const std::size_t first_column = grid.first_at(std::min({c0.x, c1.x, c2.x}) - slack);
     const std::size_t end_column = grid.end_at(std::max({c0.x, c1.x, c2.x}) + slack);

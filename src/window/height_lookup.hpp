@@ -11,7 +11,7 @@
 
 namespace asperity::detail {
 
-/// Everything that a height over one body depends on.
+/// Everything on which a height over one body depends.
 struct body_view {
   const haptic_texture& texture;
   const surface_index& index;
@@ -37,7 +37,7 @@ struct fine_hit {
 /// The point of the textured surface that lies over the sample, by Newton's method on the bilinear surface.
 /// The search starts at the coarse hit. It may run into a chart's gutter by one texel; beyond that it goes on in the
 /// triangle on the other side of the edge that it is farthest outside of. Where the surface folds over or its patch
-/// ends first, the paper's lookup stands in.
+/// ends first, the paper's lookup is used.
 /// @source science, section 2 (parallax)
 [[nodiscard]] inline fine_hit look_above(const body_view& body, const projected_triangle& start, const vec2& uv,
                                          double tolerance_m) noexcept {
@@ -50,14 +50,14 @@ struct fine_hit {
     if (!cell.holds(z)) cell = texture_cell(body.texture, z).seen_by(body.map);
     const auto [q, dx, dy] = cell.at(z);
     if (!is_finite(q)) {
-      // A hole in the triangle is one in the surface; outside, the chart ends sooner than its gutter should.
+      // Inside the triangle a NaN texel is a hole in the surface; outside, the chart's gutter is too narrow.
       const texel_triangle& chart = body.index.texels[t->triangle];
       if (chart.within(z, chart.barycentric(z), 0.0)) return {};
       break;
     }
     const double det = dx.x * dy.y - dx.y * dy.x;
     const double coarse_det = t->texel_x.per_u * t->texel_y.per_v - t->texel_x.per_v * t->texel_y.per_u;
-    // On a fold the fine surface turns its other side to the window: its determinant has the wrong sign.
+    // On a fold the back of the fine surface faces the window: the determinant has the wrong sign.
     if (!(det * coarse_det > 0.02)) break;
     const vec2 miss(uv.x - q.x, uv.y - q.y);
     const vec2 dz = vec2(dy.y * miss.x - dy.x * miss.y, dx.x * miss.y - dx.y * miss.x) / det;
@@ -71,8 +71,8 @@ struct fine_hit {
     const texel_triangle& chart = body.index.texels[t->triangle];
     const vec3 bary = chart.barycentric(z);
     if (chart.within(z, bary, gutter_texels)) {
-      // Within one cell a step misses by the twist alone: most steps are the last one, and need not be looked at again.
-      // A step from beyond the image's border is not within: there the surface was read beside z.
+      // Within one cell a step misses by the twist alone, so most steps are the last and need no second look. A step
+      // from beyond the image's border is not within a cell: there the surface was read beside z.
       const vec3 left = (dz.x * dz.y) * cell.twist;
       if (from_inside && cell.spans(z) && cell.largest_twist() * glm::dot(dz, dz) <= tolerance_m) {
         return {hit::above, q.z + dx.z * dz.x + dy.z * dz.y + left.z, z};

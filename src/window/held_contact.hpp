@@ -12,10 +12,10 @@
 
 namespace asperity {
 
-/// What is kept of a contact so that its depth can go on growing along its last valid direction.
+/// The parts of a contact that let its depth go on growing along its last valid direction.
 ///
-/// Beyond the depth limit the way out on another side of the body may be the shorter one, so no direction of the moment
-/// can be trusted. The last valid one still can: the probe came in along it. The direction is fixed to B. Both
+/// Beyond the depth limit the way out on another side of the body may be shorter, so a newly found direction may be
+/// wrong. The last valid one is still right, because the probe came in along it. The direction is fixed to B. Both
 /// surfaces' heights and the extent of the contact are material: part of them moves with A, part of them stays with B.
 struct held_contact {
   vec3 n_b{0.0};                        ///< held direction, unit, from A to B, frame of B; zero: nothing is kept
@@ -46,7 +46,7 @@ struct held_contact {
     return glm::distance(T_wa * p_a, T_wb * last_b);
   }
 
-  /// The extent in the plane of window `w`: where it went with A, and where it stayed with B.
+  /// The extent in the plane of window `w`, moved with A and kept with B.
   [[nodiscard]] plane_box near(const contact_window& w, const pose& T_wa, const pose& T_wb) const noexcept {
     plane_box out;
     out.add(window_projection(w, T_wa * T_a_window), extent, 1.0);
@@ -68,7 +68,7 @@ struct held_contact {
   }
 };
 
-/// What there is to hold of a contact that has just been built.
+/// The held contact that belongs to a contact that has just been built.
 /// @param cluster  the contact's, frame of A
 /// @param deepest  its deepest active pair
 /// @param extent   of the contact in its window's plane

@@ -1,4 +1,4 @@
-// Normals, edges and vertex fans of a coarse mesh: what decides whether a direction leaves its real surface.
+// Normals, edges and vertex fans of a coarse mesh. They decide whether a direction belongs to its real surface.
 #pragma once
 
 #include <algorithm>

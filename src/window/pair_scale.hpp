@@ -1,4 +1,4 @@
-// What the settings of a depth backend that choose themselves come to for a pair of bodies.
+// Values of a depth backend's automatic settings for a pair of bodies.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace asperity::detail {
 
-/// What the automatic settings come to for a pair of bodies. Constant: it may not depend on any pose.
+/// Values of the automatic settings for a pair of bodies. They are constant and depend on no pose.
 struct pair_scale {
   double tau_m = 0.0;
   double reference_area_m2 = 0.0;
@@ -32,7 +32,7 @@ struct pair_scale {
   return out;
 }
 
-/// Step of the central differences for a sample pitch p: large enough not to see the grid, small enough not to smear
+/// Step of the central differences for a sample pitch p: large enough to average over the grid, small enough to keep
 /// the texture.
 /// @source science, sections 3.2 and 8
 [[nodiscard]] inline double difference_step(const window_depth_settings& s, const pair_scale& pair,

@@ -40,8 +40,8 @@ struct window_map {
   return uvh.x * w.u_w + uvh.y * w.v_w + uvh.z * w.n_ab_w;
 }
 
-/// N x N samples at the centres of the cells that tile the window. Fixed in the world while the probe moves through it,
-/// which is what makes every depth here a function of the pose alone.
+/// N x N samples at the centres of the cells that tile the window. They are fixed in the world while the probe moves,
+/// so that every depth is a function of the pose alone.
 /// @source science, section 2
 struct sample_grid {
   std::uint32_t side;  ///< samples per side

@@ -47,14 +47,14 @@ class ASPERITY_API least_motion {
   [[nodiscard]] status accumulate(const scene_pose& at, const near_samples&, std::span<const near_plane>,
                                   force_report& out) noexcept;
 
-  /// Of the last call, J.
+  /// Energy of the last call, J.
   [[nodiscard]] double energy_j() const noexcept;
   /// Limits that the last call ran into.
   [[nodiscard]] const exits::exit_limits_hit& hit() const noexcept;
   /// Readings that the last call spent.
   [[nodiscard]] std::size_t readings() const noexcept;
 
-  /// With what was automatic filled in.
+  /// The settings, automatic ones filled in.
   [[nodiscard]] const least_motion_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept;
 

@@ -31,8 +31,8 @@ using least_motion_renderer = basic_renderer<plane_finder, plane_depth, least_mo
 
 namespace exits {
 
-/// What the search for ways out needs of the bodies. Allocates; takes a tenth of a second a body and more for long
-/// notches, not for a tick.
+/// Makes what the search for ways out needs of the bodies. Allocates, and takes a tenth of a second per body, more for
+/// long notches; not for a tick.
 /// @pre all bodies of made are there
 [[nodiscard]] ASPERITY_API std::shared_ptr<const exit_scene> make_exit_scene(const field_scene& made);
 

@@ -13,9 +13,9 @@
 
 namespace asperity {
 
-/// Owns any depth backend that measures contacts and is one itself: the choice between CPU and GPU at the edge of a
-/// program, static code behind it. One allocation when it is made, none afterwards; one call through a function pointer
-/// per tick, for all contacts together.
+/// Owns any depth backend that measures contacts, and is a depth backend itself: a program chooses between CPU and GPU
+/// when it starts. One allocation when it is made, none afterwards; one call through a function pointer per tick, for
+/// all contacts together.
 /// A moved-from any_depth may only be destroyed or assigned to.
 class any_depth {
  public:
@@ -28,12 +28,12 @@ class any_depth {
       : self_(new std::remove_cvref_t<D>(std::forward<D>(backend)), table_for<std::remove_cvref_t<D>>.destroy),
         table_(&table_for<std::remove_cvref_t<D>>) {}
 
-  /// As the backend inside answers.
+  /// What the backend inside answers.
   /// @rt as the backend inside
   [[nodiscard]] status measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept {
     return table_->measure(self_.get(), at, contacts, out);
   }
-  /// The backend itself and what it says it holds.
+  /// Size of the backend and of the memory that it reports.
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return table_->heap_bytes(self_.get()); }
 
  private:

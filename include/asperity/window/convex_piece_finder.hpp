@@ -22,12 +22,12 @@ struct window_finder_settings {
   std::size_t clusters = 32;        ///< capacity, per fixed body
 };
 
-/// What the last find() met, over all fixed bodies.
+/// Counts of the last find(), over all fixed bodies.
 struct finder_statistics {
   std::size_t candidate_pairs = 0;  ///< pairs of pieces whose boxes and spheres came within the tolerance
   std::size_t close_pairs = 0;      ///< pairs within the tolerance (active and passive)
-  std::size_t passive_pairs = 0;    ///< close pairs whose direction is a ghost: see pair_kind
-  /// Of these, found by the deep pass: the surfaces passed each other by more than the tolerance.
+  std::size_t passive_pairs = 0;    ///< close pairs without a direction of the real surface: see pair_kind
+  /// Close pairs found by the deep pass: their surfaces have passed each other by more than the tolerance.
   std::size_t deep_pairs = 0;
   std::size_t penetrating_pairs = 0;  ///< pairs whose hulls overlap
   std::size_t dropped_pairs = 0;      ///< close pairs that did not fit: raise window_finder_settings::close_pairs
@@ -38,7 +38,7 @@ struct finder_statistics {
   std::uint32_t gjk_iterations = 0;   ///< most that one pair took
 };
 
-/// The lengths that hold for one pair of bodies, automatic ones filled in.
+/// The lengths for one pair of bodies, automatic ones filled in.
 /// - tolerance: the largest displacement of both textures, so that no fine surface touches outside it, plus 0.5 % of
 ///   the smaller body's diagonal, so that a contact is there before the touch.
 /// - depth limit: half the sum of both bodies' thinnest box sides, at most 10 % of the smaller diagonal: beyond it the

@@ -39,9 +39,9 @@ class ASPERITY_API cpu_depth {
   [[nodiscard]] status measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept;
 
   [[nodiscard]] const window_depth_settings& settings() const noexcept;
-  /// Softness that is in force against fixed body `body`, m.
+  /// Softness that is used against fixed body `body`, m.
   [[nodiscard]] double tau_m(std::size_t body) const noexcept;
-  /// Reference area A0 that is in force against fixed body `body`, m^2.
+  /// Reference area A0 that is used against fixed body `body`, m^2.
   [[nodiscard]] double reference_area_m2(std::size_t body) const noexcept;
   /// Step of the central differences against fixed body `body` in a window of this half size, m.
   [[nodiscard]] double difference_step_m(std::size_t body, double half_size_m) const noexcept;
@@ -49,7 +49,7 @@ class ASPERITY_API cpu_depth {
   /// Without the models, which others share.
   [[nodiscard]] std::size_t heap_bytes() const noexcept;
 
-  /// Says what in a scene cannot be measured.
+  /// Checks a scene. @return what in it cannot be measured
   [[nodiscard]] static result<void> check_scene(const asperity::scene& scene);
 
  private:

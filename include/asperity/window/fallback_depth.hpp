@@ -13,8 +13,8 @@ namespace asperity {
 
 /// Asks `First`; where that could not answer, asks `Second` in the same tick, and counts it.
 ///
-/// A GPU may lose its context, run out of memory or be given more contacts than it takes. The person who holds the
-/// device must not feel that: the tick is measured by the second backend, which is the CPU's as a rule. Inputs that no
+/// A GPU may lose its context, run out of memory or be given more contacts than it takes. The hand must not feel that,
+/// so the second backend, which is the CPU's as a rule, measures the tick. Inputs that no
 /// backend can measure - sizes that do not fit (not_ready), texels that are not finite (not_finite) - are not asked
 /// twice.
 /// A second answer costs the tick its own time on top; after `give_up_after` failures in a row the first backend is not
@@ -27,7 +27,7 @@ class fallback_depth {
   using policy_tag = depth_tag;
   using reading_type = reading_of<First>;
 
-  /// What the first backend did so far.
+  /// Counts of the first backend's answers so far.
   struct counts {
     std::uint64_t ticks = 0;      ///< calls of measure()
     std::uint64_t fallbacks = 0;  ///< of those, measured by the second backend

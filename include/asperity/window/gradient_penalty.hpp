@@ -26,7 +26,7 @@ struct gradient_penalty_settings {
 ///
 ///     W = sum_i s_i (-k d_i g_i),   J = sum_i s_i (-k (g_i g_i^T + d_i C_i)),   d_i = max(depth of contact i, 0).
 ///
-/// The shares s_i keep the stiffness of a face what it is however many contacts the finder cuts it into. Contacts with
+/// The shares s_i keep the stiffness of a face the same into however many contacts the finder cuts it. Contacts with
 /// the same direction on the same body share one spring, contacts with clearly different directions have one each:
 ///
 ///     s_i = M_i / sum_j K_ij M_j,   M_i = area_i d_i^2,

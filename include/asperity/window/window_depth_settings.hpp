@@ -1,4 +1,4 @@
-// What a depth backend can be told.
+// Settings of the depth backends that measure windows.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class parallax_mode : std::uint8_t {
   exact,         ///< the point of the textured surface that lies over the sample
 };
 
-/// Point that central differences rotate the probe about. Both are transported to the centre of mass.
+/// Point about which central differences rotate the probe. The result is transported to the centre of mass.
 enum class rotation_origin : std::uint8_t {
   contact,         ///< the window's centre: the step at the contact is the step that was asked for
   centre_of_mass,  ///< for experiments: twenty times the error at the same step where the lever arm is long

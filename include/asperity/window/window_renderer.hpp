@@ -29,7 +29,7 @@ using window_renderer = basic_renderer<convex_piece_finder, cpu_depth, gradient_
 [[nodiscard]] ASPERITY_API result<window_renderer> make_window_renderer(scene bodies,
                                                                         const window_renderer_settings& settings = {});
 
-/// The same, by the name of the paper.
+/// The same as make_window_renderer(), named after the paper.
 [[nodiscard]] inline result<window_renderer> make_paper_renderer(scene bodies,
                                                                  const window_renderer_settings& settings = {}) {
   return make_window_renderer(std::move(bodies), settings);
