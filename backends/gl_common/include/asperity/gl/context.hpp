@@ -39,7 +39,7 @@ struct context_settings {
   std::string egl_library = "libEGL.so.1";
 };
 
-/// What a context turned out to be.
+/// Properties of an open context.
 struct context_facts {
   std::string renderer;  ///< device and driver, as the driver names them
   std::string version;   ///< as the driver words it
@@ -48,7 +48,7 @@ struct context_facts {
   bool software = false;            ///< drawn by the processor (llvmpipe and its like): right, but slow
   bool double_precision = false;    ///< shaders can calculate in double precision
   bool persistent_mapping = false;  ///< buffers stay mapped while the device uses them
-  bool robust = false;              ///< the driver tells when it lost the context
+  bool robust = false;              ///< the driver reports when it lost the context
 };
 
 class context;
@@ -80,7 +80,7 @@ class context : public std::enable_shared_from_this<context> {
 
   /// Asks the driver. @pre current in this thread   @return ok | backend_failed (lost: nothing in it can be used again)
   [[nodiscard]] status check() noexcept;
-  /// From here on the context counts as lost; for tests of what follows from that.
+  /// Marks the context as lost, for tests of how that is handled.
   void simulate_loss() noexcept { lost_ = true; }
 
   /// Memory that textures and buffers take on the device, bytes.
@@ -108,7 +108,7 @@ class current_scope {
   ~current_scope();
   current_scope(const current_scope&) = delete;
   current_scope& operator=(const current_scope&) = delete;
-  /// ok, or what make_current() said
+  /// The answer of make_current().
   [[nodiscard]] status state() const noexcept { return state_; }
 
  private:

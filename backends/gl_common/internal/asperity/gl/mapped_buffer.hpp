@@ -1,4 +1,4 @@
-// Buffers that host and device hand data through in every tick, and the fence that tells when the device is done.
+// Buffers for the data of every tick between host and device, and the fence that signals when the device is done.
 #pragma once
 
 #include <cstddef>

@@ -31,8 +31,7 @@ struct shader_stage {
 [[nodiscard]] result<owned_name> make_program(const context_ptr& context, std::span<const shader_stage> stages,
                                               const std::string& what);
 
-/// The same program for everybody in a context who asks for the same text, as long as anyone holds it: compiling takes
-/// far longer than a tick.
+/// One program per context and text, shared as long as anyone holds it, because compiling takes far longer than a tick.
 using program_ptr = std::shared_ptr<const owned_name>;
 [[nodiscard]] result<program_ptr> share_program(const context_ptr& context, std::span<const shader_stage> stages,
                                                 const std::string& what);

@@ -22,8 +22,8 @@ struct uploaded_model {
 
 using uploaded_ptr = std::shared_ptr<const uploaded_model>;
 
-/// The model on the context's device. Uploads it the first time; as long as anyone holds the result, everybody gets the
-/// same one. @pre the context is current in this thread   @return limit_exceeded | unsupported
+/// The model on the context's device. Uploads it the first time, and returns the same one as long as anyone holds it.
+/// @pre the context is current in this thread   @return limit_exceeded | unsupported
 [[nodiscard]] result<uploaded_ptr> upload(const context_ptr& context, const model_ptr& model);
 
 /// A scene's models on the device.

@@ -33,7 +33,7 @@ enum class arithmetic : std::uint8_t {
   double_precision,
 };
 
-/// What a compute_depth takes memory for, and how it calculates.
+/// Capacities and arithmetic of a compute_depth.
 struct compute_settings {
   /// Most contacts of one call; 1 to 65535.
   std::size_t contacts = 16;
@@ -50,7 +50,7 @@ struct pose_pair {
   pose T_wb;
 };
 
-/// How often a backend waited, and for how much.
+/// Counts of a backend's calls and waits.
 struct compute_counters {
   std::uint64_t ticks = 0;        ///< calls that reached the device
   std::uint64_t round_trips = 0;  ///< waits for the device: one per tick
@@ -62,12 +62,12 @@ struct compute_counters {
 /// Agreement with cpu_depth, asserted and printed over 2080 seeded contacts (tests/gl); angular components count at
 /// the lever arm of the contact:
 /// - double precision: hard depth to 1e-11 of the window's width, soft depth to 1e-7, each component of the gradient
-///   and of tau times the curvature to 1e-5, a central difference to 1e-10. The soft maximum is behind because shaders
-///   have the exponential in single precision only.
+///   and of tau times the curvature to 1e-5, a central difference to 1e-10. The soft maximum is less exact, because
+///   shaders have the exponential in single precision only.
 /// - single precision: depth to 1e-6, gradient to 2e-2, tau times the curvature to 1e-1. A weight of the soft maximum
 ///   errs by the error of a depth over tau.
 /// Which samples a patch covers is the same to the sample, and so are the flags. The same call gives the same bits on
-/// the same device. Of window_depth_settings, refine_maximum is not to be had.
+/// the same device. window_depth_settings::refine_maximum is not supported.
 ///
 /// Where texels are NaN at the rim of an overlap, the central difference about the contact takes its angular step from
 /// the overlap of the coarse patches, the CPU backend from that of the samples that are left.
@@ -101,7 +101,7 @@ class compute_depth {
   [[nodiscard]] const window_depth_settings& settings() const noexcept;
   [[nodiscard]] const compute_counters& counters() const noexcept;
   [[nodiscard]] const context_ptr& owner() const noexcept;
-  /// The arithmetic in force: never automatic.
+  /// The arithmetic that is used; never automatic.
   [[nodiscard]] gl::arithmetic arithmetic() const noexcept;
   /// Memory of this backend on the device beyond the models, bytes; context::device_bytes() has everything.
   [[nodiscard]] std::size_t device_bytes() const noexcept;

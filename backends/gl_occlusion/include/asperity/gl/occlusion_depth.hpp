@@ -9,8 +9,8 @@
 // 4. The largest difference of every tile by binary search: in each of 16 (or 24) rounds, one query per tile, all tiles
 //    of all contacts side by side, and one wait for the answers.
 //
-// What such a depth buffer cannot say is said by its levels: 0 is no sample, 1 lies below the range and the highest
-// above it, so that "no overlap", "far apart" and "too deep" are three things.
+// Levels of the depth buffer mark the special cases: 0 is no sample, 1 lies below the range and the highest level above
+// it, so that "no overlap", "far apart" and "too deep" can be distinguished.
 // @source paper section 5.2
 #pragma once
 
@@ -34,7 +34,7 @@ enum class moved_heights : std::uint8_t {
            ///< resampled from the heights at rest, which makes them smoother than they are
 };
 
-/// What an occlusion_depth takes memory for, and how it draws.
+/// Capacities of an occlusion_depth, and how it draws.
 struct occlusion_settings {
   std::size_t contacts = 16;      ///< most of one call; 1 to 256
   std::size_t triangles = 4096;   ///< most coarse triangles in all windows of one call
@@ -43,12 +43,12 @@ struct occlusion_settings {
   /// The paper's packing: the four quarters of a tile in red, green, blue and alpha of one a quarter of its size. Needs
   /// an even grid; the depths are the same.
   bool packed = false;
-  /// Depths from -depth_range_m to depth_range_m can be told from each other, m. 0: per contact what its patches can
+  /// Depths from -depth_range_m to depth_range_m can be distinguished, m. 0: per contact what its patches can
   /// reach, at least a tenth of the window's half size in all.
   double depth_range_m = 0.0;
 };
 
-/// How often a backend waited, and for how much.
+/// Counts of a backend's calls and waits.
 struct occlusion_counters {
   std::uint64_t ticks = 0;  ///< calls that reached the device
   /// Waits for answers: one per tick that sees both patches of a contact, and one per bit where any of them overlap.
@@ -86,11 +86,12 @@ struct occlusion_tiles {
 /// / step_m across n (found: 1.03) and 2 quantum_m / step_rad about the point of rotation (found: 0.83). With 24 bits
 /// single precision is what limits: 3e-7 of the window's half size and the depth range together stand for the quantum
 /// where that is more.
-/// With moved_heights::reused turns about n are other than the CPU backend's.
+/// With moved_heights::reused turns about n differ from the CPU backend's.
 ///
-/// What the paper's backend cannot know is left as follows: soft_depth_m is depth_m and there is no curvature;
-/// witness_w is the window's centre, because a query tells that a sample is deep but not which. `samples` and `area_m2`
-/// need the number of samples that pass, which OpenGL ES does not tell: there they are 1 and a sample's area.
+/// Values that the paper's backend cannot compute are set as follows: soft_depth_m is depth_m and there is no
+/// curvature; witness_w is the window's centre, because a query says that a sample is deep but not which. `samples` and
+/// `area_m2` need the number of samples that pass, which OpenGL ES does not count: there they are 1 and a sample's
+/// area.
 class occlusion_depth {
  public:
   using policy_tag = depth_tag;
@@ -106,11 +107,11 @@ class occlusion_depth {
   occlusion_depth& operator=(occlusion_depth&&) noexcept;
   ~occlusion_depth();
 
-  /// Depth of every contact. A depth outside the range is told as its limit, with depth_flag::saturated.
+  /// Depth of every contact. A depth outside the range is reported as its limit, with depth_flag::saturated.
   /// @pre the context is current in no other thread
   /// @return ok | not_ready, not_finite (as cpu_depth) | capacity_reached (more contacts or triangles than the settings
   ///         say) | backend_failed (the device is lost, or its driver reports an error); all but ok leave zeros behind
-  /// @rt no allocation, lock, throw, print or clock of ours; waits for the device as counters() tells, and whatever its
+  /// @rt no allocation, lock, throw, print or clock of ours; waits for the device as counters() says, and whatever its
   ///     driver does
   [[nodiscard]] status measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept;
 

@@ -22,9 +22,9 @@ struct id_filter {
 struct socketcan_settings {
   /// Sends and receives CAN FD as well. The interface has to be set up for it.
   bool fd = false;
-  /// Frames that pass one of these are received; all, where there are none. Error frames always are.
+  /// Frames that pass one of these filters are received, or all frames where there is none. Error frames always are.
   std::vector<id_filter> filters{};
-  /// What the kernel keeps for us between two reads; a frame takes some 800 bytes of it. Without privileges the kernel
+  /// Bytes that the kernel buffers between two reads; a frame takes some 800 of them. Without privileges the kernel
   /// gives at most net.core.rmem_max.
   int receive_buffer_bytes = 1 << 20;
   /// After the kernel's queue was full, send() answers busy for this long without trying again. A timer, because the
@@ -41,9 +41,9 @@ struct socketcan_settings {
 /// stamp is off by no more than 2 ms and the time between two reads.
 ///
 /// Its answers: a full queue is busy. Link down and bus-off are down, and end by themselves when the interface is up
-/// again or the controller is restarted. A deleted interface and an unplugged adapter are gone, for ever. Frames that
-/// nobody read in time count in can_health::lost, as soon as a later one is read. Own frames do not come back; other
-/// programs on this machine see them.
+/// again or the controller is restarted. A deleted interface and an unplugged adapter are gone, and stay so. Frames
+/// that nobody read in time count in can_health::lost, as soon as a later one is read. Own frames do not come back;
+/// other programs on this machine see them.
 ///
 /// @return unsupported: the kernel has no CAN, this user may not use it, or FD is asked of an interface without |
 ///         invalid_argument: no such interface, or it is not CAN, or it is down | io_failed: anything else; the message

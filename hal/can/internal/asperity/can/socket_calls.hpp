@@ -14,8 +14,8 @@ inline constexpr std::size_t classic_frame_bytes = sizeof(::can_frame);
 inline constexpr std::size_t fd_frame_bytes = sizeof(::canfd_frame);
 static_assert(classic_frame_bytes == 16 && fd_frame_bytes == 72);
 
-/// What the transport asks of the kernel, so that a test can be the kernel. Each call answers 0 or more, or an errno
-/// value with a minus.
+/// The system calls of the transport, as an interface, so that a test can stand in for the kernel. Each call answers 0
+/// or more, or an errno value with a minus.
 class socket_calls {
  public:
   socket_calls() = default;
@@ -38,7 +38,7 @@ class socket_calls {
   [[nodiscard]] virtual std::int64_t wall_offset_ns() noexcept = 0;
 };
 
-/// The calls of the kernel we run on.
+/// The system calls themselves.
 [[nodiscard]] socket_calls& system_socket_calls() noexcept;
 
 }  // namespace asperity::can

@@ -12,14 +12,14 @@
 
 namespace asperity::can {
 
-/// open_socketcan() with a kernel of one's own. @pre `calls` outlives what is returned
+/// open_socketcan() with these system calls. @pre `calls` outlives what is returned
 [[nodiscard]] result<std::unique_ptr<can_bus>> open_socketcan(const std::string& interface,
                                                               const socketcan_settings& settings, socket_calls& calls);
 
-/// check_support() with a kernel of one's own.
+/// check_support() with these system calls.
 [[nodiscard]] result<void> check_support(socket_calls& calls);
 
-/// What to type, and as whom, so that an interface comes up.
+/// The command that brings an interface up, and the user to run it as.
 [[nodiscard]] std::string how_to_bring_up(const std::string& name, bool with_fd);
 
 class socketcan_bus final : public can_bus {

@@ -25,8 +25,8 @@ struct hid_listing {
   std::optional<std::string> not_openable{};    ///< why, and how to mend it
 };
 
-/// The same wherever the device is plugged in: "046d:c626", with ":serial" where it has one. Two devices of one kind
-/// without serial numbers have one identity.
+/// Identity that does not depend on where the device is plugged in: "046d:c626", with ":serial" where it has one. Two
+/// devices of one kind without serial numbers have one identity.
 [[nodiscard]] std::string identity_of(const hid_listing& which);
 
 /// What is plugged in now, sorted by path. An empty list is not an error. A device that leaves meanwhile is left out.
@@ -38,7 +38,7 @@ struct hid_listing {
 /// @return io_failed (not there, no permission: with the rule that gives it) | unsupported (not a HID node)
 [[nodiscard]] result<std::unique_ptr<hid_link>> open_hid(const std::string& path);
 
-/// Opens what was listed, and makes sure that it is still the same device: a path is given to the next one that comes.
+/// Opens a listed device and checks that it is still the same one, because the system reuses paths.
 /// @return as above, or io_failed where another device is there now
 [[nodiscard]] result<std::unique_ptr<hid_link>> open_hid(const hid_listing& which);
 

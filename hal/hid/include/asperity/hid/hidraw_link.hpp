@@ -15,7 +15,7 @@ namespace asperity::hid {
 ///
 /// read() is one system call and never waits. The kernel keeps 63 reports that nobody read, the oldest ones.
 /// write() is one system call in which the kernel hands the report to the device: on USB it waits until the device has
-/// it, some milliseconds with a slow one. Nothing here allocates, also where a call fails.
+/// it, some milliseconds with a slow one. Nothing here allocates, not even where a call fails.
 class hidraw_link final : public hid_link {
  public:
   /// @param fd closed by the destructor

@@ -13,10 +13,10 @@ namespace asperity::hid {
 
 /// The driver of the SpaceMouse family (hal/spacemouse/products.hpp).
 ///
-/// A device is the multi-axis controller of a product in the table; other interfaces of it are passed over. make()
-/// gives a device that remembers its identity and not its path: its open() takes it where it is by then, at the listed
-/// path where it is still there. Two of one kind have no serial numbers to tell them apart, so when both have moved,
-/// open() says so and takes neither.
+/// A device is the multi-axis controller of a product in the table; its other interfaces are ignored. make() gives a
+/// device that remembers its identity and not its path: its open() finds it wherever it is plugged in by then, at the
+/// listed path where it is still there. Two of one kind have no serial numbers to tell them apart, so when both have
+/// moved, open() says so and takes neither.
 class spacemouse_driver final : public device_driver {
  public:
   explicit spacemouse_driver(const spacemouse_settings& settings = {}) : settings_(settings) {}

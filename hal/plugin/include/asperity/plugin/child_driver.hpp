@@ -15,13 +15,13 @@
 
 namespace asperity::plugin {
 
-/// How a tick and the driver's process go together.
+/// How a tick waits for the driver's process.
 enum class child_pace : std::uint8_t {
   /// For a session on CLOCK_MONOTONIC. read() waits for its measurement for child_settings::wait_ns, twice at the most,
-  /// and gives the last one again where none came; write() and disarm() hand over and go on.
+  /// and gives the last one again where none came; write() and disarm() do not wait.
   paced,
   /// For a virtual clock: every call waits until the driver has answered, so that a session has the same bits as in
-  /// process. Not for a hand.
+  /// process. Not for a session with a real hand.
   lockstep,
 };
 

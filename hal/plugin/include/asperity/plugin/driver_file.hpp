@@ -12,7 +12,7 @@
 
 namespace asperity::plugin {
 
-/// Who has to be kept from writing to a driver's file.
+/// Which users must not be able to write to a driver's file.
 enum class file_trust : std::uint8_t {
   /// The file and every folder above it belong to root or to this user and nobody else may write to them.
   owner_only,

@@ -20,7 +20,7 @@ namespace asperity::plugin {
 using log_sink = std::function<void(std::uint32_t level, std::string_view driver, std::string_view line)>;
 
 /// A table that was checked, and the code behind it. Unloaded when the last driver and device that came from it are
-/// gone, so nothing ever points into code that left.
+/// gone, so that nothing ever points into unloaded code.
 class driver_module {
  public:
   /// Loads and checks a shared object. Its code runs from here on, with the rights of this process and in the middle of

@@ -12,7 +12,7 @@
 
 namespace asperity::plugin {
 
-/// What a driver did that it must not, or reported. Latched until clear_fault().
+/// A fault that a driver caused or reported. Latched until clear_fault().
 enum class plugin_fault : std::uint8_t {
   none,
   device_fault,      ///< the driver reports a fault
@@ -32,7 +32,7 @@ enum class plugin_fault : std::uint8_t {
 /// that it puts out while the host did not arm it is disarmed and closed, and the fault is latched. Commands are
 /// checked, saturated to the peak limits and zeroed where they may not leave before the driver sees them; limits are
 /// those that the driver stated at open(), and do not move. Samples that are not finite or have no unit quaternion are
-/// refused. What cannot be helped: a driver that writes where it should not, or does not return.
+/// refused. It cannot protect against a driver that writes outside its own memory, or does not return.
 class plugin_device {
  public:
   using policy_tag = device_tag;

@@ -23,7 +23,7 @@ class plugin_driver final : public device_driver {
   [[nodiscard]] driver_maturity maturity() const noexcept override {
     return static_cast<driver_maturity>(module_->table().maturity);
   }
-  /// Fails where the driver does, and where what it lists cannot be: a text without an end, limits that are no numbers,
+  /// Fails where the driver does, and where its list is impossible: a text without an end, limits that are no numbers,
   /// or more than 64 devices. The names in the listed capabilities belong to this driver until it lists again.
   [[nodiscard]] result<std::vector<device_listing>> list() override;
   [[nodiscard]] result<any_device> make(const device_listing& which) override;

@@ -1,4 +1,4 @@
-// What a driver hands over, judged before anything in it is called or believed.
+// Checks of a driver's table and answers, made before they are used.
 #pragma once
 
 #include <cstdint>

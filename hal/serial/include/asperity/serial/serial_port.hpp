@@ -15,9 +15,9 @@ struct serial_settings {
 };
 
 /// Opens a serial line, raw: 8 data bits, no parity, one stop bit, no flow control, nothing translated. Nobody else can
-/// open it meanwhile, and what had arrived before is thrown away.
+/// open it meanwhile, and bytes that had arrived before are discarded.
 ///
-/// The link never blocks. A line whose adapter was unplugged, or whose other side hung up, is gone, for ever.
+/// The link never blocks. A line whose adapter was unplugged, or whose other side hung up, is gone and stays so.
 ///
 /// @return invalid_argument: no such file, or it is no terminal, or a rate of 0 | unsupported: not permitted to this
 ///         user, in use, or the hardware cannot make the rate | io_failed: anything else; the message says how to mend

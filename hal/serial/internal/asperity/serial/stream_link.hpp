@@ -9,8 +9,8 @@
 
 namespace asperity::serial {
 
-/// What a stream asks of the kernel, so that a test can be the kernel. Each call answers a number of bytes, or an errno
-/// value with a minus.
+/// The system calls of a stream, as an interface, so that a test can stand in for the kernel. Each call answers a
+/// number of bytes, or an errno value with a minus.
 class stream_calls {
  public:
   stream_calls() = default;
@@ -23,7 +23,7 @@ class stream_calls {
   virtual void close(int fd) noexcept = 0;
 };
 
-/// The calls of the kernel we run on, for terminals, and for sockets, where a write to nobody would end the process.
+/// The system calls themselves, for terminals, and for sockets, where a write to nobody would end the process.
 [[nodiscard]] stream_calls& terminal_calls() noexcept;
 [[nodiscard]] stream_calls& socket_calls() noexcept;
 

@@ -27,7 +27,7 @@ class byte_link {
   [[nodiscard]] virtual io_status write(std::int64_t now_ns, std::span<const std::uint8_t> bytes,
                                         std::size_t& done) noexcept = 0;
 
-  /// What the kernel said to the last call that did not go well; 0 where there is no kernel behind the link.
+  /// errno of the last call that failed; 0 where there is no kernel behind the link.
   [[nodiscard]] virtual int errno_value() const noexcept { return 0; }
 };
 

@@ -22,11 +22,11 @@ struct can_frame {
   friend bool operator==(const can_frame&, const can_frame&) = default;
 };
 
-/// How the bus is, from the controller's error frames and the socket's own counters.
+/// State of the bus, from the controller's error frames and the socket's own counters.
 struct can_health {
   bool bus_off = false;              ///< the controller has left the bus
-  bool error_passive = false;        ///< at the edge of leaving it
-  std::uint8_t transmit_errors = 0;  ///< the controller's counter, where it tells
+  bool error_passive = false;        ///< close to leaving it
+  std::uint8_t transmit_errors = 0;  ///< the controller's counter, where it reports one
   std::uint8_t receive_errors = 0;
   std::uint64_t lost = 0;  ///< received frames that were dropped before we read them, so far
 
@@ -42,19 +42,19 @@ class can_bus {
   can_bus& operator=(const can_bus&) = delete;
   virtual ~can_bus() = default;
 
-  /// Hands a frame to the controller. ok says that it was queued, not that anybody heard it: a controller that is
-  /// bus-off takes frames and loses them, so health() is to be looked at as well.
+  /// Hands a frame to the controller. ok means that it was queued, not that a node received it: a controller that is
+  /// bus-off takes frames and loses them, so check health() as well.
   /// @return ok | busy | down | gone | too_short | refused | failed
   [[nodiscard]] virtual io_status send(std::int64_t now_ns, const can_frame& frame) noexcept = 0;
 
-  /// The oldest frame that has arrived by now_ns. Error frames are not handed out: they change health(). Read until it
-  /// is not ok in every tick, whatever it is: only so are bus-off and its end noticed.
+  /// The oldest frame that has arrived by now_ns. Error frames are not handed out: they change health(). Call it in
+  /// every tick until it answers other than ok; otherwise bus-off and its end go unnoticed.
   /// @return ok | nothing | down | gone | too_short | failed; `frame` changes with ok only
   [[nodiscard]] virtual io_status receive(std::int64_t now_ns, can_frame& frame) noexcept = 0;
 
   /// As of the last receive().
   [[nodiscard]] virtual can_health health() const noexcept = 0;
-  /// What the kernel said to the last call that did not go well; 0 where there is no kernel behind the bus.
+  /// errno of the last call that failed; 0 where there is no kernel behind the bus.
   [[nodiscard]] virtual int errno_value() const noexcept { return 0; }
   /// Whether CAN FD frames can be sent.
   [[nodiscard]] virtual bool takes_fd() const noexcept = 0;

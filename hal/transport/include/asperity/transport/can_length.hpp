@@ -1,4 +1,4 @@
-// Which frames there can be on a CAN bus.
+// Valid lengths and frames of a CAN bus.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How long a frame holds a CAN bus.
+// How long a frame occupies a CAN bus.
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,7 @@ namespace asperity {
 /// A report that has arrived.
 struct hid_report {
   std::size_t size = 0;           ///< bytes in the caller's buffer, the report's number first where it has one
-  std::int64_t host_time_ns = 0;  ///< when we had it, on the session's clock
+  std::int64_t host_time_ns = 0;  ///< when it was received, on the session's clock
 };
 
 /// One open HID device: hidapi or an in-process twin of it.
@@ -27,8 +27,8 @@ class hid_link {
   /// The device's own description of its reports; empty where the system does not give it. Does not change.
   [[nodiscard]] virtual std::span<const std::uint8_t> report_descriptor() const noexcept = 0;
 
-  /// The oldest input report that has arrived by now_ns, into `bytes`. A kernel keeps some 60 and drops without a word:
-  /// read until `nothing` in every tick.
+  /// The oldest input report that has arrived by now_ns, into `bytes`. A kernel keeps some 60 and drops others without
+  /// an error: read until `nothing` in every tick.
   /// @return ok | nothing | gone | failed
   [[nodiscard]] virtual io_status read(std::int64_t now_ns, std::span<std::uint8_t> bytes,
                                        hid_report& report) noexcept = 0;

@@ -1,4 +1,4 @@
-// Time for what a driver does outside a tick.
+// The clock for a driver's work outside a tick.
 #pragma once
 
 #include <cstdint>

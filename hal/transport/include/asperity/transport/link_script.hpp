@@ -1,4 +1,4 @@
-// What goes wrong on a link that exists in this process only.
+// Scripted faults of a link that exists in this process only.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ enum class link_fault : std::uint8_t {
   flip_bit,   ///< one seeded bit is wrong
   answer,     ///< the call answers `with`, and nothing is sent or received
   bus_off,    ///< CAN: the controller leaves the bus until the window ends; frames are taken and lost
-  unplug,     ///< the link is gone, for ever
+  unplug,     ///< the link is gone and stays so
 };
 
 enum class link_direction : std::uint8_t { to_device, from_device, both };

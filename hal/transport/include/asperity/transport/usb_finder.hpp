@@ -23,7 +23,7 @@ struct usb_listing {
   std::optional<std::string> not_openable{};  ///< why it cannot be opened, and how to mend it
 };
 
-/// What of a device is claimed, and how many transfers are made for it.
+/// The interface and endpoints to claim, and how many transfers are made for them.
 struct usb_pipes {
   std::uint8_t interface = 0;
   std::uint8_t in = 0x81;           ///< address of the bulk or interrupt endpoint to the host

@@ -11,9 +11,9 @@
 
 namespace asperity::usb {
 
-/// What is plugged in now. Each call looks anew, so that arrival and departure show as a difference of two lists;
-/// nothing has to run in between. A device that cannot be opened is listed with the reason. @param vendor,product 0 for
-/// any
+/// Devices that are plugged in now. Each call looks anew, so that arrival and departure show as a difference of two
+/// lists; nothing has to run in between. A device that cannot be opened is listed with the reason.
+/// @param vendor,product 0 for any
 /// @return unsupported: this kernel has no USB | io_failed
 [[nodiscard]] result<std::vector<usb_listing>> list_usb(std::uint16_t vendor = 0, std::uint16_t product = 0);
 
@@ -26,8 +26,7 @@ namespace asperity::usb {
 /// packet is as old as the tick that collects it, which is the last moment at which it can have arrived.
 /// Inside a tick this polls, and enters the kernel once for each transfer that is submitted. It takes locks of libusb
 /// that nobody contends for. libusb itself takes a block of heap for every transfer that it submits and gives it back
-/// when that ends: a call of calloc() per packet and per write, which is all that stands between this and a tick
-/// without allocation.
+/// when that ends: one call of calloc() per packet and per write is the only allocation in a tick.
 ///
 /// The destructor waits at most 100 ms for what was written to go out, cancels the rest and waits at most 500 ms more.
 /// @return invalid_argument: the device has no such endpoints | io_failed: gone, in use or not permitted; the message

@@ -26,10 +26,10 @@ struct bake_settings {
   /// Convex pieces to aim for, by smaller pieces or looser tolerances than usual; what that costs is in the report.
   std::optional<std::size_t> pieces;
   unsigned threads = 0;  ///< 0: as many as the machine has; the result does not depend on it
-  /// Told of every stage and its share done, 0 to 1; returning false cancels the bake.
+  /// Called with every stage and its share done, 0 to 1; returning false cancels the bake.
   std::function<bool(std::string_view stage, double done)> progress;
-  /// Told, one sentence each, of what was done differently from what was asked: a mesh turned the right way out, a
-  /// coarse mesh of more triangles.
+  /// Called with one sentence for each thing that was done differently from what was asked: a mesh turned the right way
+  /// out, a coarse mesh of more triangles.
   std::function<void(std::string_view sentence)> remark;
 };
 
@@ -39,12 +39,11 @@ struct bake_settings {
 /// closed, 2-manifold and in metres; several components and cavities are allowed. Positions and texture coordinates of
 /// the model are exact in float32. The same input gives the same bits.
 /// Texture coordinates that are kept have to be fit for an atlas: within the unit square, each triangle with a place of
-/// its own, and room for lookups between charts. They may mirror and stretch; the report then tells the texels' sizes.
+/// its own, and room for lookups between charts. They may mirror and stretch; the report then states the texels' sizes.
 /// A relief is added on the way: every texel goes on, in its own direction, until it is that height above the triangle
 /// of the mesh that it has met. The errors in the report are then against the mesh with its relief.
 /// @return bad_mesh | bad_texture (relief) | invalid_argument | limit_exceeded | cancelled, with the fault, its place
-/// and
-///         the mend
+///         and the mend
 [[nodiscard]] result<textured_model> bake(triangle_mesh full, const bake_settings& settings);
 
 }  // namespace asperity::bake

@@ -8,15 +8,15 @@
 
 namespace asperity::bake {
 
-/// Largest hole, in edges, that close_holes fills: beyond it a flat patch is no honest guess of the surface.
+/// Largest hole, in edges, that close_holes fills: in a larger one a flat patch would not resemble the surface.
 inline constexpr std::size_t largest_hole_edges = 500;
 
 struct hole_report {
   std::size_t holes = 0;
   std::size_t triangles_added = 0;
-  double area_added_m2 = 0.0;        ///< surface that was made up
+  double area_added_m2 = 0.0;        ///< area of the new triangles
   double largest_m = 0.0;            ///< longest distance across one hole
-  std::size_t triangles_turned = 0;  ///< that were wound against their neighbours: a border can be followed only then
+  std::size_t triangles_turned = 0;  ///< that were wound against their neighbours, so that borders can be followed
 };
 
 /// Closes every hole with a triangulation over the hole's own vertices; no vertex is added or moved. It is

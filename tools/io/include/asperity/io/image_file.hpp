@@ -13,7 +13,7 @@ namespace asperity::io {
 inline constexpr std::uint32_t max_image_side = 16384;
 inline constexpr std::size_t max_image_samples = std::size_t{1} << 26;
 
-/// Image of a file, told apart by its first bytes:
+/// Image of a file, whose format is recognised by its first bytes:
 /// - PNG: 1 to 16 bits per sample, grey, colour or palette, interlaced or not;
 /// - TIFF: its first image, grey or RGB with the channels interleaved, 8 or 16 bits or float32, in strips or tiles,
 ///   uncompressed, LZW, Deflate or PackBits;

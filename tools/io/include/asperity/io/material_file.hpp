@@ -21,8 +21,7 @@ struct normal_texture {
 /// URIs and in files below its folder are read; the same limits and rules hold as for its buffers.
 /// @param keep_going asked at least ten times a second, on this thread; false ends the reading
 /// @return io_failed | bad_format | limit_exceeded | cancelled; unsupported where triangles differ in their normal
-/// texture or have
-///         none, where the texture has a transform or uses other coordinates than TEXCOORD_0
+///         texture or have none, where the texture has a transform or uses other coordinates than TEXCOORD_0
 [[nodiscard]] result<normal_texture> load_normal_texture(const std::filesystem::path& file,
                                                          const std::function<bool()>& keep_going = {});
 

@@ -9,7 +9,7 @@
 
 namespace asperity::io {
 
-/// Loads and checks a textured model; everything that a tick relies on is true of what comes back.
+/// Loads and checks a textured model; the result meets everything that a tick relies on.
 /// @param keep_going asked on the way through the file, on this thread; false ends the reading
 /// @return io_failed | bad_format | bad_mesh | bad_texture | unsupported | limit_exceeded | cancelled, with the place
 ///         and the mend

@@ -11,7 +11,7 @@
 
 namespace asperity {
 
-/// The clock of a session that exists in this process only: waiting is what makes its time pass. Fake peers register
+/// The clock of a session that exists in this process only: only waiting makes its time pass. Fake peers register
 /// with it and act while it passes, so that a handshake of seconds is over in microseconds and is the same every time.
 /// One thread at a time.
 class manual_clock final : public io_clock {

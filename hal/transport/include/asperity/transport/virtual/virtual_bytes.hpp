@@ -13,8 +13,8 @@
 
 namespace asperity {
 
-/// Bytes on their way, one direction. A line keeps their order: what is late holds up what was sent after it.
-/// Made to its capacity at construction.
+/// Bytes on their way, one direction. A line keeps their order: a late byte delays those sent after it.
+/// All memory is taken at construction.
 /// @rt safe after construction
 class byte_queue {
  public:
@@ -50,8 +50,8 @@ class byte_queue {
   std::size_t size_ = 0;
 };
 
-/// The line: the host's end is a driver's byte_link, the far end what a fake peer reads and writes. A fault of the
-/// script meets the bytes of one write() together, as it would a frame; `from_device` faults are drawn when the peer
+/// The line: the host's end is a driver's byte_link, a fake peer reads and writes the far end. A fault of the script
+/// applies to the bytes of one write() together, as to a frame; `from_device` faults are drawn when the peer
 /// writes, for the host's next call. What a peer writes beyond the queue is lost and counted. bus_off means nothing
 /// here.
 /// @rt read() and write() are safe

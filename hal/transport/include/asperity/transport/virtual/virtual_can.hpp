@@ -37,8 +37,8 @@ class virtual_can {
 };
 
 /// One end of the bus, the host's or a device's. Faults of its script are seen from here: to_device is what this end
-/// sends, from_device what it receives. It behaves as open_socketcan()'s bus does: bus-off is known, and told as
-/// `down`, from the first receive() on; until then frames are taken and lost.
+/// sends, from_device what it receives. It behaves as open_socketcan()'s bus does: bus-off is known, and reported
+/// as `down`, from the first receive() on; until then frames are taken and lost.
 /// @rt send() and receive() are safe; the queue is made at construction
 class virtual_can_node final : public can_bus {
  public:

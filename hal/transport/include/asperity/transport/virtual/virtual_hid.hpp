@@ -19,8 +19,8 @@ namespace asperity {
 /// A device on a cable. Its far end is this object, which a fake peer reads and writes; its host's end is a hid_link.
 ///
 /// As the kernel's: the device side queues up to 63 input reports, drops the newest beyond that without a word, and an
-/// open link answers `gone` from the moment of unplugging on. Plugging it in again makes a new link possible and never
-/// mends an old one. Neither end allocates after construction, except that host_end() makes the link.
+/// open link answers `gone` from the moment of unplugging on. Plugging it in again makes a new link possible and
+/// does not revive an old one. Neither end allocates after construction, except that host_end() makes the link.
 class virtual_hid {
  public:
   static constexpr std::size_t max_report_bytes = 64;
