@@ -14,7 +14,7 @@ namespace asperity {
 
 namespace detail {
 
-/// How far planes are followed from where they were told: planes further off are too wrong.
+/// How far planes are followed from where they were reported: further off they are too wrong.
 inline constexpr double furthest_rest_m = 1e-4, furthest_rest_rad = 5e-3;
 /// How many such ways a pose of rest may be from the probe's: as far as one that slides off an edge comes in two
 /// periods of a slow contact loop.
@@ -26,8 +26,8 @@ inline constexpr double most_ways = 5.0;
                   std::sqrt(glm::dot(way.angular, way.angular)) / furthest_rest_rad);
 }
 
-/// Where springs and planes balance, as a motion from the pose where both were told, of at most half a millimetre and
-/// 25 mrad.
+/// Where springs and planes balance, as a motion from the pose where both were reported, of at most half a millimetre
+/// and 25 mrad.
 [[nodiscard]] inline vec6 rest_of(const coupling_pull& pull, const support_planes& planes) noexcept {
   mat6 springs;
   for (std::size_t i = 0; i < 6; ++i) springs(i, i) = i < 3 ? pull.stiffness_n_per_m : pull.stiffness_n_m_per_rad;

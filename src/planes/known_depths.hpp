@@ -17,8 +17,8 @@
 namespace asperity {
 
 /// Upper bounds of the depths of a tick's near samples. A sample that was near in the tick before brings its bound
-/// along; of the others nothing is known. Bounds spare readings and decide nothing: who is told that a sample may be
-/// deep reads it, and finds what it would have found without them. Memory goes with the limit of leaves, not with the
+/// along; of the others nothing is known. Bounds spare readings and decide nothing: a sample that may be deep by its
+/// bound is read, with the same result as without bounds. Memory goes with the limit of leaves, not with the
 /// scene.
 class known_depths {
  public:

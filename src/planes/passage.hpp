@@ -35,10 +35,10 @@ struct field_reach {
 
 /// Follows one point of another body through a field, from where it touched.
 ///
-/// Everywhere but half way through a body the field has one shortest way out, and its slope is about 1; it dies where
-/// two ways are as short. A point has passed where its way out points against the one that it had when it was last
-/// shallow: it is half way through, or came out on the far side. A point that slips round a body turns its way out
-/// while it is shallow.
+/// Everywhere but half way through a body the field has one shortest way out, and its slope is about 1; the slope
+/// vanishes where two ways are equally short. A point has passed where its way out points against the one that it had
+/// when it was last shallow: it is half way through, or came out on the far side. A point that slips round a body turns
+/// its way out while it is shallow.
 class passage {
  public:
   [[nodiscard]] bool active() const noexcept { return active_; }

@@ -142,7 +142,7 @@ void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
 
 void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
                        std::span<near_plane> out) noexcept {
-  // Whom a patch is compared with follows from the pose alone, and so does what is told.
+  // The pose alone decides which patches are compared, and so which planes are reported.
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
   first_met::group* const group = met_->group_of(patch.body, slope_w);
   first_met::depths moved;

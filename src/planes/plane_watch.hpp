@@ -1,4 +1,4 @@
-// What depth fields tell of presses that support planes do not answer.
+// Detects presses that support planes do not hold, by depth fields.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace asperity {
 /// body, that the deepest plane is between, and follows either through the other body's field: see passage. It asks the
 /// fields and not the planes, so a plane that is missing hides nothing. A tick that comes with another probe pose than
 /// a hand can have moved to (half of the smallest body's diagonal or half a radian away) begins anew, so unrelated
-/// poses tell no passage.
+/// poses report no passage.
 class plane_watch {
  public:
   explicit plane_watch(const field_scene& bodies, const scene& of) : probe_(field_reach::of(bodies.probe->field)) {

@@ -1,4 +1,4 @@
-// Everything that a device loop can be told.
+// Settings of a device loop.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace asperity {
 
-/// Everything that the device loop can be told. The defaults are those of science, section 8.
+/// Settings of the device loop. The defaults are those of science, section 8.
 struct control_settings {
   probe_settings probe{};
   coupling_settings coupling{};

@@ -27,7 +27,7 @@ namespace asperity {
 }
 
 /// W0, J and the support planes of one tick, at the pose and time that it was rendered for. Where the renderer could
-/// not answer, or told a number that is not finite, the contact is empty and carries the status: the wrench goes to
+/// not answer, or reported a number that is not finite, the contact is empty and carries the status: the wrench goes to
 /// zero.
 /// @param answer of the renderer, to this pose
 /// @param rest   where the contact before was going to rest

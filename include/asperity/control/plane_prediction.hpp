@@ -22,12 +22,12 @@ namespace asperity {
 /// (the surface is convex: beyond the edge it falls away), the way is shortened.
 ///
 /// The pose is kept for the next contact, whose search begins there unless the probe's own pose has less energy. So a
-/// resting probe is told the same planes again, whatever it does meanwhile; begun anew at each pose, the search
+/// resting probe gets the same planes again, whatever it does meanwhile; begun anew at each pose, the search
 /// went to another side of an edge from each, and the probe with it.
 ///
 /// Of each sample a contact then tells the plane of that pose, in the place of one of the probe's own pose that says
 /// the same there or more. Where the pose is further away than a tenth of a millimetre or 5 mrad, the planes of one so
-/// far on the way to it are told.
+/// far on the way to it are reported.
 /// @source cutting planes: J. E. Kelley, The cutting-plane method for solving convex programs, 1960; steps that have to
 /// lessen a merit: bundle methods, e.g. K. C. Kiwiel, Methods of descent for nondifferentiable optimization, 1985
 class ASPERITY_API rest_prediction {
@@ -36,7 +36,7 @@ class ASPERITY_API rest_prediction {
   void forget() noexcept { known_ = false; }
 
   /// @param pull of the coupling at T_wc; nothing is done where it is not known
-  /// @param T_wc pose of c_A that pull and planes were told at
+  /// @param T_wc pose of c_A at which pull and planes were reported
   /// @param planes completed in place
   /// @rt safe: at most 9 questions to planes_near
   void complete(const plane_source& planes_near, const coupling_pull& pull, const pose& T_wc,
@@ -50,7 +50,7 @@ class ASPERITY_API rest_prediction {
   /// A pose, as a motion from the probe's, and what is there.
   struct place {
     vec6 moved{};
-    plane_list planes{};  // told there, their depths too
+    plane_list planes{};  // reported there, their depths too
     double energy_j = 0.0;
     bool all = true;  // of the planes above the gap
   };
@@ -66,7 +66,7 @@ class ASPERITY_API rest_prediction {
   // The plane that `at` has for the point of p; null where it has none.
   [[nodiscard]] static const support_plane* same_in(const place& at, const support_plane& p) noexcept;
 
-  // A plane that was told at `from`, with the depth that it says for the probe's own pose.
+  // A plane that was reported at `from`, with the depth that it says for the probe's own pose.
   [[nodiscard]] static support_plane as_from_here(const support_plane& p, const vec6& from) noexcept;
 
   void search(const plane_source& planes_near) noexcept;
@@ -97,7 +97,7 @@ class ASPERITY_API rest_prediction {
   pose rest_T_wc_{};
   coupling_pull pull_{};
   place here_{}, there_{};
-  support_planes cuts_{};  // told where the probe is
+  support_planes cuts_{};  // reported where the probe is
   support_planes all_{};
 };
 

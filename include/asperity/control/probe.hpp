@@ -84,7 +84,7 @@ class probe {
     return status::ok;
   }
 
-  /// The same against support planes, as they were told at T_wc0.
+  /// The same against support planes, as they were reported at T_wc0.
   /// @param out which planes pushed, and how hard
   /// @return ok | not_finite (as above). A solver that ran out of passes is ok and tells its residual.
   /// @pre check(law)   @rt safe: at most law.most_passes passes

@@ -31,7 +31,7 @@ struct rate_limits {
   std::int64_t lapse_memory_ns = 1'000'000'000;  ///< ... of which one is forgotten in each such time
 
   /// A contact that takes the place of one older than this, and pushes by so much otherwise at the probe's pose, finds
-  /// the probe where it went blindly. It throws the probe out, which the hand must not feel.
+  /// the probe where no plane was known. It throws the probe out, which the hand must not feel.
   std::int64_t surprise_age_ns = 25'000'000;
   double surprise_n = 0.5;
   double surprise_n_m = 0.02;
@@ -47,7 +47,7 @@ struct rate_report {
   std::uint64_t lost_periods = 0;      ///< nominal periods without a tick of their own; 0 where no period is known
   std::uint64_t lapses = 0;            ///< gaps after which the last command had expired
   std::uint64_t contact_lapses = 0;    ///< times that the contact in use grew too old to be felt
-  std::uint64_t surprises = 0;         ///< contacts that found the probe where it went blindly
+  std::uint64_t surprises = 0;         ///< contacts that found the probe where no plane was known
   std::int64_t longest_gap_ns = 0;     ///< between two ticks
   std::int64_t oldest_contact_ns = 0;  ///< age of the oldest contact that was in use
   double worst_lost_share = 0.0;       ///< of the device periods, over rate_limits::share_time_ns

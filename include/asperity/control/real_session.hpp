@@ -79,7 +79,7 @@ class real_session {
   }
 
   /// Brings the wrench to zero at the slew rate, disarms the device and joins both threads. Harmless when not running.
-  /// @param cause what the gate is told: stopped or interrupted
+  /// @param cause that the gate is given: stopped or interrupted
   void stop(gate_fault cause = gate_fault::stopped) noexcept {
     if (device_running_.load(std::memory_order_relaxed)) stop_cause_.store(cause, std::memory_order_relaxed);
     device_running_.store(false, std::memory_order_release);

@@ -9,7 +9,7 @@
 //   session.start();
 //   asperity::thread_grants got = asperity::latest_grants(asperity::session_thread::device);  // after the first tick
 //
-// Nothing here fails: what the system refuses is told, and the session runs without it.
+// Nothing here fails: what the system refuses is reported, and the session runs without it.
 // A header and no compiled part, because it needs the C library alone; only on Linux does it ask for anything.
 #pragma once
 

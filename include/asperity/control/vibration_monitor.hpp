@@ -104,7 +104,7 @@ class vibration_monitor {
   static constexpr double slow_m_per_s = 3e-3;
   static constexpr double slow_rad_per_s = 0.05;
   static constexpr double excessive_share = 0.01;    ///< of the mean force or torque
-  static constexpr double excessive_force_n = 5e-3;  ///< least level that a hand is told of
+  static constexpr double excessive_force_n = 5e-3;  ///< least level that is reported
   static constexpr double excessive_torque_n_m = 0.5e-3;
   static constexpr std::int64_t shortest_period_ns = 100'000;
   static constexpr std::int64_t longest_period_ns = 5'000'000;

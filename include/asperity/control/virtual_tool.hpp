@@ -80,7 +80,7 @@ class virtual_tool {
     return last_ == status::ok ? felt : wrench{};
   }
 
-  /// How the last follow() ended: ok | invalid_pose | not_finite. What the contact told is in contact().answer.
+  /// How the last follow() ended: ok | invalid_pose | not_finite. The contact's own answer is in contact().answer.
   [[nodiscard]] status last() const noexcept { return last_; }
   /// What the last follow() was held by.
   [[nodiscard]] const linear_contact& contact() const noexcept { return contact_; }

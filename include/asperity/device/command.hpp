@@ -1,4 +1,4 @@
-// What a device is told.
+// A command to a device.
 #pragma once
 
 #include <cstdint>

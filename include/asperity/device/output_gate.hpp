@@ -177,7 +177,7 @@ class output_gate {
     flight_.freeze();
   }
 
-  /// The device puts out zero by itself, whatever it is told: nothing is put out, and the slew starts from zero.
+  /// The device puts out zero by itself, whatever is commanded: nothing is put out, and the slew starts from zero.
   void rest() noexcept { last_ = smooth_ = {}; }
 
   /// Opens the gate again after a person has seen the fault. @return false while the output is not zero yet

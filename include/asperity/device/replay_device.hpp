@@ -12,7 +12,7 @@
 
 namespace asperity {
 
-/// Why a session on record came to its end, as the program told that recorded it.
+/// Why a session on record came to its end, as the program reported that recorded it.
 enum class recorded_end : std::uint8_t {
   not_reported,
   stopped,      ///< it had lasted long enough, or its gate had shut
@@ -27,7 +27,7 @@ struct device_recording {
   device_state before = device_state::absent;  ///< the first call
   std::vector<call_record> calls;
   recorded_end end = recorded_end::not_reported;
-  /// Writes until then; those after it take the wrench to zero. 0 where nobody told.
+  /// Writes until then; those after it take the wrench to zero. 0 where it was not reported.
   std::uint64_t writes_before_end = 0;
   bool cut = false;  ///< its bytes ended before it did: these are the calls up to its last whole block
 };
@@ -44,7 +44,7 @@ struct device_recording {
 
 /// Answers call by call what was recorded. Where it is asked something else than was asked then (another operation,
 /// another time, another command), it counts a difference; a read or a write at the wrong place fails.
-/// There is no hardware behind it: nothing it is told leaves the program.
+/// There is no hardware behind it: no command leaves the program.
 /// @rt safe after construction
 class replay_device {
  public:

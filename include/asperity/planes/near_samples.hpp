@@ -1,4 +1,4 @@
-// What the field finder reports: which samples of one body may touch the other.
+// What the plane finder hands on: which samples of one body may touch the other.
 #pragma once
 
 #include <cmath>
@@ -45,7 +45,7 @@ struct depth_bound {
 struct depth_work {
   std::uint32_t listed = 0;   ///< samples within reach
   std::uint32_t bounded = 0;  ///< leaves that a reading bounded
-  std::uint32_t quick = 0;    ///< samples that were read in single precision, to tell whether they need more
+  std::uint32_t quick = 0;    ///< samples that were read in single precision, to decide whether they need more
   std::uint32_t exact = 0;    ///< samples that were read in double precision with all derivatives
 };
 

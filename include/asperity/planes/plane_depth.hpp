@@ -46,8 +46,8 @@ class ASPERITY_API plane_depth {
   using reading_type = near_plane;
 
   /// @param bodies   the scene's, in its order
-  /// @param reach_m  gaps up to this are told, m
-  /// @param most     planes that a tick may tell: near_sample_limits::readings()
+  /// @param reach_m  gaps up to this are reported, m
+  /// @param most     planes that a tick may report: near_sample_limits::readings()
   plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most);
   plane_depth(plane_depth&&) noexcept;
   plane_depth& operator=(plane_depth&&) noexcept;
@@ -86,7 +86,7 @@ class ASPERITY_API plane_depth {
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
   double reach_m_;
-  double always_m_ = 0.0;   // gaps up to this are told whatever lies before them
+  double always_m_ = 0.0;   // gaps up to this are reported whatever lies before them
   double sinking_m_ = 0.0;  // of a sample that looks away
   std::vector<support_plane> reported_;
   std::vector<std::uint32_t> order_;  // of patches

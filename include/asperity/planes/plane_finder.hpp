@@ -19,7 +19,7 @@ class ASPERITY_API plane_finder {
   using policy_tag = collision_tag;
   using found_type = near_samples;
 
-  /// @param reach_m gaps up to this are told, m
+  /// @param reach_m gaps up to this are reported, m
   plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m) noexcept
       : bodies_(std::move(bodies)), reach_m_(reach_m) {}
 

@@ -1,4 +1,4 @@
-// A spring per direction, on its deepest support plane: what a tick of the field formulation tells of its force.
+// A spring per direction, on its deepest support plane: the force that a tick of planes reports.
 #pragma once
 
 #include <cstddef>

@@ -30,8 +30,8 @@ class plane_source {
 
   [[nodiscard]] explicit operator bool() const noexcept { return ask_ != nullptr; }
 
-  /// The planes deeper than above_m where the probe is moved from the tick's pose, told at the moved pose. Where there
-  /// are more than the list takes, the deepest of them.
+  /// The planes deeper than above_m where the probe is moved from the tick's pose, reported at the moved pose. Where
+  /// there are more than the list takes, the deepest of them.
   /// @param moved translation of c_A, m, and rotation vector about it, rad; world axes
   /// @return ok | capacity_reached | not_ready (this source knows nothing) | invalid_pose (moved is not finite)
   /// @rt safe

@@ -20,7 +20,7 @@ struct support_plane {
   vec3 r_w{0.0};             ///< from c_A to the point that the plane stands for, m
   double spread_m = 0.0;     ///< radius across n_ab_w of the surface that the plane stands for, m
   std::uint32_t body = 0;    ///< index of B in scene::fixed
-  std::uint32_t sample = 0;  ///< planes of one body with the same number stand for the same point; 0: not told
+  std::uint32_t sample = 0;  ///< planes of one body with the same number stand for the same point; 0: not known
 };
 
 /// @rt safe
@@ -29,10 +29,10 @@ struct support_plane {
          std::isfinite(p.spread_m);
 }
 
-/// A stage of a renderer that knows the support planes of its last tick, gaps included. Gaps should be told up to
+/// A stage of a renderer that knows the support planes of its last tick, gaps included. Gaps should be reported up to
 /// 3 v T, v the fastest approach and T the contact loop's period: a contact is handed over a period after its pose and
-/// used for another, and what is not told by then is met by surprise. A gap behind others that every motion meets
-/// before it need not be told.
+/// used for another, and the probe enters what is not reported by then. A gap behind others that every motion meets
+/// before it need not be reported.
 /// The order of the planes must not depend on addresses or time. The span lives until the next tick.
 template <class P>
 concept reports_support_planes = requires(const P& stage) {

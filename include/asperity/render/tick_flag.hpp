@@ -34,13 +34,13 @@ constexpr tick_flag& operator|=(tick_flag& a, tick_flag b) noexcept { return a =
   return (static_cast<std::uint8_t>(set) & static_cast<std::uint8_t>(bit)) != 0;
 }
 
-/// Holds each flag for a while after the tick that told it. The device thread takes the newest contact and may leave
-/// out others; what those told must not be lost.
+/// Holds each flag for a while after the tick that reported it. The device thread takes the newest contact and may
+/// leave out others, whose flags must not be lost.
 class held_flags {
  public:
   static constexpr std::int64_t hold_ns = 50'000'000;
 
-  /// @param told of a tick at now_ns   @rt safe
+  /// @param reported flags of a tick at now_ns   @rt safe
   [[nodiscard]] tick_flag held(tick_flag reported, std::int64_t now_ns) noexcept {
     tick_flag out = reported;
     for (std::size_t i = 0; i < until_ns_.size(); ++i) {

@@ -1,4 +1,4 @@
-// Waking a Falcon: what it needs after every power-on before it answers.
+// Wakes a Falcon, which needs its firmware after every power-on before it answers.
 //
 // The device has no program of its own. Its maker's image is under a licence for noncommercial use and is no part of
 // this library: a person has to name a copy of theirs; see docs/how-to/use-a-falcon.md. Outside a tick, all of it.

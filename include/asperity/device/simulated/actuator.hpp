@@ -11,7 +11,7 @@
 namespace asperity {
 
 /// Limits of the motors themselves, which hold whatever a host sends. The defaults are none: the motors put out what
-/// they are told, at once.
+/// they are commanded, at once.
 struct actuator_settings {
   static constexpr double none = std::numeric_limits<double>::infinity();
   double peak_force_n = none;

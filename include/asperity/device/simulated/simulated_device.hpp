@@ -123,7 +123,7 @@ class simulated_device {
     return status::ok;
   }
 
-  /// What the motors are told to put out at now_ns. @rt safe
+  /// Wrench that is commanded to the motors at now_ns. @rt safe
   [[nodiscard]] status applied(std::int64_t now_ns, wrench& out) const noexcept {
     out = now_ns <= command_.valid_until_ns ? command_.on_hand : wrench{};
     return status::ok;

@@ -23,9 +23,9 @@ namespace asperity {
 /// - Torque is there in armed and active only. In ready the drives measure and their power sections are off: an arm
 ///   without brakes or counterweights falls when it is disarmed.
 /// - A fault of one joint is a fault of all: zero torque on every drive in the same call, latched with its cause. In
-///   fault write() goes on to lead the drives to idle.
-/// - write() keeps the drives' own watchdogs fed, and nothing else does: whoever stops calling it is stopped.
-/// - open() and arm() tick by themselves while they wait. The application has to tick soon after arm().
+///   fault write() goes on leading the drives to idle.
+/// - Only write() feeds the drives' own watchdogs: when it is no longer called, the drives stop.
+/// - open() and arm() tick the drives while they wait. The application has to tick soon after arm().
 /// - open() after clear_fault() also resets faults that the drives hold.
 /// A moved-from device may only be destroyed.
 /// @rt read, write and disarm are as safe as buses and drives
@@ -93,7 +93,7 @@ class ASPERITY_API articulated_device {
   arm_fault fault_{};
   bool has_fault_ = false;
 
-  std::int64_t now_ns_ = 0;  // the newest time that anybody told
+  std::int64_t now_ns_ = 0;  // the newest time that a call was given
   std::int64_t armed_ns_ = 0;
   joint_vector angles_rad_{};
   joint_vector rates_rad_per_s_{};

@@ -1,4 +1,4 @@
-// What has to be known of an arm before it is moved, and what follows from it.
+// Settings of an arm, and the capabilities that follow from them.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// How heavy an arm is: at its joints, and at its handle.
+// Inertia of an arm: at its joints, and at its handle.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace asperity {
 
-/// Symmetric matrix of joints by joints; what stands behind the chain's size is zero.
+/// Symmetric matrix of joints by joints; entries beyond the chain's size are zero.
 using joint_matrix = std::array<joint_vector, most_joints>;
 
 /// Joint-space inertia, kg m^2.

@@ -25,8 +25,8 @@ struct arm_fault {
 /// The fault in one sentence.
 [[nodiscard]] ASPERITY_API std::string to_words(const arm_fault& fault);
 
-/// The drives of an arm, joint by joint from the base outwards, and the buses they are on. It decides nothing: what
-/// goes wrong is returned, once per call, and the caller stops the arm.
+/// The drives of an arm, joint by joint from the base outwards, and the buses they are on. It decides nothing: each
+/// call returns the fault that it found, and the caller stops the arm.
 /// @rt safe, as far as buses and drives are
 class ASPERITY_API drive_group {
  public:
@@ -55,9 +55,9 @@ class ASPERITY_API drive_group {
   /// The session is over. @pre none_on()
   void finish(std::int64_t now_ns) noexcept;
 
-  /// What a drive says that is in fault.
+  /// The fault that a drive reports.
   [[nodiscard]] arm_fault fault_of_drive(std::size_t joint) const noexcept;
-  /// Idle, and each has told its angle.
+  /// Idle, and each has reported its angle.
   [[nodiscard]] bool all_idle() const noexcept;
   [[nodiscard]] bool all_enabled() const noexcept;
   /// None is enabled or on the way there or back.

@@ -1,4 +1,4 @@
-// From a wrench to joint torques that every joint can bear.
+// From a wrench to joint torques within every joint's limit.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct soft_stop {
 [[nodiscard]] ASPERITY_API double with_stop(double own_n_m, const soft_stop& stop, const chain_joint& joint,
                                             double angle_rad, double rate_rad_per_s) noexcept;
 
-/// What the joints are told.
+/// Torques that are commanded to the joints.
 struct shared_torques {
   joint_vector torque_n_m{};
   double scale = 1.0;  ///< factor on the wrench, the same for every joint: its direction is kept

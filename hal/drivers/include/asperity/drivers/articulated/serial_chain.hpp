@@ -1,4 +1,4 @@
-// An arm as a chain of joints: where its handle is, how it moves, and what its weight asks of the joints.
+// An arm as a chain of joints: where its handle is, how it moves, and which torques hold its weight.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace asperity {
 
 inline constexpr std::size_t most_joints = 8;
 
-/// One number per joint. What stands behind the chain's size is zero.
+/// One number per joint. Numbers beyond the chain's size are zero.
 using joint_vector = std::array<double, most_joints>;
 
 /// Mass of a link, as URDF states it.
@@ -39,7 +39,7 @@ struct chain_joint {
   link_mass link{};
 };
 
-/// Joints from the base to the handle. Turning joints only: a sliding one is none that a drive of torques moves.
+/// Joints from the base to the handle. Turning joints only: a drive of torques moves no sliding joint.
 struct serial_chain {
   fixed_vector<chain_joint, most_joints> joints{};
   pose T_handle{};                     ///< handle h in the frame of the last link

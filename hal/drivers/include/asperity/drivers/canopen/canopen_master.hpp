@@ -1,4 +1,4 @@
-// The host on a CANopen bus: SYNC for all drives, and our own sign of life.
+// The host on a CANopen bus: SYNC for all drives, and the host's heartbeat.
 #pragma once
 
 #include <cstdint>

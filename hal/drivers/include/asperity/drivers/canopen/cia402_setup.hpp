@@ -1,4 +1,4 @@
-// What is written into a CiA 402 drive, and read from it, before it is started.
+// The configuration that is written into a CiA 402 drive, and read back, before it is started.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace asperity {
 
-/// One drive and the motor, gear and encoder behind it. What stands here without a default has to be known.
+/// One drive and the motor, gear and encoder behind it. Members without a default have to be set.
 struct cia402_settings {
   std::uint8_t node = 1;          ///< 1 to 127
   std::uint8_t host_node = 127;   ///< the number under which our own heartbeat is sent; no drive has it
@@ -28,7 +28,7 @@ struct cia402_settings {
   std::int64_t answer_limit_ns = 50'000'000;    ///< of one request, which is then repeated ...
   int answer_tries = 3;                         ///< ... so often in all
   std::int64_t state_limit_ns = 1'000'000'000;  ///< of each change of the drive's state; brakes take time
-  bool quick_stop_on_fault = false;  ///< brake on a fault, with the drive's own ramp, rather than let go at once
+  bool quick_stop_on_fault = false;             ///< brake on a fault with the drive's own ramp, instead of letting go
 };
 
 namespace canopen {

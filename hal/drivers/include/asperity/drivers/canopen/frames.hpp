@@ -28,7 +28,7 @@ inline constexpr std::uint32_t heartbeat_id = 0x700;     ///< + node
 inline constexpr std::uint8_t lowest_node = 1;
 inline constexpr std::uint8_t highest_node = 127;
 
-/// What a node can be told about its life.
+/// Commands of network management to a node.
 enum class nmt_command : std::uint8_t {
   start = 1,
   stop = 2,
@@ -37,7 +37,7 @@ enum class nmt_command : std::uint8_t {
   reset_communication = 130,
 };
 
-/// Where a node is, as its heartbeat says.
+/// State of a node, as its heartbeat says.
 enum class nmt_state : std::uint8_t {
   boot_up = 0,
   stopped = 4,

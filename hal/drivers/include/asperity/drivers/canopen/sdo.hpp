@@ -62,7 +62,7 @@ inline constexpr std::uint32_t wrong_state = 0x08000022;
   return f;
 }
 
-/// What a node is asked.
+/// A request to a node.
 struct sdo_request {
   bool write = false;
   object_address at{};
@@ -82,7 +82,7 @@ struct sdo_request {
   return r;
 }
 
-/// What a node answered.
+/// A node's answer.
 struct sdo_response {
   enum class kind : std::uint8_t {
     written,

@@ -1,4 +1,4 @@
-// How a configuration gets into a drive: one object after another, each asked for until it is answered.
+// Sends a configuration to a drive: one object after another, each repeated until it is answered.
 #pragma once
 
 #include <cstddef>

@@ -15,7 +15,7 @@ namespace asperity {
 /// One Falcon. open() wakes it: loads the firmware where it does not answer, then waits with red light until a person
 /// has pushed the grip in and pulled it out. Blue: measures; green: may put out a force.
 ///
-/// The device has no watchdog that is known of and repeats the last command for as long as it has power. That is why a
+/// The device has no known watchdog and repeats the last command for as long as it has power. That is why a
 /// command of zero goes out in every tick in which no force is allowed, and again in each one after a failure until the
 /// link takes it. Where the USB link dies and the device keeps its power, nothing on this side can stop it.
 class ASPERITY_API falcon_device {

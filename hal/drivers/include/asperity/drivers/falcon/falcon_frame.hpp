@@ -19,13 +19,13 @@ namespace asperity {
 inline constexpr std::size_t falcon_frame_size = 16;
 using falcon_frame = std::array<std::uint8_t, falcon_frame_size>;
 
-/// Largest number that a motor is ever sent, counts. Published sources name it as the cap of the firmware.
+/// Largest number that is ever sent to a motor, counts. Published sources name it as the cap of the firmware.
 inline constexpr std::int16_t falcon_counts_limit = 4096;
 
 /// Lights of the ring, one bit each.
 enum class falcon_light : std::uint8_t { none = 0, green = 2, blue = 4, red = 8 };
 
-/// What a Falcon is told.
+/// A command to a Falcon.
 struct falcon_command {
   std::array<std::int16_t, 3> motor_counts{};  ///< of the motors' torque; saturated when it is encoded
   falcon_light light = falcon_light::none;
@@ -34,7 +34,7 @@ struct falcon_command {
   friend bool operator==(const falcon_command&, const falcon_command&) = default;
 };
 
-/// What a Falcon answers.
+/// A report of a Falcon.
 struct falcon_report {
   std::array<std::int16_t, 3> encoder_counts{};
   std::uint8_t buttons = 0;  ///< plus (right) 1, forward 2, centre 4, minus (left) 8
@@ -53,7 +53,7 @@ inline constexpr std::uint8_t falcon_all_homed = 7;
   return static_cast<std::int16_t>(bounded + (bounded < 0.0 ? -0.5 : 0.5));
 }
 
-/// The bytes of a command. Counts beyond the limit become the limit, whoever asks.
+/// The bytes of a command. Counts beyond the limit become the limit.
 /// @rt safe
 [[nodiscard]] ASPERITY_API falcon_frame encode_falcon(const falcon_command& command) noexcept;
 

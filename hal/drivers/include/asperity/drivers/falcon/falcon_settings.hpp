@@ -1,4 +1,4 @@
-// What is known of a Falcon before it is opened, what a user may set, and why it stops.
+// Capabilities of a Falcon, its settings, and its faults.
 #pragma once
 
 #include <cstdint>

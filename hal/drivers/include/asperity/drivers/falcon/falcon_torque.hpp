@@ -1,4 +1,4 @@
-// From a force on the hand to the three numbers that a Falcon's motors are sent.
+// From a force on the hand to the three numbers that are sent to a Falcon's motors.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 namespace asperity {
 
 /// Counts per N m of an arm, with the sign of the published drivers. Nobody has published a measurement: the number is
-/// the one that those drivers use, and its authors call it a guess. A newton that is asked for can be more or less than
-/// a newton on the hand, by a factor that is not known.
+/// the one that those drivers use, and its authors call it a guess. A commanded newton can be more or less than a
+/// newton on the hand, by an unknown factor.
 inline constexpr double falcon_counts_per_n_m = -1e4;
 
 /// Counts of the three motors for a force on the hand (N, frame d). Where a motor would have to give more than

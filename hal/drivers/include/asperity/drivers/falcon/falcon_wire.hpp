@@ -21,8 +21,8 @@ enum class falcon_doubt : std::uint8_t {
   not_homed,     ///< a leg says that it has not passed its index mark
 };
 
-/// Sends commands, collects reports and judges them. Frames carry no checksum, so that a report with a wrong bit is
-/// found by what it says or not at all.
+/// Sends commands, collects reports and judges them. Frames carry no checksum, so a report with a wrong bit can only
+/// be recognised by impossible values.
 /// @rt send() and receive() are safe where the link's write() and read() are
 class ASPERITY_API falcon_wire {
  public:
@@ -33,8 +33,8 @@ class ASPERITY_API falcon_wire {
   /// One frame to the device, which answers each with one report.
   [[nodiscard]] io_status send(std::int64_t now_ns, const falcon_command& command) noexcept;
 
-  /// Takes in everything that has arrived. An answer to a frame of long ago says where the grip was then, whatever the
-  /// time at which it is fetched, and is dropped. @return ok | gone | too_short | failed ...
+  /// Takes in everything that has arrived. Drops an answer to a frame of long ago, which says where the grip was then
+  /// and not where it is now. @return ok | gone | too_short | failed ...
   [[nodiscard]] io_status receive(std::int64_t now_ns) noexcept;
 
   /// Steps of the encoders are judged from the next report on, as if it were the first: homing moves them.

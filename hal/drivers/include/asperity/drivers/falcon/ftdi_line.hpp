@@ -18,7 +18,7 @@ inline constexpr std::size_t ftdi_status_size = 2;
 /// Most payload of one packet to the host.
 inline constexpr std::size_t ftdi_payload_size = ftdi_packet_size - ftdi_status_size;
 
-/// What an FTDI chip can be asked for.
+/// Control requests to an FTDI chip.
 enum class ftdi_request : std::uint8_t { reset = 0, modem = 1, flow = 2, baud = 3, data = 4, latency = 9 };
 
 inline constexpr std::uint16_t ftdi_purge_receive = 1;

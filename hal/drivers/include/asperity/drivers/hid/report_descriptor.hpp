@@ -1,4 +1,4 @@
-// What a HID device says of its own reports.
+// The layout of a HID device's reports, from the device's own description.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ struct hid_report_size {
   std::uint32_t bits = 0;  ///< without the number
 };
 
-/// What became of a descriptor.
+/// Result of parsing a descriptor.
 enum class descriptor_status : std::uint8_t {
   ok,
   empty,       ///< no bytes
@@ -71,7 +71,7 @@ enum class descriptor_status : std::uint8_t {
 }
 
 /// A parsed report descriptor, of any bytes whatever: memory and time are bounded, nothing is allocated.
-/// What was understood before a fault is dropped: with any status but ok and capacity there are no fields.
+/// Fields that were parsed before a fault are dropped: with any status but ok and capacity there are none.
 /// @source HID 1.11, sections 5 and 6.2.2
 struct ASPERITY_API report_descriptor {
   static constexpr std::size_t max_bytes = 4096;            ///< as in the kernel
@@ -91,7 +91,7 @@ struct ASPERITY_API report_descriptor {
   [[nodiscard]] std::size_t report_bytes(hid_report_kind kind, std::uint8_t id) const noexcept;
 };
 
-/// Parses the bytes of a report descriptor. The answer has Some 10 KB: not for a small stack, and not inside a tick.
+/// Parses the bytes of a report descriptor. The result takes some 10 KB: not for a small stack, and not inside a tick.
 [[nodiscard]] ASPERITY_API report_descriptor parse_report_descriptor(std::span<const std::uint8_t> bytes) noexcept;
 
 /// Bits of a field out of a report. The report's bytes are hostile: false where they end before the field does, and

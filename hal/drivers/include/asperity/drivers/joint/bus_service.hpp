@@ -7,8 +7,8 @@
 
 namespace asperity {
 
-/// The host's part in a protocol that belongs to a whole bus: a clock for all, a sign of life. Whoever owns the bus
-/// calls step() once in every period, after the drives' own step(). A protocol that needs nothing of the kind has none.
+/// The host's part in a protocol that belongs to a whole bus: a clock for all, a heartbeat. The owner of the bus calls
+/// step() once in every period, after the drives' own step(). A protocol that needs nothing of the kind has none.
 /// Nothing here blocks, allocates, locks, throws or reads a clock.
 class bus_service {
  public:
@@ -19,7 +19,7 @@ class bus_service {
 
   /// Once per period, and only because the application ticked. @return the worst answer of the bus
   [[nodiscard]] virtual io_status step(std::int64_t now_ns, can_bus& bus) noexcept = 0;
-  /// The session on this bus is over: leaves it in order. Nothing is told about failures, for nobody is left to act.
+  /// Ends the session on this bus in order. Failures are not reported, because no caller could act on them.
   virtual void finish(std::int64_t now_ns, can_bus& bus) noexcept = 0;
 };
 

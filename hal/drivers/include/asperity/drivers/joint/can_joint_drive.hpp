@@ -1,4 +1,4 @@
-// What all joint drives that answer every period have in common: the way to torque and back, and its limits in time.
+// The common part of joint drives that answer in every period: the way to torque and back, and its time limits.
 #pragma once
 
 #include <cstdint>
@@ -22,15 +22,15 @@ struct ASPERITY_API joint_drive_settings {
   [[nodiscard]] bool usable() const noexcept;
 };
 
-/// The part of a joint_drive that is the same for every protocol. A protocol says which frames a phase needs, and tells
-/// what it heard.
+/// The part of a joint_drive that is the same for every protocol. A protocol says which frames a phase needs, and
+/// reports what it received.
 ///
 ///     off -> leading -> idle -> arming -> enabled -> leaving -> idle
 ///                        \-> seeking -> leading           (an idle drive that fell silent, and was heard again)
 ///     anything but off -> faulted -> leading              (clear_fault() only)
 ///
 /// - leading, arming and leaving end within step_limit_ns, or in a fault.
-/// - enabled ends in a fault when the drive is not heard, or when the application renews its torque no more: the
+/// - enabled ends in a fault when the drive is not heard, or when the application no longer renews its torque: the
 ///   drive's own watchdog is fed by the application's commands and by nothing else. A torque that was never set is zero
 ///   and needs no renewing.
 /// - A bus that does not take a frame is a fault at once; one whose queue is full, after busy_limit steps.
@@ -43,7 +43,7 @@ class ASPERITY_API can_joint_drive : public joint_drive {
   [[nodiscard]] drive_fault fault() const noexcept final { return fault_; }
   [[nodiscard]] const joint_reading& reading() const noexcept final { return reading_; }
   [[nodiscard]] drive_state state() const noexcept final;
-  /// Frames with this drive's id that do not have the form of its protocol, so far.
+  /// Frames with this drive's id so far that are not valid in its protocol.
   [[nodiscard]] std::uint64_t malformed() const noexcept { return malformed_; }
 
   void start(std::int64_t now_ns) noexcept final;

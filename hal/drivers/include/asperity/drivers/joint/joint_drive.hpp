@@ -45,7 +45,7 @@ struct drive_facts {
   bool needs_fd = false;
 };
 
-/// What a drive last said of its joint.
+/// Newest reading of a joint.
 struct joint_reading {
   std::int64_t host_time_ns = 0;  ///< of the frame that brought the position
   std::uint64_t sequence = 0;     ///< grows with every position
@@ -62,8 +62,8 @@ struct drive_fault {
   std::uint32_t code = 0;  ///< the drive's own; 0 where it has none
 };
 
-/// A state machine that speaks one protocol. It owns no bus and no thread: whoever does hands it every frame that
-/// arrives and calls step() once in every period, and it answers at once.
+/// A state machine that speaks one protocol. It owns no bus and no thread: the owner of the bus hands it every frame
+/// that arrives and calls step() once in every period, and it answers at once.
 /// - start() begins to lead the drive to idle; enable() from there to enabled; step() takes one step of the way when it
 ///   is due and repeats what stayed unanswered. What takes longer than its limit ends in fault.
 /// - In every state but enabled the torque on the wire is zero, and a torque that is not finite is zero.

@@ -1,4 +1,4 @@
-// Between what a drive counts and what its joint does.
+// Conversion between a drive's shaft and its joint.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct joint_scale {
   [[nodiscard]] constexpr double shaft_torque(double joint_n_m) const noexcept {
     return sign() * joint_n_m / gear_ratio;
   }
-  /// The largest float that the shaft may be told so that the joint's torque is not over `peak_n_m` after all rounding.
+  /// The largest float to command to the shaft such that the joint's torque stays within `peak_n_m` after rounding.
   [[nodiscard]] float shaft_limit(double peak_n_m) const noexcept {
     float limit = float_toward_zero(std::max(peak_n_m, 0.0) / gear_ratio);
     while (static_cast<double>(limit) * gear_ratio > peak_n_m && limit > 0.0F) limit = std::nextafter(limit, 0.0F);

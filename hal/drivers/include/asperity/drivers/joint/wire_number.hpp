@@ -1,4 +1,4 @@
-// Numbers on the wire that never say more than what was asked for.
+// Numbers on the wire that never exceed what was asked for.
 #pragma once
 
 #include <algorithm>

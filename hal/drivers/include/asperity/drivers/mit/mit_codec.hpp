@@ -13,7 +13,7 @@
 
 namespace asperity::mit {
 
-/// What the ends of the wire's integers stand for: +-position, +-velocity, +-torque of the output shaft. Drive and host
+/// Values at the ends of the wire's integers: +-position, +-velocity, +-torque of the output shaft. Drive and host
 /// have to agree on them: a wrong table scales every torque.
 struct ASPERITY_API ranges {
   double position_rad = 12.5;
@@ -92,7 +92,7 @@ class symmetric_field {
   double per_step_;
 };
 
-/// What a drive is told: it puts out stiffness (position - its own) + damping (velocity - its own) + torque.
+/// A command to a drive, which puts out stiffness (position - its own) + damping (velocity - its own) + torque.
 struct command {
   double position_rad = 0.0;
   double velocity_rad_per_s = 0.0;
@@ -103,7 +103,7 @@ struct command {
 
 using command_bytes = std::array<std::uint8_t, 8>;
 
-/// The three frames that are no commands: all bytes 0xff, and the last one says what.
+/// The three frames that are not commands: all bytes are 0xff but the last, which says which it is.
 inline constexpr command_bytes enter_motor_mode{0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xfc};
 inline constexpr command_bytes exit_motor_mode{0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xfd};
 inline constexpr command_bytes set_zero_position{0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xfe};
@@ -146,7 +146,7 @@ inline constexpr command_bytes set_zero_position{0xff, 0xff, 0xff, 0xff, 0xff, 0
 /// What a drive reads in a command that is not a special frame.
 [[nodiscard]] ASPERITY_API command decode_command(const command_bytes& b, const ranges& r) noexcept;
 
-/// What a drive answers to every frame. Three lengths are in use: 6 bytes; 7 with the supply voltage (motorcontrol);
+/// A drive's answer to every frame. Three lengths are in use: 6 bytes; 7 with the supply voltage (motorcontrol);
 /// 8 with temperature and error code (AK).
 struct reply {
   std::uint8_t id = 0;

@@ -13,14 +13,14 @@ struct mit_settings {
   joint_drive_settings joint{};
   std::uint32_t motor_id = 1;            ///< id of the frames it takes, 11 bits; its low byte begins every answer
   std::uint32_t master_id = 0;           ///< id of the frames that it answers with
-  mit::ranges ranges = mit::ak80_9;      ///< as set in the drive; check them, nothing on the wire tells them
+  mit::ranges ranges = mit::ak80_9;      ///< as set in the drive; check them, because they cannot be read
   bool watchdog_set = false;             ///< the drive has a time-out of its own, and you have tried it
   std::int64_t follow_ns = 100'000'000;  ///< torque that is commanded and not measured for that long is a fault; 0: off
 };
 
-/// The protocol has no state in its answers: that a drive is enabled cannot be read, only that it answers. What stands
-/// in for it: frames of bring-up are repeated, a torque that does not appear is a fault, and every frame outside
-/// `enabled` says again that motor mode is to be left. An idle drive is measured that way too.
+/// The protocol has no state in its answers: whether a drive is enabled cannot be read, only whether it answers.
+/// Therefore frames of bring-up are repeated, a torque that does not appear is a fault, and every frame outside
+/// `enabled` orders the drive again to leave motor mode. These frames also get the readings of an idle drive.
 /// @rt safe
 class ASPERITY_API mit_drive final : public can_joint_drive {
  public:

@@ -49,7 +49,7 @@ enum class mode : std::uint8_t {
 /// How a value is written: an integer whose unit depends on what it measures, or a float in the base unit.
 enum class resolution : std::uint8_t { int8 = 0, int16 = 1, int32 = 2, real = 3 };
 
-/// What a register measures, which gives its integers their unit.
+/// The quantity of a register, which decides the unit of its integers.
 enum class quantity : std::uint8_t {
   plain,
   torque_n_m,
@@ -105,7 +105,7 @@ enum class quantity : std::uint8_t {
   return static_cast<std::int32_t>(wire_count(saturated(value, limit), unit_of(q, r), most_of(r)));
 }
 
-/// What a subframe does.
+/// Kind of a subframe.
 enum class action : std::uint8_t { write, read, reply, write_error, read_error };
 
 /// Writes the subframes of one frame. What does not fit makes the whole frame unusable, and says so.
@@ -155,7 +155,7 @@ struct item {
   }
 };
 
-/// Takes a frame apart, register by register. Bytes are not to be trusted: a frame that ends too early, or has an
+/// Takes a frame apart, register by register. Its bytes are not trusted: a frame that ends too early, or has an
 /// unknown subframe, ends the reading with malformed(). Never more items than bytes.
 class ASPERITY_API frame_reader {
  public:

@@ -66,7 +66,7 @@ inline constexpr std::uint32_t input_passthrough = 1;
   put_little_u32(f.data.data() + 4, input_passthrough);
   return f;
 }
-/// One byte in 0.6, which is the identification light; 0.5 does not look at it.
+/// One byte in 0.6, which is the identification light; 0.5 ignores it.
 [[nodiscard]] constexpr can_frame clear_errors(std::uint32_t node) noexcept {
   return {.id = frame_id(node, message::clear_errors), .size = 1};
 }
@@ -149,7 +149,7 @@ struct version {
   return f;
 }
 
-/// An error word in words: what its most telling bit means.
+/// An error word in words: the meaning of its most specific bit.
 [[nodiscard]] ASPERITY_API const char* to_string_error(std::uint32_t error, firmware v) noexcept;
 
 }  // namespace asperity::odrive

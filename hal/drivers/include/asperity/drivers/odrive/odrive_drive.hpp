@@ -21,7 +21,7 @@ struct odrive_settings {
   bool watchdog_set = false;                ///< enable_watchdog and watchdog_timeout are set in the drive
 };
 
-/// A drive of 0.5 does not know the question for its version, so one that beats and does not answer it is 0.5.
+/// A drive of 0.5 does not know the request for its version, so one that sends heartbeats without answering it is 0.5.
 /// Its watchdog is fed by every frame: enabled, nothing at all is sent in a period without a new torque.
 /// @rt safe
 class ASPERITY_API odrive_drive final : public can_joint_drive {

@@ -10,7 +10,7 @@
 
 namespace asperity {
 
-/// What a displacement of the cap means.
+/// Meaning of a displacement of the cap.
 enum class spacemouse_control : std::uint8_t {
   rate,      ///< a speed: the pose moves on while the cap is pushed and stays where it is when it is let go
   position,  ///< a place: the pose follows the cap, and returns with it
@@ -37,7 +37,7 @@ struct spacemouse_motion_settings {
   std::int64_t longest_step_ns = 20'000'000;  ///< a later tick moves the pose by this much time only
 };
 
-/// Integrates or follows. Whatever comes in, the pose is finite, of unit length and in its box, and moves no faster
+/// Integrates or follows. For any input the pose is finite, of unit length and in its box, and moves no faster
 /// than the configuration says.
 /// @rt safe after construction
 class ASPERITY_API spacemouse_motion {
@@ -50,7 +50,7 @@ class ASPERITY_API spacemouse_motion {
   /// Where the cap is, as shares of full displacement in device axes. More than one counts as one, NaN as none.
   void displace(const std::array<double, 6>& share) noexcept;
 
-  /// Whether the cap asks for nothing.
+  /// Whether the cap is at rest.
   [[nodiscard]] bool at_rest() const noexcept;
 
   /// The time that has gone by. Less than none counts as none.

@@ -1,4 +1,4 @@
-// The reports of the SpaceMouse family, to numbers and back.
+// Reports of the SpaceMouse family: decoding and encoding.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace asperity {
 
-/// What one report brought.
+/// Values of one report.
 struct spacemouse_input {
   std::array<std::int32_t, 6> counts{};  ///< displacement of the cap, device axes: x y z, then turns about them
   axis_mask brought = no_axes;           ///< the axes of `counts` that the report had

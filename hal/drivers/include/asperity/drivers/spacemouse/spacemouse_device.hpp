@@ -48,10 +48,10 @@ struct spacemouse_settings {
   double shown_torque_n_m = 0.0;
 };
 
-/// What came in since open().
+/// Counts of the reports since open().
 struct spacemouse_counts {
   std::uint64_t reports = 0;    ///< understood
-  std::uint64_t unknown = 0;    ///< of a kind that is not ours
+  std::uint64_t unknown = 0;    ///< of a kind that is not used here
   std::uint64_t too_short = 0;  ///< counted in device_sample::lost as well
   std::uint64_t silences = 0;   ///< times that a pushed cap fell silent
 };
@@ -66,7 +66,7 @@ struct spacemouse_counts {
 ///   let go after silence_limit_ns: the pose stands still, and samples stay as they are until a report comes, so that
 ///   they grow stale for whoever judges them. The family sends the zero of a release three times over, so that a lost
 ///   report or two does not lead here.
-///   What cannot be told from rest: a wireless device that is out of range, and one that hangs, with the cap at rest.
+///   It cannot distinguish from rest: a wireless device that is out of range, and one that hangs, with the cap at rest.
 /// - Nothing is actuated. write() keeps to the contract - states, frames, faults - and the wrench goes to shown() only.
 ///   Limits are zero, so the output gate lets none through, unless spacemouse_settings says what may be shown.
 /// - `lost` counts axis reports that could not be used, and on classic devices one for every report 1 that follows on a
@@ -104,7 +104,7 @@ class ASPERITY_API spacemouse_device {
   [[nodiscard]] spacemouse_fault fault() const noexcept { return fault_; }
   [[nodiscard]] const spacemouse_counts& counts() const noexcept { return counts_; }
   [[nodiscard]] const spacemouse_format& format() const noexcept { return format_; }
-  /// The newest of every value that came in; has_battery says whether the device ever told.
+  /// The newest of every value that came in; has_battery says whether the device ever reported it.
   [[nodiscard]] const spacemouse_input& input() const noexcept { return input_; }
 
  private:
