@@ -8,6 +8,7 @@
 
 #include "asperity/gl/compute_depth.hpp"
 #include "gl/seeded_contacts.hpp"
+#include "support/extent.hpp"
 #include "support/gl_context.hpp"
 #include "support/sharp_corner.hpp"
 
@@ -103,16 +104,17 @@ TEST_F(GlComputeAgreement, OverSeededContacts) {
   std::printf("| %-28s | cont. | over. | depth    | soft d.  | gradient | curv.    | witness  | flags | samples |\n",
               "worst differences");
   const bool doubles = context->facts().double_precision;
+  const std::size_t many = test_support::extent<std::size_t>(60, 260), some = test_support::extent<std::size_t>(20, 40);
   const window_depth_settings soft{.grid = 24}, paper{.parallax = parallax_mode::paper_lookup, .grid = 24},
       differences{.gradient = gradient_scheme::central_difference, .grid = 16};
   if (doubles) {
-    run("soft max, double", context, soft, arithmetic::double_precision, 260, {1e-11, 1e-7, 1e-5, 1e-5});
-    run("paper's lookup, double", context, paper, arithmetic::double_precision, 40, {1e-11, 1e-7, 1e-5, 1e-5});
-    run("central difference, double", context, differences, arithmetic::double_precision, 40,
+    run("soft max, double", context, soft, arithmetic::double_precision, many, {1e-11, 1e-7, 1e-5, 1e-5});
+    run("paper's lookup, double", context, paper, arithmetic::double_precision, some, {1e-11, 1e-7, 1e-5, 1e-5});
+    run("central difference, double", context, differences, arithmetic::double_precision, some,
         {1e-11, 1e-11, 1e-10, 0.0});
   }
-  run("soft max, single", context, soft, arithmetic::single_precision, 260, {1e-6, 1e-6, 2e-2, 1e-1});
-  run("central difference, single", context, differences, arithmetic::single_precision, 40, {1e-6, 1e-6, 1e-3, 0.0});
+  run("soft max, single", context, soft, arithmetic::single_precision, many, {1e-6, 1e-6, 2e-2, 1e-1});
+  run("central difference, single", context, differences, arithmetic::single_precision, some, {1e-6, 1e-6, 1e-3, 0.0});
 }
 
 TEST_F(GlComputeAgreement, PastASharpCorner) {

@@ -1,4 +1,5 @@
 // Files changed at random, a fixed number of them with a fixed seed: each ends in a sentence or in something usable.
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
@@ -9,14 +10,18 @@
 #include "fuzz_runs.hpp"
 #include "gltf_mutator.hpp"
 #include "mesh_mutator.hpp"
+#include "support/extent.hpp"
 #include "survival.hpp"
 
 namespace asperity::hostile {
 namespace {
 
+/// One in so many of the runs at length.
+const std::size_t one_in = std::max(share, test_support::extent<std::size_t>(4, 1));
+
 TEST(Fuzz, TexturedModels) {
   const auto read = [](const std::string& bytes) { return io::read_textured_model(bytes, "fuzz.glb"); };
-  const tally t = fuzz(10'000 / share, 20041, good_model(), mutated_glb, read);
+  const tally t = fuzz(10'000 / one_in, 20041, good_model(), mutated_glb, read);
   t.print("textured models");
   EXPECT_GE(t.kinds(), 60U) << "mutations stop at the first checks";
   EXPECT_GT(t.loaded(), 0.1);
@@ -25,7 +30,7 @@ TEST(Fuzz, TexturedModels) {
 
 TEST(Fuzz, PlainGltf) {
   const auto read = [](const std::string& bytes) { return io::read_gltf(bytes, "fuzz.glb"); };
-  const tally t = fuzz(15'000 / share, 7, glb(tetrahedron(), tetrahedron_bytes()), mutated_glb, read);
+  const tally t = fuzz(15'000 / one_in, 7, glb(tetrahedron(), tetrahedron_bytes()), mutated_glb, read);
   t.print("plain glTF");
   EXPECT_GE(t.kinds(), 50U);
   EXPECT_GT(t.loaded(), 0.1);
@@ -58,7 +63,7 @@ TEST(Fuzz, PlainMeshes) {
                                                                                                : bytes.size();
       return mutated_mesh(bytes, end, random);
     };
-    const tally t = fuzz(10'000 / share, 3, f.good, mutate,
+    const tally t = fuzz(10'000 / one_in, 3, f.good, mutate,
                          [&](const std::string& bytes) { return f.read(bytes, std::string("fuzz"), {}); });
     t.print(f.name);
     EXPECT_GE(t.kinds(), f.least_kinds) << f.name;

@@ -127,24 +127,38 @@ std::size_t counts_of_a_shared() {
   return bytes_on_loan() - before - sizeof(T);
 }
 
+/// The renderer that these tests look at: made once, because its fields take most of their time.
+struct counted_renderer {
+  model_ptr model = std::make_shared<const textured_model>(make_model());
+  model_ptr other = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
+  std::optional<least_motion_renderer> feel;
+  std::size_t asked = 0;
+
+  counted_renderer() {
+    const std::size_t before = bytes_on_loan();
+    auto made = make_renderer({model, {model, other, model, other}});
+    EXPECT_TRUE(made);
+    if (made) feel.emplace(std::move(made).value());
+    asked = bytes_on_loan() - before;
+  }
+};
+
 class DefaultRendererMemory : public ::testing::Test {
  protected:
-  DefaultRendererMemory() {
-    const std::size_t before = bytes_on_loan();
-    auto made = make_renderer({model_, {model_, other_, model_, other_}});
-    EXPECT_TRUE(made);
-    if (made) feel_.emplace(std::move(made).value());
-    asked_ = bytes_on_loan() - before;
-  }
+  static void SetUpTestSuite() { counted_ = std::make_unique<counted_renderer>(); }
+  static void TearDownTestSuite() { counted_.reset(); }
 
   /// Of what the policies share: two scenes, and of either two bodies.
   [[nodiscard]] static std::size_t counts() { return 6 * counts_of_a_shared<field_scene>(); }
   [[nodiscard]] const field_scene& fields() { return feel_->depth().bodies(); }
 
-  model_ptr model_ = std::make_shared<const textured_model>(make_model());
-  model_ptr other_ = std::make_shared<const textured_model>(make_flat_box({0.02, 0.02, 0.02}));
-  std::optional<least_motion_renderer> feel_;
-  std::size_t asked_ = 0;
+ private:
+  inline static std::unique_ptr<counted_renderer> counted_;
+
+ protected:
+  const model_ptr &model_ = counted_->model, &other_ = counted_->other;
+  std::optional<least_motion_renderer>& feel_ = counted_->feel;
+  const std::size_t asked_ = counted_->asked;
 };
 
 TEST_F(DefaultRendererMemory, IsWhatItHasAskedFor) {

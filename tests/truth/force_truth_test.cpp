@@ -106,9 +106,9 @@ std::vector<std::string> complaints(const light_touches& t) {
 }
 
 TEST(force_truth, light_touches_push_by_their_depth) {
-  const std::size_t pairs = test_support::extent<std::size_t>(6, 30);
+  const std::size_t pairs = test_support::extent<std::size_t>(4, 30);
   const std::uint64_t approaches = test_support::extent<std::uint64_t>(10, 30);
-  const std::uint64_t seed = test_support::fresh_seed("light touches", "6 pairs x 10 (30 x 30 at length)");
+  const std::uint64_t seed = test_support::fresh_seed("light touches", "4 pairs x 10 (30 x 30 at length)");
   const light_touches t = ask(seed, pairs, approaches, {});
   print(t);
   EXPECT_GT(t.wall.size() + t.edge.size(), pairs * approaches / 3);

@@ -61,19 +61,22 @@ check_consumers() {
   configure release
   build release asperity
   all_core_headers > build/check/core.cpp
-  for compiler in g++ clang++; do
-    for standard in c++20 c++2b; do
-      "$compiler" "-std=$standard" "${flags[@]}" -fsyntax-only build/check/core.cpp
-      "$compiler" "-std=$standard" "${flags[@]}" tests/install/core_consumer.cpp build/release/src/libasperity.a \
-        -o "build/check/consumer-$compiler-$standard"
-      "build/check/consumer-$compiler-$standard"
+  {
+    for compiler in g++ clang++; do
+      for standard in c++20 c++2b; do
+        printf '%s\n' "$compiler -std=$standard ${flags[*]} -fsyntax-only build/check/core.cpp"
+        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/install/core_consumer.cpp build/release/src/libasperity.a \
+          -o build/check/consumer-$compiler-$standard && build/check/consumer-$compiler-$standard"
+      done
     done
-  done
-  # The core itself throws nothing either.
-  for source in src/*/*.cpp; do
-    g++ -std=c++20 "${flags[@]}" -O0 -Isrc -fsyntax-only "$source"
-  done
+    # The core itself throws nothing either.
+    printf "g++ -std=c++20 ${flags[*]} -O0 -Isrc -fsyntax-only %s\n" src/*/*.cpp
+  } > build/check/consumers.commands
+  at_once < build/check/consumers.commands
 }
+
+# Runs the commands of its input, one a line, as many at a time as there are cores. Fails where one did.
+at_once() { xargs -d '\n' -P "$(nproc)" -n 1 bash -ec; }
 
 # A translation unit that includes every header of asperity::asperity.
 all_core_headers() {
@@ -172,22 +175,30 @@ check_tidy() {
   all_core_headers > build/check/core.cpp
   {
     local status=0
-    clang-tidy --quiet build/check/core.cpp -- -std=c++20 -Iinclude || status=1
     sed -n 's|^ *"file": "\(.*\)",\{0,1\}$|\1|p' build/tidy/compile_commands.json |
       grep -E "^$PWD/(build/tidy/)?(tools|examples|backends|hal)/" | grep -v verify_interface > build/check/tidy.sources
     [[ -s build/check/tidy.sources ]] || { say "no sources were found to read" && status=1; }
-    xargs -P "$(nproc)" -n 1 clang-tidy --quiet -p build/tidy --checks=-bugprone-suspicious-include < build/check/tidy.sources || status=1
+    {
+      say "clang-tidy --quiet build/check/core.cpp -- -std=c++20 -Iinclude"
+      sed 's|.*|clang-tidy --quiet -p build/tidy --checks=-bugprone-suspicious-include "&"|' build/check/tidy.sources
+    } | at_once || status=1
     exit "$status"
   } 2>&1 | sed '/^[0-9]* warnings\{0,1\} generated\.$/d'
 }
 
 # The same session, and 50 simulated ones, bit for bit, whoever compiled them.
 check_determinism() {
-  local build
-  for build in release debug clang; do
-    configure_and_build "$build" bin/asperity simulation_digest
-    tests/golden/session.sh "build/$build/bin/asperity" "build/check/$build"
-    "build/$build/tests/simulation/simulation_digest" > "build/check/$build/golden/simulation.txt"
+  local build builds=(release debug clang)
+  for build in "${builds[@]}"; do configure_and_build "$build" bin/asperity simulation_digest; done
+  # Without optimisation both take long, and come first.
+  for build in debug release clang; do
+    rm -rf "build/check/$build"
+    mkdir -p "build/check/$build"
+    printf '%s\n' "build/$build/tests/simulation/simulation_digest > build/check/$build/simulation.txt"
+    printf '%s\n' "tests/golden/session.sh build/$build/bin/asperity build/check/$build"
+  done | at_once
+  for build in "${builds[@]}"; do
+    mv "build/check/$build/simulation.txt" "build/check/$build/golden/"
     (cd "build/check/$build/golden" && sha256sum -- *) > "build/check/$build.sha256"
     say "$build:"
     cat "build/check/$build.sha256"

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <random>
+#include <vector>
 
+#include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 #include "unit/field/charted_model.hpp"
 #include "unit/field/field_measures.hpp"
@@ -44,9 +46,12 @@ differences between(const body_field& a, double size_a, const body_field& b, dou
 }
 
 TEST(BodyFieldScale, IsTheSameFromAMillimetreToTenMetres) {
-  const std::uint64_t seed = fresh_seed("scale", "5 sizes, 20000 points each");
+  const std::uint64_t seed = fresh_seed("scale", "2 of 5 sizes, 20000 points each; at length all");
   const body_field of_one = built_field(ball(1.0, vec3(0.0))).value();
-  for (const double size : {0.5e-3, 2e-3, 0.03, 0.3, 5.0}) {
+  std::vector<double> sizes{0.5e-3, 2e-3, 0.03, 0.3, 5.0};
+  std::shuffle(sizes.begin(), sizes.end(), std::mt19937_64(seed_of(seed, "sizes")));
+  sizes.resize(extent<std::size_t>(2, sizes.size()));
+  for (const double size : sizes) {
     const body_field f = built_field(ball(size, vec3(0.0))).value();
     EXPECT_NEAR(f.smooth.pitch_m / size, of_one.smooth.pitch_m, 1e-5 * of_one.smooth.pitch_m);
     const differences d = between(of_one, 1.0, f, size, vec3(0.0), seed);
