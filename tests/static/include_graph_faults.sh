@@ -9,7 +9,7 @@ plant() {
   rm -rf "$work"
   mkdir -p "$work/docs/explanation" "$work/tools"
   cp -r "$root/include" "$root/src" "$root/hal" "$root/backends" "$work"
-  cp -r "$root/tools/io" "$root/tools/bake" "$work/tools"
+  cp -r "$root"/tools/{io,bake,picture,text} "$work/tools"
   sed "${5:-}" "$root/docs/explanation/architecture.md" > "$work/docs/explanation/architecture.md"
   [[ -z $4 ]] || echo "$4" >> "$work/$3"
   if said=$("$here/include_graph.sh" "$work"); then
@@ -22,8 +22,10 @@ plant() {
 plant "nothing" "" include/asperity/core/math.hpp ""
 plant "an include that is not allowed" "does not allow to render" include/asperity/render/contact.hpp '#include "asperity/window/cpu_depth.hpp"'
 plant "an include of an inside" "does not allow to core" include/asperity/core/math.hpp '#include "field/lanes.hpp"'
+plant "an include of a room that may include nothing" "does not allow to text" tools/text/amount.hpp '#include "asperity/model/scene.hpp"'
+plant "an include of the command" "does not allow to picture" tools/picture/sheet.cpp '#include "command/output_file.hpp"'
 plant "a header that brings many" "more than 70" include/asperity/asperity.hpp '#include "asperity/device/simulated/simulated_device.hpp"'
 plant "a cycle that the table allows" "in a cycle" include/asperity/core/math.hpp '#include "asperity/model/scene.hpp"' \
   's/^| `core` | .* |$/| `core` | `model` |/'
 plant "a room that is not listed" "is not in the table" src/field/lanes.hpp "" '/^| `window` |/d'
-echo "five planted faults were found"
+echo "seven planted faults were found"

@@ -4,7 +4,7 @@
 #include "asperity/model/textured_model.hpp"
 #include "cli.hpp"
 #include "output_file.hpp"
-#include "picture/model_picture.hpp"
+#include "asperity/picture/model_picture.hpp"
 
 namespace asperity::command {
 

@@ -2,13 +2,18 @@
 #pragma once
 
 #include <charconv>
-#include <cstddef>
 #include <string>
 #include <string_view>
 
 #include "asperity/core/printable.hpp"
+#include "text/amount.hpp"
 
 namespace asperity::command {
+
+using text::brief;
+using text::length_text;
+using text::memory_text;
+using text::time_text;
 
 /// Appends the shortest decimal that reads back as the same double: recordings are exact and compare byte by byte.
 inline void append_number(std::string& out, double value) {
@@ -17,19 +22,11 @@ inline void append_number(std::string& out, double value) {
   out.append(digits, end);
 }
 
-/// Three significant digits.
-[[nodiscard]] std::string brief(double value);
-
-/// A length in metres in the unit that suits its size, as in "12.3 mm".
-[[nodiscard]] std::string length_text(double metres);
-
-/// A duration in seconds in the unit that suits its size, as in "12.3 us".
-[[nodiscard]] std::string time_text(double seconds);
-
-/// An amount of memory, as in "12.7 MB", in powers of ten.
-[[nodiscard]] std::string memory_text(std::size_t bytes);
-
 /// "  label ........ value" with the values in one column, one line whatever the two hold (printable()).
-[[nodiscard]] std::string row(std::string_view label, std::string_view value);
+[[nodiscard]] inline std::string row(std::string_view label, std::string_view value) {
+  std::string line = "  " + printable(label);
+  line.append(line.size() < 26 ? 26 - line.size() : 1, ' ');
+  return line + printable(value) + '\n';
+}
 
 }  // namespace asperity::command

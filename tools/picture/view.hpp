@@ -7,18 +7,11 @@
 #include <limits>
 
 #include "asperity/core/math.hpp"
+#include "asperity/picture/model_picture.hpp"
 #include "picture/canvas.hpp"
 #include "picture/colour.hpp"
 
 namespace asperity::picture {
-
-/// Which axis of the body points up in the picture.
-enum class up_axis {
-  automatic,  ///< z; but what is far taller than it is wide lies down, its shortest axis upwards
-  x,
-  y,
-  z
-};
 
 /// Parallel projection, so that sizes can be compared all over the picture. Axes of the eye in the body frame, unit
 /// vectors.

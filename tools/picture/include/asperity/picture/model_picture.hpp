@@ -8,9 +8,16 @@
 #include "asperity/core/status.hpp"
 #include "asperity/model/textured_model.hpp"
 #include "asperity/model/triangle_mesh.hpp"
-#include "picture/view.hpp"
 
 namespace asperity::picture {
+
+/// Which axis of the body points up in the picture.
+enum class up_axis {
+  automatic,  ///< z; but what is far taller than it is wide lies down, its shortest axis upwards
+  x,
+  y,
+  z
+};
 
 struct picture_options {
   const triangle_mesh* original = nullptr;  ///< body frame, m; where given, the third panel shows the distance to it

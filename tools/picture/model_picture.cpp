@@ -1,4 +1,4 @@
-#include "picture/model_picture.hpp"
+#include "asperity/picture/model_picture.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,17 +6,19 @@
 #include <utility>
 #include <vector>
 
+#include "asperity/core/printable.hpp"
 #include "bake/geometry.hpp"
 #include "picture/atlas_panel.hpp"
 #include "picture/fine_surface.hpp"
 #include "picture/sheet.hpp"
 #include "picture/surface_panels.hpp"
-#include "text.hpp"
+#include "picture/view.hpp"
+#include "text/amount.hpp"
 
 namespace asperity::picture {
 namespace {
 
-using command::brief;
+using text::brief;
 
 // Pixels.
 constexpr std::size_t page_width = 1600, page_height = 1236;
@@ -27,7 +29,7 @@ constexpr double inset = 24.0, title_height = 82.0, foot_height = 64.0;
 
 // A length with the letter for micro, which a page can show and a terminal may not.
 std::string length(double metres) {
-  std::string words = command::length_text(metres);
+  std::string words = text::length_text(metres);
   const std::size_t micro = words.find(" um");
   if (micro != std::string::npos) words.replace(micro, 3, " \u00b5m");
   if (words.front() == '-') words.replace(0, 1, "\u2212");
@@ -68,15 +70,15 @@ std::optional<error> fault_of(const textured_model& model, const picture_options
   const double coarse = model.box.diagonal();
   if (!(full > 0.8 * coarse && full < 1.25 * coarse)) {
     return error{error_code::invalid_argument,
-                 name + " is of another size than the model (diagonal " + command::length_text(full) +
-                     ", the model's " + command::length_text(coarse) +
+                 name + " is of another size than the model (diagonal " + text::length_text(full) +
+                     ", the model's " + text::length_text(coarse) +
                      "): give the mesh that the model was baked from, and the --scale of that bake"};
   }
   const double apart = std::max(glm::length(box.low - model.box.low), glm::length(box.high - model.box.high));
   if (apart > 0.15 * coarse) {
     return error{error_code::invalid_argument,
                  name + " is of the model's size but lies elsewhere (corners of the boxes are up to " +
-                     command::length_text(apart) + " apart): give the mesh that the model was baked from"};
+                     text::length_text(apart) + " apart): give the mesh that the model was baked from"};
   }
   return std::nullopt;
 }

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "picture/atlas_panel.hpp"
-#include "picture/model_picture.hpp"
+#include "asperity/picture/model_picture.hpp"
 #include "picture/surface_panels.hpp"
 #include "support/small_models.hpp"
 
