@@ -3,8 +3,8 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "picture/atlas_panel.hpp"
 #include "asperity/picture/model_picture.hpp"
+#include "picture/atlas_panel.hpp"
 #include "picture/surface_panels.hpp"
 #include "support/small_models.hpp"
 

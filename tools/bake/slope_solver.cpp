@@ -25,6 +25,7 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) noexcept 
   return sum;
 }
 
+// Multiplies edge by edge and stores no matrix. third_party_notes/not-taken.md compares it with Eigen's solvers.
 class slope_system {
  public:
   slope_system(const refined_mesh& mesh, std::size_t originals,

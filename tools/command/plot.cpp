@@ -5,10 +5,11 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <optional>
 #include <utility>
+
+#include "plot_axis.hpp"
 
 namespace asperity::command {
 namespace {
@@ -38,59 +39,8 @@ constexpr std::array<colour, 7> line_colours{{{0.0, 0.447, 0.698},
 constexpr colour ink{0.15, 0.15, 0.15}, grid{0.88, 0.88, 0.88}, fine_grid{0.95, 0.95, 0.95};
 constexpr std::array<double, 2> dashes{7.0, 5.0};
 
-/// Where numbers lie on paper, and where its rules are.
-struct axis {
-  double low, high;  ///< of the numbers, or of their decimal logarithms
-  double step;
-  int decimals;
-  bool logarithmic = false;
-
-  /// 0 at the axis' beginning, 1 at its end; NaN for what has no place on it.
-  [[nodiscard]] double share(double v) const {
-    if (logarithmic && !(v > 0.0)) return std::nan("");
-    return ((logarithmic ? std::log10(v) : v) - low) / (high - low);
-  }
-};
-
-// Ticks at 1, 2 or 5 times a power of ten; about `wanted` of them.
-axis make_axis(double low, double high, int wanted, bool cover) {
-  if (!(high > low)) {
-    const double around = std::max(1e-12, std::fabs(low) * 0.1);
-    low -= around;
-    high += around;
-  }
-  const double raw = (high - low) / wanted;
-  const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  const double lead = raw / power;
-  const double step = power * (lead <= 1.0 ? 1.0 : lead <= 2.0 ? 2.0 : lead <= 5.0 ? 5.0 : 10.0);
-  const int decimals = std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 9);
-  if (cover) {
-    low = std::floor(low / step) * step;
-    high = std::ceil(high / step) * step;
-  }
-  return {low, high, step, decimals};
-}
-
-// Whole decades, at least one.
-axis make_log_axis(double low, double high) {
-  const double first = std::floor(std::log10(low) + 1e-9), last = std::ceil(std::log10(high) - 1e-9);
-  return {first, std::max(last, first + 1.0), 1.0, 0, true};
-}
-
-using range = std::optional<std::array<double, 2>>;
-
-void widen(range& r, double v, bool logarithmic) {
-  if (!std::isfinite(v) || (logarithmic && !(v > 0.0))) return;
-  if (!r) r = {v, v};
-  r->at(0) = std::min(r->at(0), v);
-  r->at(1) = std::max(r->at(1), v);
-}
-
-const std::vector<double>& x_of(const plot_page& page, const plot_panel& panel) {
-  return panel.x.empty() ? page.x : panel.x;
-}
 const std::vector<double>& x_of(const plot_page& page, const plot_panel& panel, const plot_line& line) {
-  return line.x.empty() ? x_of(page, panel) : line.x;
+  return !line.x.empty() ? line.x : !panel.x.empty() ? panel.x : page.x;
 }
 
 bool has_own_axis(const plot_panel& panel) { return !panel.x_label.empty(); }
@@ -101,36 +51,15 @@ bool is_numbered(const plot_page& page, std::size_t i) {
 }
 
 axis x_axis_of(const plot_page& page, const plot_panel& panel) {
-  range found;
-  for (const plot_line& line : panel.lines) {
-    for (const double v : x_of(page, panel, line)) widen(found, v, panel.log_x);
-  }
-  if (panel.log_x && found) return make_log_axis(found->at(0), found->at(1));
-  const auto r = found.value_or(std::array{0.0, 1.0});
-  return make_axis(r[0], r[1], 10, false);
+  value_range found(panel.log_x);
+  for (const plot_line& line : panel.lines) found.add(x_of(page, panel, line));
+  return axis::over(found, 10, false);
 }
 
 axis y_axis_of(const plot_panel& panel) {
-  range found;
-  for (const plot_line& line : panel.lines) {
-    for (const double v : line.y) widen(found, v, panel.log_y);
-  }
-  if (panel.log_y && found) return make_log_axis(found->at(0), found->at(1));
-  const auto r = found.value_or(std::array{0.0, 1.0});
-  return make_axis(r[0], r[1], 5, true);
-}
-
-// Places of the rules with numbers, and of the fine ones without.
-template <class Rule>
-void for_each_rule(const axis& a, Rule rule) {
-  for (double k = std::ceil(a.low / a.step - 1e-9); k * a.step <= a.high + 1e-9 * a.step; ++k) {
-    if (!a.logarithmic) {
-      rule(k * a.step, true);
-      continue;
-    }
-    rule(std::pow(10.0, k), true);
-    for (int nth = 2; nth < 10 && k + 1.0 <= a.high + 1e-9; ++nth) rule(nth * std::pow(10.0, k), false);
-  }
+  value_range found(panel.log_y);
+  for (const plot_line& line : panel.lines) found.add(line.y);
+  return axis::over(found, 5, true);
 }
 
 enum class anchor { start, middle, end };
@@ -190,13 +119,13 @@ class painter {
     const auto at_x = [&](double v) { return left + x.share(v) * (x_right - left); };
     const auto at_y = [&](double v) { return y_bottom - y.share(v) * panel_height; };
 
-    for_each_rule(x, [&](double v, bool main) {
+    x.for_each_rule([&](double v, bool main) {
       rule(at_x(v), y_top, at_x(v), y_bottom, main ? grid : fine_grid);
-      if (numbered && main) text(at_x(v), y_bottom + 20.0, number(v, x), number_size, anchor::middle);
+      if (numbered && main) text(at_x(v), y_bottom + 20.0, x.number(v), number_size, anchor::middle);
     });
-    for_each_rule(y, [&](double v, bool main) {
+    y.for_each_rule([&](double v, bool main) {
       rule(left, at_y(v), x_right, at_y(v), main ? grid : fine_grid);
-      if (main) text(left - 8.0, at_y(v) + 4.5, number(v, y), number_size, anchor::end);
+      if (main) text(left - 8.0, at_y(v) + 4.5, y.number(v), number_size, anchor::end);
     });
     if (!y.logarithmic && y.low < 0.0 && y.high > 0.0) rule(left, at_y(0.0), x_right, at_y(0.0), colour{0.6, 0.6, 0.6});
 
@@ -207,9 +136,7 @@ class painter {
       const plot_line& line = p.lines[i];
       const std::vector<double>& along = x_of(page, p, line);
       if (line.style != plot_style::points) curve(along, line, line_colour(i), at_x, at_y);
-      if (line.style == plot_style::points || line.style == plot_style::marked) {
-        dots(along, line.y, line_colour(i), at_x, at_y);
-      }
+      if (has_dots(line.style)) dots(along, line.y, line_colour(i), at_x, at_y);
     }
     cairo_restore(to_);
 
@@ -236,7 +163,7 @@ class painter {
     set(c);
     cairo_set_line_width(to_, 1.3);
     cairo_set_line_join(to_, CAIRO_LINE_JOIN_ROUND);
-    if (line.style == plot_style::dashed) cairo_set_dash(to_, dashes.data(), static_cast<int>(dashes.size()), 0.0);
+    dash(line.style == plot_style::dashed);
     // A curve of many thousand values would make a picture of megabytes: what lies within a tenth of a point of the
     // last value drawn cannot be seen, and is drawn only where a gap follows.
     constexpr double unseen = 0.1;
@@ -263,7 +190,7 @@ class painter {
     }
     if (held_back) cairo_line_to(to_, last_h, last_v);
     cairo_stroke(to_);
-    cairo_set_dash(to_, nullptr, 0, 0.0);
+    dash(false);
   }
 
   template <class X, class Y>
@@ -271,9 +198,7 @@ class painter {
     set(c);
     for (std::size_t i = 0; i < std::min(x.size(), y.size()); ++i) {
       const double h = at_x(x[i]), v = at_y(y[i]);
-      if (!std::isfinite(h) || !std::isfinite(v)) continue;
-      cairo_arc(to_, h, v, 3.0, 0.0, 6.283185307179586);
-      cairo_fill(to_);
+      if (std::isfinite(h) && std::isfinite(v)) dot(h, v, 3.0);
     }
   }
 
@@ -331,30 +256,18 @@ class painter {
   void key(plot_style style, double x, double y, double width, colour c) {
     set(c);
     cairo_set_line_width(to_, 3.0);
-    if (style == plot_style::dashed) cairo_set_dash(to_, dashes.data(), static_cast<int>(dashes.size()), 0.0);
+    dash(style == plot_style::dashed);
     if (style != plot_style::points) {
       cairo_move_to(to_, x, y);
       cairo_line_to(to_, x + width, y);
       cairo_stroke(to_);
     }
-    cairo_set_dash(to_, nullptr, 0, 0.0);
-    if (style == plot_style::points || style == plot_style::marked) {
-      cairo_arc(to_, x + 0.5 * width, y, 4.0, 0.0, 6.283185307179586);
-      cairo_fill(to_);
-    }
+    dash(false);
+    if (has_dots(style)) dot(x + 0.5 * width, y, 4.0);
   }
 
+  static bool has_dots(plot_style style) { return style == plot_style::points || style == plot_style::marked; }
   static colour line_colour(std::size_t i) { return line_colours[i % line_colours.size()]; }
-
-  static std::string number(double v, const axis& on) {
-    char digits[48];
-    if (on.logarithmic) {
-      std::snprintf(digits, sizeof digits, "%g", v);
-    } else {
-      std::snprintf(digits, sizeof digits, "%.*f", on.decimals, v == 0.0 ? 0.0 : v);  // no "-0"
-    }
-    return digits;
-  }
 
   double width_of(const std::string& s, double size) {
     cairo_text_extents_t extents;
@@ -377,6 +290,13 @@ class painter {
     cairo_line_to(to_, x1, y1);
     cairo_stroke(to_);
   }
+
+  void dot(double x, double y, double radius) {
+    cairo_arc(to_, x, y, radius, 0.0, 6.283185307179586);
+    cairo_fill(to_);
+  }
+
+  void dash(bool on) { cairo_set_dash(to_, dashes.data(), on ? static_cast<int>(dashes.size()) : 0, 0.0); }
 
   void set(colour c) { cairo_set_source_rgb(to_, c.r, c.g, c.b); }
 

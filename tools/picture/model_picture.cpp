@@ -70,8 +70,8 @@ std::optional<error> fault_of(const textured_model& model, const picture_options
   const double coarse = model.box.diagonal();
   if (!(full > 0.8 * coarse && full < 1.25 * coarse)) {
     return error{error_code::invalid_argument,
-                 name + " is of another size than the model (diagonal " + text::length_text(full) +
-                     ", the model's " + text::length_text(coarse) +
+                 name + " is of another size than the model (diagonal " + text::length_text(full) + ", the model's " +
+                     text::length_text(coarse) +
                      "): give the mesh that the model was baked from, and the --scale of that bake"};
   }
   const double apart = std::max(glm::length(box.low - model.box.low), glm::length(box.high - model.box.high));
