@@ -1,13 +1,13 @@
 // Scripted faults of a link that exists in this process only.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/transport/io_status.hpp"
 
 namespace asperity {
@@ -40,9 +40,7 @@ struct link_event {
 };
 
 /// The nth call on the link answers `with`; everything else goes well.
-[[nodiscard]] inline link_event fail_call(std::uint64_t n, io_status with) noexcept {
-  return {.kind = link_fault::answer, .from_call = n, .until_call = n + 1, .with = with};
-}
+[[nodiscard]] ASPERITY_API link_event fail_call(std::uint64_t n, io_status with) noexcept;
 
 /// Faults of one virtual link. The same seed and the same calls give the same faults.
 struct link_script {
@@ -53,7 +51,7 @@ struct link_script {
 
 /// Plays a script: asked once per call of the host's end and once per frame.
 /// @rt safe after construction
-class link_player {
+class ASPERITY_API link_player {
  public:
   explicit link_player(link_script script = {}) : script_(std::move(script)), bits_(script_.seed) {}
 
@@ -62,16 +60,7 @@ class link_player {
 
   /// The first event of that kind that applies to the call, or null. Draws from the seed where `share` is below one.
   [[nodiscard]] const link_event* find(link_fault kind, link_direction direction, std::int64_t now_ns,
-                                       std::uint64_t call) noexcept {
-    for (const link_event& e : script_.events) {
-      if (e.kind != kind || now_ns < e.from_ns || now_ns >= e.until_ns) continue;
-      if (call < e.from_call || call >= e.until_call) continue;
-      if (e.direction != link_direction::both && e.direction != direction) continue;
-      if (e.share < 1.0 && unit() >= e.share) continue;
-      return &e;
-    }
-    return nullptr;
-  }
+                                       std::uint64_t call) noexcept;
 
   /// A seeded number below `bound`, for choosing what to spoil. @pre bound > 0
   [[nodiscard]] std::uint64_t below(std::uint64_t bound) noexcept { return bits_() % bound; }

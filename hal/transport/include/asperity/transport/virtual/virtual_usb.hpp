@@ -1,8 +1,6 @@
 // A USB device within this process, its cable and what goes wrong on it.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,284 +10,62 @@
 #include <utility>
 #include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/transport/link_script.hpp"
 #include "asperity/transport/usb_finder.hpp"
 
 namespace asperity {
-
-/// Transfers on their way in one direction, by the time at which they arrive. No more memory after construction.
-class virtual_usb_queue {
- public:
-  static constexpr std::size_t most_bytes = 512;  ///< of one transfer
-  struct entry {
-    std::array<std::uint8_t, most_bytes> bytes{};
-    std::size_t size = 0;
-    std::int64_t due_ns = 0;
-    bool judged = false;      // faults are drawn once per transfer
-    bool after_next = false;  // reordered: waits until another has gone
-  };
-
-  explicit virtual_usb_queue(std::size_t most) : entries_(std::max<std::size_t>(most, 2)) {}
-
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] bool full() const noexcept { return size_ == entries_.size(); }
-  [[nodiscard]] entry& operator[](std::size_t i) noexcept { return entries_[i]; }
-
-  /// Sorted by time; of equal times, what came first stands first. @return false where it does not fit
-  bool insert(const entry& e) noexcept {
-    if (full()) return false;
-    std::size_t i = size_++;
-    for (; i > 0 && entries_[i - 1].due_ns > e.due_ns; --i) entries_[i] = entries_[i - 1];
-    entries_[i] = e;
-    return true;
-  }
-  void remove(std::size_t i) noexcept {
-    for (; i + 1 < size_; ++i) entries_[i] = entries_[i + 1];
-    --size_;
-  }
-  void clear() noexcept { size_ = 0; }
-
- private:
-  std::vector<entry> entries_;
-  std::size_t size_ = 0;
-};
 
 /// The device's end: what a fake peer takes and gives. open() makes the host's end. One thread for both.
 ///
 /// Faults of the script hit transfers, not control requests, but for `answer` and `unplug`, which hit any call. The
 /// pipe to the device holds `out_transfers` that the peer has not taken; then the host is answered busy. bus_off means
 /// nothing here. A fault holds for one transfer; a transfer that is lost was not seen by the host to be lost.
-class virtual_usb {
+class ASPERITY_API virtual_usb {
  public:
   /// Answers a control request: fills or reads `data` and says how much of it. @return ok | refused (a stall)
   using control_handler = std::function<io_status(const usb_setup&, std::span<std::uint8_t> data, std::size_t& done)>;
 
-  explicit virtual_usb(link_script script = {}, std::size_t out_transfers = 4)
-      : shared_(std::make_shared<shared>(std::move(script), out_transfers)) {}
+  explicit virtual_usb(link_script script = {}, std::size_t out_transfers = 4);
 
-  void on_control(control_handler handler) { shared_->control = std::move(handler); }
+  void on_control(control_handler handler);
 
   /// The oldest transfer from the host that has arrived. @return its size, or 0 where nothing has
-  [[nodiscard]] std::size_t take(std::int64_t now_ns, std::span<std::uint8_t> bytes) noexcept {
-    virtual_usb_queue& q = shared_->to_device;
-    if (q.size() == 0 || q[0].due_ns > now_ns) return 0;
-    const std::size_t size = std::min(q[0].size, bytes.size());
-    std::copy_n(q[0].bytes.begin(), size, bytes.begin());
-    q.remove(0);
-    return size;
-  }
+  [[nodiscard]] std::size_t take(std::int64_t now_ns, std::span<std::uint8_t> bytes) noexcept;
 
   /// Sends a transfer to the host. @return false where the pipe is full or nobody has the device open
-  bool give(std::int64_t now_ns, std::span<const std::uint8_t> bytes) noexcept {
-    if (!shared_->open || bytes.size() > virtual_usb_queue::most_bytes) return false;
-    virtual_usb_queue::entry e;
-    std::copy(bytes.begin(), bytes.end(), e.bytes.begin());
-    e.size = bytes.size();
-    e.due_ns = now_ns + shared_->player.script().latency_ns;
-    return shared_->to_host.insert(e);
-  }
+  bool give(std::int64_t now_ns, std::span<const std::uint8_t> bytes) noexcept;
 
   /// Pulls the cable: every open link answers `gone` for ever.
-  void unplug() noexcept { shared_->unplug(); }
-  void plug_in() noexcept { shared_->plugged = true; }
-  [[nodiscard]] bool plugged() const noexcept { return shared_->plugged; }
+  void unplug() noexcept;
+  void plug_in() noexcept;
+  [[nodiscard]] bool plugged() const noexcept;
   /// Whether a host has it open.
-  [[nodiscard]] bool is_open() const noexcept { return shared_->open; }
+  [[nodiscard]] bool is_open() const noexcept;
   /// Calls on the host's end so far, over all links.
-  [[nodiscard]] const link_player& player() const noexcept { return shared_->player; }
+  [[nodiscard]] const link_player& player() const noexcept;
 
   /// The host's end; null where it is not plugged in. A second one while the first is open is null as well.
-  [[nodiscard]] std::unique_ptr<usb_link> open() {
-    if (!shared_->plugged || shared_->open) return nullptr;
-    shared_->open = true;
-    shared_->to_device.clear();
-    shared_->to_host.clear();
-    return std::make_unique<host_end>(shared_);
-  }
+  [[nodiscard]] std::unique_ptr<usb_link> open();
 
  private:
-  struct shared {
-    shared(link_script script, std::size_t out_transfers)
-        : player(std::move(script)), most_out(std::max<std::size_t>(out_transfers, 1)) {}
-    void unplug() noexcept {
-      plugged = open = false;
-      ++times_unplugged;
-      to_device.clear();
-      to_host.clear();
-    }
-    link_player player;
-    std::size_t most_out;
-    virtual_usb_queue to_device{64};
-    virtual_usb_queue to_host{64};
-    control_handler control{};
-    std::uint64_t times_unplugged = 0;
-    bool plugged = true;
-    bool open = false;
-    bool held = false;  // held_out goes after the next one
-    virtual_usb_queue::entry held_out{};
-  };
-
-  class host_end final : public usb_link {
-   public:
-    explicit host_end(std::shared_ptr<shared> both) : both_(std::move(both)), unplugged_(both_->times_unplugged) {}
-    ~host_end() override {
-      if (unplugged_ == both_->times_unplugged) both_->open = false;
-    }
-    host_end(const host_end&) = delete;
-    host_end& operator=(const host_end&) = delete;
-
-    [[nodiscard]] io_status control(const usb_setup& setup, std::span<std::uint8_t> data, std::size_t& done,
-                                    std::int64_t) noexcept override {
-      const std::uint64_t call = both_->player.count_call();
-      done = 0;
-      if (is_gone(link_direction::to_device, last_ns_, call)) return io_status::gone;
-      if (const link_event* e = find(link_fault::answer, link_direction::to_device, last_ns_, call)) return e->with;
-      if (!both_->control) return io_status::refused;
-      return both_->control(setup, data, done);
-    }
-
-    [[nodiscard]] io_status write(std::int64_t now_ns, std::span<const std::uint8_t> bytes) noexcept override {
-      constexpr auto way = link_direction::to_device;
-      last_ns_ = now_ns;
-      const std::uint64_t call = both_->player.count_call();
-      if (is_gone(way, now_ns, call)) return io_status::gone;
-      if (const link_event* e = find(link_fault::answer, way, now_ns, call)) return e->with;
-      if (bytes.size() > virtual_usb_queue::most_bytes) return io_status::refused;
-      if (both_->to_device.size() >= both_->most_out) return io_status::busy;
-      if (find(link_fault::lose, way, now_ns, call) != nullptr) return io_status::ok;
-
-      virtual_usb_queue::entry e;
-      std::copy(bytes.begin(), bytes.end(), e.bytes.begin());
-      e.size = bytes.size();
-      e.due_ns = now_ns + both_->player.script().latency_ns;
-      spoil(e, way, now_ns, call);
-      if (const link_event* late = find(link_fault::delay, way, now_ns, call)) e.due_ns += late->amount_ns;
-      if (!both_->held && find(link_fault::reorder, way, now_ns, call) != nullptr) {
-        both_->held = true;
-        both_->held_out = e;
-        return io_status::ok;
-      }
-      const int copies = find(link_fault::duplicate, way, now_ns, call) != nullptr ? 2 : 1;
-      for (int i = 0; i < copies; ++i) both_->to_device.insert(e);
-      if (std::exchange(both_->held, false)) {
-        both_->held_out.due_ns = std::max(both_->held_out.due_ns, e.due_ns);
-        both_->to_device.insert(both_->held_out);
-      }
-      return io_status::ok;
-    }
-
-    [[nodiscard]] io_status read(std::int64_t now_ns, std::span<std::uint8_t> bytes,
-                                 usb_packet& packet) noexcept override {
-      constexpr auto way = link_direction::from_device;
-      last_ns_ = now_ns;
-      const std::uint64_t call = both_->player.count_call();
-      if (is_gone(way, now_ns, call)) return io_status::gone;
-      if (const link_event* e = find(link_fault::answer, way, now_ns, call)) return e->with;
-      virtual_usb_queue& q = both_->to_host;
-      std::size_t i = 0;
-      while (i < q.size() && q[i].due_ns <= now_ns) {
-        if (!q[i].judged && !judge(i, now_ns, call)) continue;
-        if (q[i].after_next) {
-          ++i;
-          continue;
-        }
-        for (std::size_t k = 0; k < i; ++k) q[k].after_next = false;
-        const std::size_t size = q[i].size;
-        const std::int64_t due_ns = q[i].due_ns;
-        if (size <= bytes.size()) std::copy_n(q[i].bytes.begin(), size, bytes.begin());
-        q.remove(i);
-        if (size > bytes.size()) return io_status::too_short;
-        packet = {.size = size, .host_time_ns = due_ns};
-        return io_status::ok;
-      }
-      return io_status::nothing;
-    }
-
-   private:
-    [[nodiscard]] const link_event* find(link_fault kind, link_direction way, std::int64_t now_ns,
-                                         std::uint64_t call) noexcept {
-      return both_->player.find(kind, way, now_ns, call);
-    }
-    [[nodiscard]] bool is_gone(link_direction way, std::int64_t now_ns, std::uint64_t call) noexcept {
-      if (unplugged_ != both_->times_unplugged) return true;
-      if (find(link_fault::unplug, way, now_ns, call) == nullptr) return false;
-      both_->unplug();
-      return true;
-    }
-    void spoil(virtual_usb_queue::entry& e, link_direction way, std::int64_t now_ns, std::uint64_t call) noexcept {
-      if (e.size > 0 && find(link_fault::shorten, way, now_ns, call) != nullptr) --e.size;
-      if (e.size == 0 || find(link_fault::flip_bit, way, now_ns, call) == nullptr) return;
-      const std::uint64_t bit = both_->player.below(std::uint64_t{e.size} * 8);
-      e.bytes[bit / 8] = static_cast<std::uint8_t>(e.bytes[bit / 8] ^ (1U << (bit % 8)));
-    }
-
-    // Plays the faults of an arriving transfer. False: it is not there any more, and another may stand in its place.
-    [[nodiscard]] bool judge(std::size_t i, std::int64_t now_ns, std::uint64_t call) noexcept {
-      constexpr auto way = link_direction::from_device;
-      virtual_usb_queue& q = both_->to_host;
-      q[i].judged = true;
-      if (find(link_fault::lose, way, now_ns, call) != nullptr) {
-        q.remove(i);
-        return false;
-      }
-      spoil(q[i], way, now_ns, call);
-      if (find(link_fault::duplicate, way, now_ns, call) != nullptr) {
-        const virtual_usb_queue::entry twin = q[i];
-        q.insert(twin);
-      }
-      if (const link_event* e = find(link_fault::delay, way, now_ns, call)) {
-        virtual_usb_queue::entry late = q[i];
-        late.due_ns += e->amount_ns;
-        q.remove(i);
-        q.insert(late);
-        return false;
-      }
-      bool one_waits = false;
-      for (std::size_t k = 0; k < i; ++k) one_waits = one_waits || q[k].after_next;
-      if (!one_waits) q[i].after_next = find(link_fault::reorder, way, now_ns, call) != nullptr;
-      return true;
-    }
-
-    std::shared_ptr<shared> both_;
-    std::uint64_t unplugged_;
-    std::int64_t last_ns_ = 0;
-  };
+  struct shared;
+  class host_end;
 
   std::shared_ptr<shared> shared_;
 };
 
 /// A bus of virtual devices, for drivers that look for theirs. The devices outlive it.
-class virtual_usb_bus final : public usb_finder {
+class ASPERITY_API virtual_usb_bus final : public usb_finder {
  public:
   /// Puts a device on the bus under the listing that a host sees while it is plugged in.
   void attach(virtual_usb& device, usb_listing as) { sockets_.push_back({&device, std::move(as)}); }
   /// The device is listed under another path from now on.
-  void move(const virtual_usb& device, std::string path) {
-    for (socket& s : sockets_) {
-      if (s.device == &device) s.listing.path = path;
-    }
-  }
+  void move(const virtual_usb& device, std::string path);
 
-  [[nodiscard]] result<std::vector<usb_listing>> list(std::uint16_t vendor, std::uint16_t product) override {
-    std::vector<usb_listing> found;
-    for (const socket& s : sockets_) {
-      if (!s.device->plugged()) continue;
-      if (vendor != 0 && s.listing.vendor != vendor) continue;
-      if (product == 0 || s.listing.product == product) found.push_back(s.listing);
-    }
-    return found;
-  }
+  [[nodiscard]] result<std::vector<usb_listing>> list(std::uint16_t vendor, std::uint16_t product) override;
 
-  [[nodiscard]] result<std::unique_ptr<usb_link>> open(const usb_listing& which, const usb_pipes&) override {
-    for (const socket& s : sockets_) {
-      if (s.listing.path != which.path || !s.device->plugged()) continue;
-      if (which.not_openable) return error{error_code::io_failed, *which.not_openable};
-      std::unique_ptr<usb_link> link = s.device->open();
-      if (link) return link;
-      return error{error_code::io_failed, "the virtual USB device at " + which.path + " is open already; close it"};
-    }
-    return error{error_code::io_failed, "no virtual USB device is plugged in at " + which.path};
-  }
+  [[nodiscard]] result<std::unique_ptr<usb_link>> open(const usb_listing& which, const usb_pipes&) override;
 
  private:
   struct socket {
