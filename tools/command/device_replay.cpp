@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "asperity/device/simulated/simulated_device.hpp"
+#include "device/recording_bytes.hpp"
 #include "interrupt.hpp"
 #include "text.hpp"
 

@@ -1,10 +1,7 @@
 // All devices of all drivers: what is plugged in, what came and what went.
 #pragma once
 
-#include <algorithm>
-#include <cstddef>
 #include <cstdint>
-#include <iterator>
 #include <memory>
 #include <span>
 #include <string>
@@ -12,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/device/driver.hpp"
 
 namespace asperity {
@@ -49,40 +47,13 @@ struct driver_problem {
 
 /// Asks drivers what is there, and compares with the last answer. It opens nothing by itself: a device that arrives,
 /// or returns, is listed, and somebody makes, opens and arms it. Never inside a tick; one thread at a time.
-class device_directory {
+class ASPERITY_API device_directory {
  public:
   explicit device_directory(std::vector<std::unique_ptr<device_driver>> drivers) : drivers_(std::move(drivers)) {}
 
   /// Looks again. The first call reports everything as arrived.
   /// @return what changed since the last call: departures, moves, arrivals, each in the order of the listings
-  std::vector<directory_event> refresh() {
-    std::vector<device_listing> now;
-    problems_.clear();
-    for (const auto& driver : drivers_) {
-      result<std::vector<device_listing>> found = driver->list();
-      if (!found) {
-        problems_.push_back({std::string(driver->name()), found.error()});
-        continue;
-      }
-      std::move(found->begin(), found->end(), std::back_inserter(now));
-    }
-
-    std::vector<directory_event> events;
-    for (const device_listing& before : devices_) {
-      if (same(now, before) == nullptr) events.push_back({directory_change::departed, before, {}});
-    }
-    for (const device_listing& after : now) {
-      const device_listing* before = same(devices_, after);
-      if (before != nullptr && before->path != after.path) {
-        events.push_back({directory_change::moved, after, before->path});
-      }
-    }
-    for (const device_listing& after : now) {
-      if (same(devices_, after) == nullptr) events.push_back({directory_change::arrived, after, {}});
-    }
-    devices_ = std::move(now);
-    return events;
-  }
+  std::vector<directory_event> refresh();
 
   /// What the last refresh() found, driver by driver.
   [[nodiscard]] std::span<const device_listing> devices() const noexcept { return devices_; }
@@ -91,50 +62,14 @@ class device_directory {
 
   /// The one device that a person means: its identity, its path, its driver's name, or a part of its name.
   /// @return invalid_argument with the choices, where none or more than one fits
-  [[nodiscard]] result<device_listing> find(std::string_view text) const {
-    for (const auto whole : {&device_listing::identity, &device_listing::path}) {
-      for (const device_listing& d : devices_) {
-        if (d.*whole == text) return d;
-      }
-    }
-    std::vector<const device_listing*> fitting;
-    for (const device_listing& d : devices_) {
-      if (d.driver == text || (!text.empty() && d.name.find(text) != std::string::npos)) fitting.push_back(&d);
-    }
-    if (fitting.size() == 1) return *fitting.front();
-    const std::string wanted = "'" + std::string(text) + "'";
-    if (fitting.empty()) {
-      for (const device_listing& d : devices_) fitting.push_back(&d);
-      return error{error_code::invalid_argument,
-                   fitting.empty() ? "no device " + wanted + " is plugged in, nor any other"
-                                   : "no device " + wanted + " is plugged in; there are: " + names(fitting)};
-    }
-    return error{error_code::invalid_argument,
-                 wanted + " fits several devices; name one by its identity: " + names(fitting)};
-  }
+  [[nodiscard]] result<device_listing> find(std::string_view text) const;
 
   /// The device of a listing, not yet open. @return unsupported | invalid_argument | the driver's own error
-  [[nodiscard]] result<any_device> make(const device_listing& which) const {
-    if (which.not_openable) return error{error_code::io_failed, which.name + ": " + *which.not_openable};
-    for (const auto& driver : drivers_) {
-      if (driver->name() == which.driver) return driver->make(which);
-    }
-    return error{error_code::invalid_argument, "there is no driver '" + which.driver + "' in this directory"};
-  }
+  [[nodiscard]] result<any_device> make(const device_listing& which) const;
 
  private:
-  [[nodiscard]] static const device_listing* same(std::span<const device_listing> in, const device_listing& d) {
-    const auto it = std::find_if(in.begin(), in.end(), [&d](const device_listing& other) {
-      return other.driver == d.driver && other.identity == d.identity;
-    });
-    return it == in.end() ? nullptr : &*it;
-  }
-
-  [[nodiscard]] static std::string names(std::span<const device_listing* const> of) {
-    std::string out;
-    for (const device_listing* d : of) out += (out.empty() ? "" : ", ") + d->identity + " (" + d->name + ")";
-    return out;
-  }
+  [[nodiscard]] static const device_listing* same(std::span<const device_listing> in, const device_listing& d);
+  [[nodiscard]] static std::string names(std::span<const device_listing* const> of);
 
   std::vector<std::unique_ptr<device_driver>> drivers_;
   std::vector<device_listing> devices_;

@@ -15,10 +15,10 @@
 #include <memory>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/device/device.hpp"
 #include "asperity/device/driver.hpp"
@@ -87,21 +87,9 @@ class driver_log {
 
 namespace detail {
 
-inline void put_error(char* error, std::uint32_t error_size, std::string_view text) noexcept {
-  if (error != nullptr) abi::put_text({error, error_size}, text);
-}
+ASPERITY_API void put_error(char* error, std::uint32_t error_size, std::string_view text) noexcept;
 
-[[nodiscard]] inline std::int32_t failure(const error& e, char* text, std::uint32_t text_size) noexcept {
-  put_error(text, text_size, e.message);
-  switch (e.code) {
-    case error_code::invalid_argument:
-      return ASPERITY_INVALID;
-    case error_code::unsupported:
-      return ASPERITY_UNSUPPORTED;
-    default:
-      return ASPERITY_FAILED;
-  }
-}
+[[nodiscard]] ASPERITY_API std::int32_t failure(const error& e, char* text, std::uint32_t text_size) noexcept;
 
 /// Runs what a vendor wrote, outside a tick. Nothing is thrown across the border.
 template <class Work>
@@ -122,16 +110,7 @@ template <class Work>
 #endif
 }
 
-[[nodiscard]] inline asperity_listing to_abi(const device_listing& d, const asperity_capabilities* c) noexcept {
-  auto out = abi::blank<asperity_listing>();
-  out.maturity = static_cast<std::uint32_t>(d.maturity);
-  abi::put_text(out.identity, d.identity);
-  abi::put_text(out.path, d.path);
-  abi::put_text(out.name, d.name);
-  if (d.not_openable) abi::put_text(out.not_openable, d.not_openable->empty() ? "no reason given" : *d.not_openable);
-  out.capabilities = c;
-  return out;
-}
+[[nodiscard]] ASPERITY_API asperity_listing to_abi(const device_listing& d, const asperity_capabilities* c) noexcept;
 
 /// The functions of the table for one driver.
 template <exportable_driver Driver>

@@ -1,13 +1,13 @@
 // A recorded session as a device: the same questions get the same answers.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/device/recorder.hpp"
 
 namespace asperity {
@@ -33,36 +33,19 @@ struct device_recording {
 };
 
 /// Whether two commands are the same to the bit.
-[[nodiscard]] inline bool same_bits(const device_command& a, const device_command& b) noexcept {
-  const auto same = [](const vec3& u, const vec3& v) {
-    const auto bits = [](double x) { return std::bit_cast<std::uint64_t>(x); };
-    return bits(u.x) == bits(v.x) && bits(u.y) == bits(v.y) && bits(u.z) == bits(v.z);
-  };
-  return same(a.on_hand.force, b.on_hand.force) && same(a.on_hand.torque, b.on_hand.torque) && a.frame == b.frame &&
-         a.valid_until_ns == b.valid_until_ns && a.sequence == b.sequence;
-}
+[[nodiscard]] ASPERITY_API bool same_bits(const device_command& a, const device_command& b) noexcept;
 
 /// Answers call by call what was recorded. Where it is asked something else than was asked then (another operation,
 /// another time, another command), it counts a difference; a read or a write at the wrong place fails.
 /// There is no hardware behind it: no command leaves the program.
 /// @rt safe after construction
-class replay_device {
+class ASPERITY_API replay_device {
  public:
   using policy_tag = device_tag;
 
-  explicit replay_device(device_recording recording) : recording_(std::move(recording)), state_(recording_.before) {
-    name_view();
-  }
+  explicit replay_device(device_recording recording);
   replay_device(replay_device&& from) noexcept { *this = std::move(from); }
-  replay_device& operator=(replay_device&& from) noexcept {
-    recording_ = std::move(from.recording_);
-    state_ = from.state_;
-    next_ = from.next_;
-    differences_ = from.differences_;
-    first_difference_ = from.first_difference_;
-    name_view();
-    return *this;
-  }
+  replay_device& operator=(replay_device&& from) noexcept;
   replay_device(const replay_device&) = delete;
   replay_device& operator=(const replay_device&) = delete;
   ~replay_device() = default;
@@ -73,26 +56,13 @@ class replay_device {
   [[nodiscard]] result<void> open() { return outside(device_call::open, "open"); }
   [[nodiscard]] result<void> arm() { return outside(device_call::arm, "arm"); }
   [[nodiscard]] result<void> clear_fault() { return outside(device_call::clear_fault, "clear_fault"); }
-  status disarm() noexcept {
-    const call_record* c = take(device_call::disarm, 0);
-    return c == nullptr ? status::not_ready : c->answered;
-  }
+  status disarm() noexcept;
   void close() noexcept { static_cast<void>(take(device_call::close, 0)); }
 
   /// @return what was answered then; backend_failed where the recording holds no such call here
-  [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept {
-    const call_record* c = take(device_call::read, now_ns);
-    if (c == nullptr) return status::backend_failed;
-    in = c->sample;
-    return c->answered;
-  }
+  [[nodiscard]] status read(std::int64_t now_ns, device_sample& in) noexcept;
   /// @return what was answered then; backend_failed where the recording holds no such call here
-  [[nodiscard]] status write(std::int64_t now_ns, const device_command& out) noexcept {
-    const call_record* c = take(device_call::write, now_ns);
-    if (c == nullptr) return status::backend_failed;
-    if (!same_bits(out, c->command)) differs(next_ - 1);
-    return c->answered;
-  }
+  [[nodiscard]] status write(std::int64_t now_ns, const device_command& out) noexcept;
 
   /// Calls, or commands, that were not those of the recording.
   [[nodiscard]] std::uint64_t differences() const noexcept { return differences_; }
@@ -106,31 +76,12 @@ class replay_device {
   // The capabilities carry a view of the name, which moves with the recording.
   void name_view() noexcept { recording_.capabilities.name = recording_.name; }
 
-  void differs(std::size_t at) noexcept {
-    if (differences_++ == 0) first_difference_ = at;
-  }
+  void differs(std::size_t at) noexcept;
 
   // Only the call that comes next is answered: an answer out of turn would be another session's.
-  [[nodiscard]] const call_record* take(device_call call, std::int64_t now_ns) noexcept {
-    if (finished() || recording_.calls[next_].call != call || recording_.calls[next_].now_ns != now_ns) {
-      differs(next_);
-      return nullptr;
-    }
-    const call_record& c = recording_.calls[next_++];
-    state_ = c.after;
-    return &c;
-  }
+  [[nodiscard]] const call_record* take(device_call call, std::int64_t now_ns) noexcept;
 
-  result<void> outside(device_call call, const char* name) {
-    const call_record* c = take(call, 0);
-    if (c == nullptr) {
-      return error{error_code::invalid_argument, std::string(name) + "() is not what the recording holds as call " +
-                                                     std::to_string(next_) +
-                                                     ": replay it through the program that recorded it"};
-    }
-    if (c->answered == status::ok) return {};
-    return error{error_code::io_failed, std::string(name) + "() failed when the session was recorded"};
-  }
+  result<void> outside(device_call call, const char* name);
 
   device_recording recording_;
   device_state state_ = device_state::absent;

@@ -48,7 +48,6 @@ class ASPERITY_API virtual_bytes {
   explicit virtual_bytes(link_script script = {}, std::size_t queue_bytes = 4096);
   virtual_bytes(const virtual_bytes&) = delete;
   virtual_bytes& operator=(const virtual_bytes&) = delete;
-
   [[nodiscard]] byte_link& host() noexcept { return host_; }
   [[nodiscard]] byte_link& device() noexcept { return device_; }
   /// Calls on the host's end so far, and the script it plays.
@@ -90,7 +89,6 @@ class ASPERITY_API virtual_bytes {
   };
 
   [[nodiscard]] io_status host_read(std::int64_t now_ns, std::span<std::uint8_t> bytes, std::size_t& done) noexcept;
-
   [[nodiscard]] io_status host_write(std::int64_t now_ns, std::span<const std::uint8_t> bytes,
                                      std::size_t& done) noexcept;
 

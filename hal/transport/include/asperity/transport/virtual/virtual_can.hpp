@@ -20,7 +20,6 @@ class ASPERITY_API virtual_can {
   explicit virtual_can(bool fd = true) : fd_(fd) {}
   virtual_can(const virtual_can&) = delete;
   virtual_can& operator=(const virtual_can&) = delete;
-
   [[nodiscard]] bool fd() const noexcept { return fd_; }
   /// Frames that nodes have put on the bus so far.
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_; }
@@ -45,9 +44,7 @@ class ASPERITY_API virtual_can_node final : public can_bus {
   ~virtual_can_node() override { std::erase(bus_.nodes_, this); }
   virtual_can_node(const virtual_can_node&) = delete;
   virtual_can_node& operator=(const virtual_can_node&) = delete;
-
   [[nodiscard]] io_status send(std::int64_t now_ns, const can_frame& frame) noexcept override;
-
   [[nodiscard]] io_status receive(std::int64_t now_ns, can_frame& frame) noexcept override;
 
   /// As of the last receive().

@@ -27,7 +27,6 @@ class ASPERITY_API virtual_usb {
   using control_handler = std::function<io_status(const usb_setup&, std::span<std::uint8_t> data, std::size_t& done)>;
 
   explicit virtual_usb(link_script script = {}, std::size_t out_transfers = 4);
-
   void on_control(control_handler handler);
 
   /// The oldest transfer from the host that has arrived. @return its size, or 0 where nothing has
@@ -64,7 +63,6 @@ class ASPERITY_API virtual_usb_bus final : public usb_finder {
   void move(const virtual_usb& device, std::string path);
 
   [[nodiscard]] result<std::vector<usb_listing>> list(std::uint16_t vendor, std::uint16_t product) override;
-
   [[nodiscard]] result<std::unique_ptr<usb_link>> open(const usb_listing& which, const usb_pipes&) override;
 
  private:
