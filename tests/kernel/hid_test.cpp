@@ -7,11 +7,12 @@
 #include <thread>
 
 #include <asperity/control/virtual_session.hpp>
-#include <asperity/hid/hidraw_link.hpp>
-#include <asperity/hid/spacemouse_driver.hpp>
+#include <asperity/drivers/spacemouse/spacemouse_driver.hpp>
+#include <asperity/hid/hid.hpp>
 #include <asperity/transport/virtual/virtual_hid.hpp>
 
-#include "enumerate.hpp"
+#include "asperity/hid/enumerate.hpp"
+#include "asperity/hid/hidraw_link.hpp"
 #include "hal/peers/fake_spacemouse.hpp"
 #include "kernel/uhid_device.hpp"
 #include "unit/control/analytic_wall.hpp"
@@ -320,7 +321,8 @@ TEST_F(kernel_hid, drives_a_spacemouse_from_end_to_end) {
     plugged p(kind);
     ASSERT_TRUE(p.listing);
     const std::string first_path = p.listing->path;
-    spacemouse_driver driver;
+    system_finder finder;
+    spacemouse_driver driver(finder);
     const auto list = driver.list();
     ASSERT_TRUE(list);
     const auto mine =
@@ -397,7 +399,8 @@ TEST_F(kernel_hid, moves_a_probe_against_a_wall) {
   spacemouse_settings settings;
   settings.motion.T_dh_start.position = {0, 0, 0.01};
   settings.shown_force_n = 5.0;
-  spacemouse_driver driver(settings);
+  system_finder finder;
+  spacemouse_driver driver(finder, settings);
   const auto list = driver.list();
   ASSERT_TRUE(list && !list->empty());
   auto device = driver.make_spacemouse(list->front());

@@ -8,7 +8,8 @@
 #include "interrupt.hpp"
 #include "patient_driver.hpp"
 #ifdef ASPERITY_HAS_HID
-#include "asperity/hid/spacemouse_driver.hpp"
+#include "asperity/drivers/spacemouse/spacemouse_driver.hpp"
+#include "asperity/hid/hid.hpp"
 #endif
 #ifdef ASPERITY_HAS_USB
 #include "asperity/drivers/falcon/falcon_driver.hpp"
@@ -24,6 +25,9 @@
 namespace asperity::command {
 
 struct known_devices::bus {
+#ifdef ASPERITY_HAS_HID
+  hid::system_finder hid;
+#endif
 #ifdef ASPERITY_HAS_USB
   usb::system_finder usb;
   real_clock clock;
@@ -123,7 +127,7 @@ result<std::unique_ptr<known_devices>> known_devices::look(driver_choice choice,
   std::unique_ptr<known_devices> known(new known_devices);
   driver_list all;
 #ifdef ASPERITY_HAS_HID
-  all.push_back(std::make_unique<patient_driver>(std::make_shared<hid::spacemouse_driver>(), known->bus_));
+  all.push_back(std::make_unique<patient_driver>(std::make_shared<spacemouse_driver>(known->bus_->hid), known->bus_));
 #endif
 #ifdef ASPERITY_HAS_USB
   falcon_settings falcon;

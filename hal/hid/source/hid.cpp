@@ -11,8 +11,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include "asperity/hid/enumerate.hpp"
 #include "asperity/hid/hidraw_link.hpp"
-#include "enumerate.hpp"
 
 namespace asperity::hid {
 namespace {
@@ -89,10 +89,6 @@ result<std::unique_ptr<hid_link>> open_node(const std::string& path, const hid_l
 }
 
 }  // namespace
-
-std::string identity_of(const hid_listing& which) {
-  return numbers(which.vendor_id, which.product_id) + (which.serial.empty() ? "" : ":" + which.serial);
-}
 
 std::string udev_rule(std::uint16_t vendor_id, std::uint16_t product_id) {
   return "SUBSYSTEM==\"hidraw\", KERNELS==\"*:" + numbers(vendor_id, product_id, "%04X:%04X") +

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <mutex>
 
-#include "enumerate.hpp"
+#include "asperity/hid/enumerate.hpp"
 
 namespace asperity::hid {
 namespace {

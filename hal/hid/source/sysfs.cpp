@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <linux/hid.h>
 #include <string_view>
 #include <system_error>
 
-#include "asperity/drivers/hid/report_descriptor.hpp"
-#include "enumerate.hpp"
+#include "asperity/hid/enumerate.hpp"
 
 namespace asperity::hid {
 namespace {
@@ -70,7 +70,7 @@ std::vector<hid_listing> list_from_sysfs(const fs::path& sys, const fs::path& de
     one.path = (dev / it->path().filename()).string();
     one.product = value_of(uevent, "HID_NAME");
     one.serial = value_of(uevent, "HID_UNIQ");
-    const std::string descriptor = head_of(device / "report_descriptor", report_descriptor::max_bytes);
+    const std::string descriptor = head_of(device / "report_descriptor", HID_MAX_DESCRIPTOR_SIZE);
     one.report_descriptor.assign(descriptor.begin(), descriptor.end());
 
     // On USB the HID device lies in its interface, and that in the device.

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "asperity/device/driver_conversion.hpp"
+#include "asperity/plugin/futex.hpp"
 #include "asperity/plugin/table_check.hpp"
-#include "futex.hpp"
 
 namespace asperity::plugin {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/plugin/child_driver.hpp"
-#include "child_exchange.hpp"
+#include "asperity/plugin/child_exchange.hpp"
 #include "child_process.hpp"
 
 namespace asperity::plugin {

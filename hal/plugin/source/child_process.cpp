@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "futex.hpp"
+#include "asperity/plugin/futex.hpp"
 
 extern char** environ;  // NOLINT(readability-identifier-naming): POSIX names it
 

@@ -9,8 +9,8 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/plugin/child_driver.hpp"
+#include "asperity/plugin/child_exchange.hpp"
 #include "asperity/plugin/driver_file.hpp"
-#include "child_exchange.hpp"
 
 namespace asperity::plugin {
 

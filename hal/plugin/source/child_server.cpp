@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "asperity/device/driver_conversion.hpp"
-#include "futex.hpp"
+#include "asperity/plugin/futex.hpp"
 
 namespace asperity::plugin {
 namespace {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <sys/types.h>
 
+#include "asperity/plugin/child_exchange.hpp"
 #include "asperity/plugin/driver_module.hpp"
 #include "asperity/plugin/plugin_device.hpp"
 #include "asperity/plugin/plugin_driver.hpp"
-#include "child_exchange.hpp"
 
 namespace asperity::plugin {
 

@@ -9,10 +9,10 @@
 #include <unistd.h>
 
 #include <asperity/drivers/spacemouse/products.hpp>
-#include <asperity/hid/hidraw_link.hpp>
-#include <asperity/hid/spacemouse_driver.hpp>
+#include <asperity/hid/hid.hpp>
 
-#include "enumerate.hpp"
+#include "asperity/hid/enumerate.hpp"
+#include "asperity/hid/hidraw_link.hpp"
 #include "hal/peers/hid_items.hpp"
 
 namespace {
@@ -205,69 +205,6 @@ TEST(hidraw_link, closes_its_node) {
   n.link.reset();
   std::uint8_t b = 0;
   EXPECT_EQ(::recv(n.device, &b, 1, 0), 0);  // the other end sees it
-}
-
-hid_listing navigator(const std::string& path, const std::string& serial = "") {
-  hid_listing l;
-  l.path = path;
-  l.vendor_id = 0x046d;
-  l.product_id = 0xc626;
-  l.serial = serial;
-  l.report_descriptor = test_support::space_navigator_descriptor();
-  return l;
-}
-
-TEST(spacemouse_driver, knows_its_own_among_other_devices) {
-  const auto mine = as_spacemouse(navigator("/dev/hidraw1"));
-  ASSERT_TRUE(mine);
-  EXPECT_EQ(mine->driver, "spacemouse");
-  EXPECT_EQ(mine->name, "SpaceNavigator");
-  EXPECT_EQ(mine->identity, "046d:c626");
-  EXPECT_EQ(mine->capabilities.actuated, no_axes);
-  EXPECT_EQ(mine->capabilities.sensed, all_axes);
-  hid_listing other = navigator("/dev/hidraw1");
-  other.product_id = 0xc52b;
-  EXPECT_FALSE(as_spacemouse(other));
-  // Another interface of a receiver: a keyboard.
-  hid_listing keys = navigator("/dev/hidraw2");
-  test_support::hid_items d;
-  d.page(1).usage(6).collection(1).page(7).usages(0xe0, 0xe7).logical(0, 1).bits(1).count(8).input(2).end();
-  keys.report_descriptor = d.bytes;
-  EXPECT_FALSE(as_spacemouse(keys));
-  keys.report_descriptor.clear();
-  EXPECT_TRUE(as_spacemouse(keys));
-}
-
-TEST(spacemouse_driver, finds_a_device_again_wherever_it_is) {
-  const std::vector<hid_listing> one{navigator("/dev/hidraw4")};
-  EXPECT_EQ(find_again(one, "046d:c626", "/dev/hidraw1")->path, "/dev/hidraw4");
-  const std::vector<hid_listing> two{navigator("/dev/hidraw4"), navigator("/dev/hidraw5")};
-  EXPECT_EQ(find_again(two, "046d:c626", "/dev/hidraw5")->path, "/dev/hidraw5");
-  const auto which = find_again(two, "046d:c626", "/dev/hidraw1");
-  ASSERT_FALSE(which);
-  EXPECT_NE(which.error().message.find("2 SpaceMice"), std::string::npos);
-  const std::vector<hid_listing> named{navigator("/dev/hidraw4", "A"), navigator("/dev/hidraw5", "B")};
-  EXPECT_EQ(find_again(named, "046d:c626:B", "/dev/hidraw1")->path, "/dev/hidraw5");
-  // Its old path belongs to another one now.
-  EXPECT_EQ(find_again(named, "046d:c626:B", "/dev/hidraw4")->path, "/dev/hidraw5");
-  EXPECT_FALSE(find_again({}, "046d:c626", "/dev/hidraw1"));
-}
-
-TEST(spacemouse_driver, makes_devices_that_say_what_is_wrong) {
-  spacemouse_driver driver;
-  const auto all = driver.list();
-  ASSERT_TRUE(all);
-  device_listing gone = *as_spacemouse(navigator("/dev/hidraw4711", "not here"));
-  auto device = driver.make(gone);
-  ASSERT_TRUE(device);
-  EXPECT_EQ(device->state(), device_state::present);
-  EXPECT_EQ(device->capabilities().name, "SpaceNavigator");
-  const result<void> opened = device->open();
-  ASSERT_FALSE(opened);
-  EXPECT_NE(opened.error().message.find("046d:c626:not here is not plugged in"), std::string::npos)
-      << opened.error().message;
-  gone.driver = "falcon";
-  EXPECT_FALSE(driver.make(gone));
 }
 
 }  // namespace

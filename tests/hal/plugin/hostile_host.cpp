@@ -8,8 +8,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "child_exchange.hpp"
-#include "futex.hpp"
+#include "asperity/plugin/child_exchange.hpp"
+#include "asperity/plugin/futex.hpp"
 
 using namespace asperity::plugin;
 

@@ -1,13 +1,12 @@
 // A program of a consumer of asperity::hid: it lists what is plugged in, which may be nothing.
 #include <cstdio>
 
-#include <asperity/hid/spacemouse_driver.hpp>
+#include <asperity/hid/hid.hpp>
 
 int main() {
-  asperity::hid::spacemouse_driver driver;
-  const auto devices = driver.list();
+  const auto devices = asperity::hid::system_finder().list();
   if (!devices) return std::puts(devices.error().message.c_str()), 1;
-  for (const auto& d : *devices) std::printf("%s at %s\n", d.name.c_str(), d.path.c_str());
+  for (const auto& d : *devices) std::printf("%s at %s\n", d.product.c_str(), d.path.c_str());
   const auto nothing = asperity::hid::open_hid("/dev/null");
   if (nothing) return std::puts("/dev/null was taken for a HID device"), 1;
   std::printf("%zu devices; %s\n", devices->size(), nothing.error().message.c_str());

@@ -1,4 +1,4 @@
-#include "falcon/falcon_bring_up.hpp"
+#include "falcon_bring_up.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -8,7 +8,7 @@
 #include "asperity/drivers/falcon/falcon_settings.hpp"
 #include "asperity/drivers/falcon/falcon_wire.hpp"
 #include "asperity/transport/io_clock.hpp"
-#include "falcon/falcon_firmware.hpp"
+#include "falcon_firmware.hpp"
 
 namespace asperity {
 

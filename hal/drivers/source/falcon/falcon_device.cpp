@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "asperity/drivers/falcon/falcon_torque.hpp"
-#include "falcon/falcon_bring_up.hpp"
+#include "falcon_bring_up.hpp"
 
 namespace asperity {
 

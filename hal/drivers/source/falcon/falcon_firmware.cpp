@@ -1,4 +1,4 @@
-#include "falcon/falcon_firmware.hpp"
+#include "falcon_firmware.hpp"
 
 #include <algorithm>
 #include <array>

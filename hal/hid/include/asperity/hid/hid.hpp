@@ -1,33 +1,15 @@
-// HID devices that are plugged in, and how to open one. Component asperity::hid, Linux.
+// HID devices of this machine: what is plugged in, and how to open one. Component asperity::hid, Linux.
 #pragma once
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/transport/hid_link.hpp"
+#include "asperity/transport/hid_finder.hpp"
 
 namespace asperity::hid {
-
-/// One HID interface that is plugged in. A device can have several.
-struct hid_listing {
-  std::string path;  ///< of its node, as /dev/hidraw3; another one when it returns
-  std::uint16_t vendor_id = 0;
-  std::uint16_t product_id = 0;
-  std::string serial;  ///< empty where the device has none
-  std::string product;
-  std::string manufacturer;
-  int interface_number = -1;                    ///< -1 where it is not on USB
-  std::vector<std::uint8_t> report_descriptor;  ///< empty where the system does not give it
-  std::optional<std::string> not_openable{};    ///< why, and how to mend it
-};
-
-/// Identity that does not depend on where the device is plugged in: "046d:c626", with ":serial" where it has one. Two
-/// devices of one kind without serial numbers have one identity.
-[[nodiscard]] std::string identity_of(const hid_listing& which);
 
 /// What is plugged in now, sorted by path. An empty list is not an error. A device that leaves meanwhile is left out.
 /// Reads some files of the system for every node: not for a tick.
@@ -35,6 +17,10 @@ struct hid_listing {
 
 /// Opens a node. It is opened, asked and read by way of the kernel's own interface (see third_party_notes/hidapi.md):
 /// a node that vanishes at any moment of this is an error value.
+///
+/// The link owns the node and never waits in read(), which is one system call; the kernel keeps 63 reports that nobody
+/// read, the oldest ones. write() is one system call in which the kernel hands the report to the device: on USB it waits
+/// until the device has it, some milliseconds with a slow one. Neither allocates, not even where a call fails.
 /// @return io_failed (not there, no permission: with the rule that gives it) | unsupported (not a HID node)
 [[nodiscard]] result<std::unique_ptr<hid_link>> open_hid(const std::string& path);
 
@@ -44,5 +30,12 @@ struct hid_listing {
 
 /// The line for a file in /etc/udev/rules.d that lets whoever sits at the machine open this device.
 [[nodiscard]] std::string udev_rule(std::uint16_t vendor_id, std::uint16_t product_id);
+
+/// The HID devices of this machine, for drivers.
+class system_finder final : public hid_finder {
+ public:
+  [[nodiscard]] result<std::vector<hid_listing>> list() override { return list_hid(); }
+  [[nodiscard]] result<std::unique_ptr<hid_link>> open(const hid_listing& which) override { return open_hid(which); }
+};
 
 }  // namespace asperity::hid

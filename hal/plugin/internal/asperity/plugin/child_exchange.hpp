@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "asperity/device/driver_abi.h"
-#include "shared_slot.hpp"
+#include "asperity/plugin/shared_slot.hpp"
 
 namespace asperity::plugin {
 

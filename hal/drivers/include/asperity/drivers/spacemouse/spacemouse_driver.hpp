@@ -1,25 +1,29 @@
-// Finds SpaceMice among the HID devices and opens them. Component asperity::hid.
+// Finds SpaceMice.
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/device/driver.hpp"
 #include "asperity/drivers/spacemouse/spacemouse_device.hpp"
-#include "asperity/hid/hid.hpp"
+#include "asperity/transport/hid_finder.hpp"
 
-namespace asperity::hid {
+namespace asperity {
 
-/// The driver of the SpaceMouse family (hal/spacemouse/products.hpp).
+/// The driver of the SpaceMouse family (products.hpp) over any HID: the system's (asperity::hid) or one in this process.
 ///
 /// A device is the multi-axis controller of a product in the table; its other interfaces are ignored. make() gives a
 /// device that remembers its identity and not its path: its open() finds it wherever it is plugged in by then, at the
 /// listed path where it is still there. Two of one kind have no serial numbers to tell them apart, so when both have
 /// moved, open() says so and takes neither.
-class spacemouse_driver final : public device_driver {
+class ASPERITY_API spacemouse_driver final : public device_driver {
  public:
-  explicit spacemouse_driver(const spacemouse_settings& settings = {}) : settings_(settings) {}
+  /// @param finder outlives the driver and its devices
+  explicit spacemouse_driver(hid_finder& finder, const spacemouse_settings& settings = {})
+      : finder_(&finder), settings_(settings) {}
 
   [[nodiscard]] std::string_view name() const noexcept override { return "spacemouse"; }
   [[nodiscard]] driver_maturity maturity() const noexcept override { return driver_maturity::protocol_tested; }
@@ -31,16 +35,18 @@ class spacemouse_driver final : public device_driver {
   [[nodiscard]] result<spacemouse_device> make_spacemouse(const device_listing& which);
 
  private:
+  hid_finder* finder_;
   spacemouse_settings settings_;
 };
 
 /// The listed interface as the driver shows it; nothing where it is no SpaceMouse.
-[[nodiscard]] std::optional<device_listing> as_spacemouse(const hid_listing& which,
-                                                          const spacemouse_settings& settings = {});
+[[nodiscard]] ASPERITY_API std::optional<device_listing> as_spacemouse(const hid_listing& which,
+                                                                       const spacemouse_settings& settings = {});
 
-/// Which of several interfaces a device remembered by identity and last path is now.
+/// Which of several interfaces a SpaceMouse remembered by identity and last path is now.
 /// @return io_failed where it is not there, or where two could be it
-[[nodiscard]] result<hid_listing> find_again(const std::vector<hid_listing>& now, const std::string& identity,
-                                             const std::string& last_path);
+[[nodiscard]] ASPERITY_API result<hid_listing> find_spacemouse_again(const std::vector<hid_listing>& now,
+                                                                     const std::string& identity,
+                                                                     const std::string& last_path);
 
-}  // namespace asperity::hid
+}  // namespace asperity

@@ -1,4 +1,4 @@
-// A HID link over a hidraw node of Linux. Component asperity::hid.
+// A HID link over a hidraw node of Linux.
 #pragma once
 
 #include <cstddef>

@@ -1,12 +1,14 @@
-#include "asperity/hid/spacemouse_driver.hpp"
+#include "asperity/drivers/spacemouse/spacemouse_driver.hpp"
 
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <utility>
 
 #include "asperity/drivers/hid/report_descriptor.hpp"
 #include "asperity/drivers/spacemouse/products.hpp"
 
-namespace asperity::hid {
+namespace asperity {
 namespace {
 
 // Page 1, usage 8: the kind of device that a SpaceMouse says it is. Receivers have other interfaces besides.
@@ -37,8 +39,8 @@ std::optional<device_listing> as_spacemouse(const hid_listing& which, const spac
   return one;
 }
 
-result<hid_listing> find_again(const std::vector<hid_listing>& now, const std::string& identity,
-                               const std::string& last_path) {
+result<hid_listing> find_spacemouse_again(const std::vector<hid_listing>& now, const std::string& identity,
+                                          const std::string& last_path) {
   const hid_listing* found = nullptr;
   std::size_t candidates = 0;
   for (const hid_listing& l : now) {
@@ -57,7 +59,7 @@ result<hid_listing> find_again(const std::vector<hid_listing>& now, const std::s
 }
 
 result<std::vector<device_listing>> spacemouse_driver::list() {
-  result<std::vector<hid_listing>> all = list_hid();
+  result<std::vector<hid_listing>> all = finder_->list();
   if (!all) return all.error();
   std::vector<device_listing> found;
   for (const hid_listing& l : *all) {
@@ -76,12 +78,12 @@ result<spacemouse_device> spacemouse_driver::make_spacemouse(const device_listin
     if (p.name == which.name) settings.name = p.name;
   }
   return spacemouse_device(
-      [identity = which.identity, path = which.path]() mutable -> result<std::unique_ptr<hid_link>> {
-        result<std::vector<hid_listing>> all = list_hid();
+      [finder = finder_, identity = which.identity, path = which.path]() mutable -> result<std::unique_ptr<hid_link>> {
+        result<std::vector<hid_listing>> all = finder->list();
         if (!all) return all.error();
-        result<hid_listing> now = find_again(*all, identity, path);
+        result<hid_listing> now = find_spacemouse_again(*all, identity, path);
         if (!now) return now.error();
-        result<std::unique_ptr<hid_link>> link = open_hid(*now);
+        result<std::unique_ptr<hid_link>> link = finder->open(*now);
         if (link) path = now->path;
         return link;
       },
@@ -94,4 +96,4 @@ result<any_device> spacemouse_driver::make(const device_listing& which) {
   return any_device(std::move(*device));
 }
 
-}  // namespace asperity::hid
+}  // namespace asperity
