@@ -52,21 +52,26 @@ check_format() {
   git ls-files '*.hpp' '*.h' '*.cpp' | xargs clang-format --dry-run -Werror
 }
 
-# Consumers of every kind: each header of the core, and a program that presses a box onto another, without exceptions and
-# without type information, as C++20 and C++23, by both compilers, with the warnings that careful people use.
+# Consumers of every kind: each header of the core, of links and of drivers, a program that presses a box onto another and
+# one with drivers, without exceptions and without type information, as C++20 and C++23, by both compilers, with the
+# warnings that careful people use.
 check_consumers() {
   local compiler standard
+  local core=build/release/src/libasperity.a links=build/release/hal/transport/libasperity_transport.a
+  local drivers=build/release/hal/drivers/libasperity_drivers.a
   local flags=(-fno-exceptions -fno-rtti -O1 -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion
-    -Wold-style-cast -Werror -Iinclude)
+    -Wold-style-cast -Werror -Iinclude -Ihal/transport/include -Ihal/drivers/include)
   configure release
-  build release asperity
-  all_core_headers > build/check/core.cpp
+  build release asperity asperity_drivers
+  all_headers include hal/transport/include hal/drivers/include > build/check/headers.cpp
   {
     for compiler in g++ clang++; do
       for standard in c++20 c++2b; do
-        printf '%s\n' "$compiler -std=$standard ${flags[*]} -fsyntax-only build/check/core.cpp"
-        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/install/core_consumer.cpp build/release/src/libasperity.a \
+        printf '%s\n' "$compiler -std=$standard ${flags[*]} -fsyntax-only build/check/headers.cpp"
+        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/install/core_consumer.cpp $core \
           -o build/check/consumer-$compiler-$standard && build/check/consumer-$compiler-$standard"
+        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/install/hal/drivers.cpp $drivers $links $core \
+          -o build/check/drivers-$compiler-$standard && build/check/drivers-$compiler-$standard"
       done
     done
     # The core itself throws nothing either.
@@ -78,10 +83,9 @@ check_consumers() {
 # Runs the commands of its input, one a line, as many at a time as there are cores. Fails where one did.
 at_once() { xargs -d '\n' -P "$(nproc)" -n 1 bash -ec; }
 
-# A translation unit that includes every header of asperity::asperity.
-all_core_headers() {
-  git ls-files include | sed -n 's|^include/\(asperity/.*\.h\(pp\)\{0,1\}\)$|\1|p' |
-    sed 's/.*/#include "&"/'
+# all_headers FOLDER...: a translation unit that includes every header in these folders.
+all_headers() {
+  git ls-files "$@" | sed -n 's|^.*include/\(asperity/.*\.h\(pp\)\{0,1\}\)$|#include "\1"|p'
 }
 
 # What an optimising compiler of another make could find something in. Clang compiles and runs more with the sanitizers.
@@ -172,7 +176,7 @@ left_out() { say "left out: tests labelled '$1' ($2)"; }
 check_tidy() {
   cmake --preset clang -B build/tidy -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON > build/tidy.configure.log 2>&1 ||
     { cat build/tidy.configure.log && return 1; }
-  all_core_headers > build/check/core.cpp
+  all_headers include > build/check/core.cpp
   {
     local status=0
     sed -n 's|^ *"file": "\(.*\)",\{0,1\}$|\1|p' build/tidy/compile_commands.json |
