@@ -1,4 +1,4 @@
-// The numbers of a device recording as bytes, and what a recording is limited to; see docs/reference/device-recording.md.
+// The numbers of a device recording as bytes, and its limits; see docs/reference/device-recording.md.
 #pragma once
 
 #include <array>

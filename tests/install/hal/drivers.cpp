@@ -1,4 +1,4 @@
-// A program of a consumer of asperity::drivers: a bus without devices, and an arm's drive on a CAN bus that nobody is on.
+// A program of a consumer of asperity::drivers: a USB bus without devices, and a drive on a CAN bus without a motor.
 #include <cstdio>
 
 #include <asperity/drivers/falcon/falcon_driver.hpp>

@@ -19,8 +19,8 @@ namespace asperity::hid {
 /// a node that vanishes at any moment of this is an error value.
 ///
 /// The link owns the node and never waits in read(), which is one system call; the kernel keeps 63 reports that nobody
-/// read, the oldest ones. write() is one system call in which the kernel hands the report to the device: on USB it waits
-/// until the device has it, some milliseconds with a slow one. Neither allocates, not even where a call fails.
+/// read, the oldest ones. write() is one system call in which the kernel hands the report to the device: on USB it
+/// waits until the device has it, some milliseconds with a slow one. Neither allocates, not even where a call fails.
 /// @return io_failed (not there, no permission: with the rule that gives it) | unsupported (not a HID node)
 [[nodiscard]] result<std::unique_ptr<hid_link>> open_hid(const std::string& path);
 

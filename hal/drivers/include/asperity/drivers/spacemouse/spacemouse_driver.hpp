@@ -13,7 +13,7 @@
 
 namespace asperity {
 
-/// The driver of the SpaceMouse family (products.hpp) over any HID: the system's (asperity::hid) or one in this process.
+/// The driver of the SpaceMouse family (products.hpp) over any HID: the system's (asperity::hid) or a virtual one.
 ///
 /// A device is the multi-axis controller of a product in the table; its other interfaces are ignored. make() gives a
 /// device that remembers its identity and not its path: its open() finds it wherever it is plugged in by then, at the
