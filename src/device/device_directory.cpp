@@ -50,7 +50,7 @@ result<device_listing> device_directory::find(std::string_view text) const {
     if (d.driver == text || (!text.empty() && d.name.find(text) != std::string::npos)) fitting.push_back(&d);
   }
   if (fitting.size() == 1) return *fitting.front();
-  const std::string wanted = "'" + std::string(text) + "'";
+  const std::string wanted = std::string("'").append(text) + "'";
   if (fitting.empty()) {
     for (const device_listing& d : devices_) fitting.push_back(&d);
     return error{error_code::invalid_argument,
