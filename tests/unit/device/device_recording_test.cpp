@@ -11,6 +11,7 @@
 #include <asperity/device/device_recording.hpp>
 #include <asperity/device/simulated/simulated_device.hpp>
 
+#include "device/recording_bytes.hpp"
 #include "unit/control/analytic_wall.hpp"
 
 namespace {
