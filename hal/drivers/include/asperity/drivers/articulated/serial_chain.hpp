@@ -20,7 +20,7 @@ inline constexpr std::size_t most_joints = 8;
 using joint_vector = std::array<double, most_joints>;
 
 /// Mass of a link, as URDF states it.
-struct link_mass {
+struct ASPERITY_API link_mass {
   double mass_kg = 0.0;
   vec3 centre{0.0};         ///< centre of mass, link frame
   mat3 inertia_kg_m2{0.0};  ///< about the centre of mass, axes of the link frame
