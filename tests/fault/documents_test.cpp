@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "command_process.hpp"
 
@@ -226,6 +227,17 @@ TEST_F(documents, what_belongs_to_the_paper_is_refused_without_it) {
     query.insert(query.end(), {"--contacts", "window"});
     EXPECT_EQ(expect_document(query, "asperity.query/1")["formulation"], "window");
   }
+}
+
+TEST_F(documents, former_names_of_contacts_are_accepted) {
+  arguments query{"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1", "--contacts"};
+  for (const auto& [former, name] : {std::pair{"shared", "least-motion"}, std::pair{"paper", "window"}}) {
+    query.push_back(former);
+    EXPECT_EQ(expect_document(query, "asperity.query/1")["formulation"], name) << former;
+    query.pop_back();
+  }
+  const arguments session{"run", "--probe", block(), "--fixed", block(), "--seconds", "0.01", "--contacts", "field"};
+  EXPECT_EQ(expect_document(session, "asperity.run/1")["formulation"], "planes");
 }
 
 TEST_F(documents, query_far_away_has_no_contact_and_no_force) {

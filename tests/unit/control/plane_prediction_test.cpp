@@ -94,7 +94,7 @@ drawn_rest draw(drawn& d) {
 
 /// How much deeper a point is than its planes say, at the pose where planes and springs balance. Nothing where it is so
 /// far away that planes of a pose on the way are told.
-double untold_m(const drawn_rest& at) {
+double unreported_m(const drawn_rest& at) {
   const vec6 moved = detail::rest_of(at.pull, at.planes);
   if (detail::share_of_furthest(moved) > 0.999) return 0.0;
   double worst = 0.0;
@@ -115,7 +115,7 @@ TEST(plane_prediction, planes_say_what_the_surface_is_where_the_probe_rests) {
   int wrong_before = 0, wrong_after = 0;
   for (int trial = 0; trial < 400; ++trial) {
     drawn_rest at = draw(d);
-    const double before = untold_m(at);
+    const double before = unreported_m(at);
     const support_planes here = at.planes;
     rest_prediction rest;
     for (int tick = 0; tick < 10; ++tick) {
@@ -123,7 +123,7 @@ TEST(plane_prediction, planes_say_what_the_surface_is_where_the_probe_rests) {
       at.planes = here;
       rest.complete(plane_source(at.body), at.pull, {}, at.planes);
     }
-    const double after = untold_m(at);
+    const double after = unreported_m(at);
     before_m = std::max(before_m, before);
     after_m = std::max(after_m, after);
     wrong_before += before > 0.5 * um ? 1 : 0;
