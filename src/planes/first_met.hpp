@@ -41,15 +41,21 @@ class first_met {
 
   void clear() noexcept { groups_.clear(); }
 
-  /// The group of a slope; a new one where none is near.
+  /// The group of a slope; null where none is near.
   /// @param slope_w of the depth by the probe's position   @rt safe
-  [[nodiscard]] group* group_of(std::uint32_t body, const vec3& slope_w) noexcept {
+  [[nodiscard]] group* find_group(std::uint32_t body, const vec3& slope_w) noexcept {
     constexpr double same = 0.94;  // cosine: 20 degrees
     const double squared = glm::dot(slope_w, slope_w);
     for (group& g : groups_) {
       const double along = glm::dot(g.axis_w, slope_w);
       if (g.body == body && along > 0.0 && along * along >= same * same * squared) return &g;
     }
+    return nullptr;
+  }
+
+  /// A new group of a slope; null where there are too many, and where the slope has no direction. @rt safe
+  [[nodiscard]] group* add_group(std::uint32_t body, const vec3& slope_w) noexcept {
+    const double squared = glm::dot(slope_w, slope_w);
     if (!(squared > 0.01)) return nullptr;
     group made{.body = body, .axis_w = slope_w / std::sqrt(squared)};
     made.u_w = any_orthogonal(made.axis_w);

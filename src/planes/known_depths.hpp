@@ -64,6 +64,14 @@ class known_depths {
   /// than the tree's, or the list is full.
   [[nodiscard]] std::span<float> of(std::size_t leaf) noexcept { return now_.range(leaf, std::span(now_.most_m)); }
 
+  /// None of a patch's samples is deeper, m; +infinity where not all of them have a bound.
+  [[nodiscard]] float most_m(const near_patch& patch) noexcept {
+    if (!complete(patch)) return std::numeric_limits<float>::infinity();
+    float most_m = -std::numeric_limits<float>::infinity();
+    for (const float m : part_of(patch, now_.most_m)) most_m = std::max(most_m, m);
+    return most_m;
+  }
+
   /// What is known of a patch at the pose that was asked for last.
   struct asked_patch {
     vec3 r_w{0.0};          ///< from the probe's centre of mass at the tick's pose
@@ -94,12 +102,12 @@ class known_depths {
   }
   /// Brings the bounds of a patch's samples up to date.
   void open(asked_patch& patch, const near_patch& of) noexcept {
-    for (float& m : samples_of(of)) m += patch.grown_m;
+    for (float& m : part_of(of, asked_m_)) m += patch.grown_m;
     patch.grown_m = 0.0F;
   }
   /// Notes the largest of the bounds.
   void close(asked_patch& patch, const near_patch& of) noexcept {
-    const std::span<const float> samples = samples_of(of);
+    const std::span<const float> samples = part_of(of, asked_m_);
     patch.most_m = complete(of) ? -std::numeric_limits<float>::infinity() : std::numeric_limits<float>::infinity();
     for (const float m : samples) patch.most_m = std::max(patch.most_m, m);
   }
@@ -135,10 +143,11 @@ class known_depths {
     return std::less<>{}(a.first, b.first);
   }
 
-  [[nodiscard]] std::span<float> samples_of(const near_patch& patch) noexcept {
+  // A patch's part of one number per sample.
+  [[nodiscard]] std::span<float> part_of(const near_patch& patch, std::span<float> of_samples) const noexcept {
     if (patch.leaf_count == 0) return {};
-    const std::span<float> first = asked_of(patch.first_leaf);
-    const std::span<float> last = asked_of(patch.first_leaf + patch.leaf_count - 1);
+    const std::span<float> first = now_.range(patch.first_leaf, of_samples);
+    const std::span<float> last = now_.range(patch.first_leaf + patch.leaf_count - 1, of_samples);
     return {first.data(), static_cast<std::size_t>(last.data() + last.size() - first.data())};
   }
   // Whether every sample of a patch has a bound: not where leaves are larger than a tree's, and the list was full.

@@ -10,15 +10,13 @@
 
 #include "asperity/core/memory.hpp"
 #include "planes/first_met.hpp"
+#include "planes/known_branches.hpp"
 #include "planes/known_depths.hpp"
 #include "planes/leaf_reader.hpp"
 #include "planes/plane_watch.hpp"
 
 namespace asperity {
 namespace {
-
-// No depth grows faster than this with the way of its point: smooth part and relief together.
-constexpr double steepest = 3.0;
 
 void keep_deepest(const support_plane& p, plane_list& in) noexcept {
   if (in.push_back(p)) return;
@@ -65,15 +63,16 @@ class readers {
 
 }  // namespace
 
-plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most)
+plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
+                         std::shared_ptr<known_branches> branches)
     : bodies_(std::move(bodies)),
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
-      always_m_(reach_m / 9.0),
       ways_(of.fixed.size()),
       watch_(std::make_unique<plane_watch>(*bodies_, of)),
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
+      branches_(std::move(branches)),
       asked_at_(std::make_unique<vec6>()) {
   detail::reserve_resident(reported_, most);
   detail::reserve_resident(order_, most);
@@ -88,6 +87,7 @@ plane_depth::~plane_depth() = default;
 
 status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
+  const double reach_m = std::min(reach_m_, at.gaps_m);
   readers reading(*bodies_, at, c_a_w, sinking_m_);
   reported_.clear();
   met_->clear();
@@ -96,17 +96,18 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
     const vec3 r_w = reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
     const double r_m = std::sqrt(glm::dot(r_w, r_w)) + patch.ball.radius_m;
     const way& w = ways_[patch.body];
-    return steepest * (w.slid_m + w.chord * (r_m + w.slid_m));
+    return steepest_depth * (w.slid_m + w.chord * (r_m + w.slid_m));
   });
   // What may be near is read first: it hides what lies behind it.
-  sort_by_depth(found.patches());
+  sort_by_depth(found.patches(), reach_m);
   for (const std::uint32_t i : order_) {
     const near_patch& patch = found.patches()[i];
-    read(patch, found.leaves_of(patch), reading.of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
+    read(patch, found.leaves_of(patch), reading.of(patch), reach_m, out.subspan(patch.first_leaf, patch.leaf_count));
   }
   for (const near_plane& p : out) {
-    if (p.plane.depth_m > -reach_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
+    if (p.plane.depth_m > -reach_m && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
+  teach(found);
   known_->ask(found, [&](const near_patch& patch) noexcept {
     return reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
   });
@@ -127,11 +128,19 @@ void plane_depth::learn_ways(const scene_pose& at) noexcept {
   }
 }
 
-void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
+void plane_depth::teach(const near_samples& found) noexcept {
+  if (!branches_) return;
+  for (const near_patch& patch : found.patches()) {
+    branches_->note(patch.body, patch.of_probe, patch.branch, static_cast<double>(known_->most_m(patch)));
+  }
+  branches_->fold();
+}
+
+void plane_depth::sort_by_depth(std::span<const near_patch> patches, double reach_m) noexcept {
   constexpr std::size_t bins = 64;
   std::array<std::uint32_t, bins + 1> first{};
   const auto bin_of = [&](const near_patch& p) noexcept {
-    const double from_top = (reach_m_ - p.in_other.most_m) * static_cast<double>(bins) / (2.0 * reach_m_);
+    const double from_top = (reach_m - p.in_other.most_m) * static_cast<double>(bins) / (2.0 * reach_m);
     return from_top > 0.0 ? static_cast<std::size_t>(std::min(from_top, static_cast<double>(bins - 1))) : 0;
   };
   for (const near_patch& p : patches) ++first[bin_of(p) + 1];
@@ -141,15 +150,21 @@ void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
 }
 
 void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
-                       std::span<near_plane> out) noexcept {
-  // The pose alone decides which patches are compared, and so which planes are reported.
+                       double reach_m, std::span<near_plane> out) noexcept {
+  // Gaps up to this are reported whatever lies before them.
+  const double always_m = reach_m / 9.0;
+  // The pose alone decides which patches have a plane, and only these are compared with others. So it decides which
+  // planes are reported; a patch without a plane may be listed or not.
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
-  first_met::group* const group = met_->group_of(patch.body, slope_w);
+  first_met::group* group = met_->find_group(patch.body, slope_w);
   first_met::depths moved;
-  if (group != nullptr) met_->moved(*group, slope_w, reader.from_centre_of_mass_w(patch.ball.centre_b), moved);
+  const auto move = [&]() noexcept {
+    if (group != nullptr) met_->moved(*group, slope_w, reader.from_centre_of_mass_w(patch.ball.centre_b), moved);
+  };
+  move();
   const auto least_that_matters_m = [&]() noexcept {
-    if (group == nullptr) return -reach_m_;
-    return std::max(-reach_m_, std::min(-always_m_, first_met::least_that_matters_m(*group, moved)));
+    if (group == nullptr) return -reach_m;
+    return std::max(-reach_m, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
   };
   double above_m = least_that_matters_m();
   const auto most_of_patch_m = leaf_reader::rounded_up(patch.in_other.most_m);
@@ -169,7 +184,12 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
       continue;
     }
     out[i] = reader.deepest(leaf, near, above_m, known);
-    if (group == nullptr || !(out[i].plane.depth_m > above_m)) continue;
+    if (!(out[i].plane.depth_m > above_m)) continue;
+    if (group == nullptr) {
+      group = met_->add_group(patch.body, slope_w);
+      move();
+    }
+    if (group == nullptr) continue;
     first_met::add(*group, moved, out[i].plane.depth_m);
     above_m = least_that_matters_m();
   }
@@ -178,20 +198,25 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
 status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
                               const vec6& moved, double above_m, plane_list& out) const noexcept {
   readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, sinking_m_);
+  const double reach_m = std::min(reach_m_, at.gaps_m);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
   const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
+  const double moved_rad = std::sqrt(glm::dot(moved.angular, moved.angular));
   for (std::size_t p = 0; p < found.patches().size(); ++p) {
     known_depths::asked_patch& asked = known_->asked()[p];
     const vec3 way_w = step.linear + glm::cross(step.angular, asked.r_w);
     const double way_m = std::sqrt(glm::dot(way_w, way_w)) + turned_rad * asked.radius_m;
-    known_depths::grow(asked, steepest * way_m);
-    if (!(static_cast<double>(asked.most_m) > above_m)) continue;
+    known_depths::grow(asked, steepest_depth * way_m);
+    const vec3 come_w = moved.linear + glm::cross(moved.angular, asked.r_w);
+    const double come_m = std::sqrt(glm::dot(come_w, come_w)) + moved_rad * asked.radius_m;
+    const double least_m = std::max(above_m, steepest_depth * come_m - reach_m);
+    if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     const near_patch& patch = found.patches()[p];
     const leaf_reader& reader = reading.of(patch);
     known_->open(asked, patch);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
-      reader.each_deeper(found.leaves()[i], above_m, known_->asked_of(i),
+      reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i),
                          [&](const support_plane& plane) noexcept { keep_deepest(plane, out); });
     }
     known_->close(asked, patch);
@@ -201,7 +226,8 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
 
 std::size_t plane_depth::heap_bytes() const noexcept {
   return asperity::heap_bytes(reported_, order_, ways_) + sizeof(plane_watch) + watch_->heap_bytes() +
-         sizeof(first_met) + sizeof(known_depths) + sizeof(vec6) + known_->heap_bytes() + sizeof(field_scene) +
+         sizeof(first_met) + sizeof(known_depths) + sizeof(vec6) + known_->heap_bytes() +
+         (branches_ ? sizeof(known_branches) + branches_->heap_bytes() : 0) + sizeof(field_scene) +
          bodies_->heap_bytes();
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "planes/known_branches.hpp"
+
 namespace asperity {
 
 namespace {
@@ -28,8 +30,9 @@ result<plane_renderer> make_plane_renderer(scene bodies, std::shared_ptr<const f
   if (const result<void> ok = check_reach(settings.reach_m); !ok) return ok.error();
   if (const result<void> ok = check(settings.springs); !ok) return ok.error();
   const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : usual_reach_m(bodies);
-  plane_depth depth(made, bodies, reach_m, settings.limits.readings());
-  return plane_renderer(std::move(bodies), plane_finder(std::move(made), reach_m), std::move(depth),
+  auto known = std::make_shared<known_branches>(*made, bodies.probe->mass.centre_of_mass);
+  plane_depth depth(made, bodies, reach_m, settings.limits.readings(), known);
+  return plane_renderer(std::move(bodies), plane_finder(std::move(made), reach_m, std::move(known)), std::move(depth),
                         plane_springs(settings.springs), settings.limits);
 }
 

@@ -20,6 +20,8 @@ struct plane_selection {
   /// Cosine between n_ab of two planes of one body above which they share a direction. Within 35 degrees planes replace
   /// each other when the probe tilts; further apart they hold the probe in different ways.
   double same_direction = 0.82;
+  /// The contact period that tilt and slide are for, s. A contact_loop asks for gaps of three of them.
+  double period_s = 1e-3;
 };
 
 /// The selection for a contact loop of this period.
@@ -31,6 +33,7 @@ struct plane_selection {
   plane_selection out;
   out.tilt_rad = turn_rad_per_s * period_s;
   out.slide_m = slide_m_per_s * period_s;
+  out.period_s = period_s;
   return out;
 }
 

@@ -64,34 +64,52 @@ class sample_tree {
     taken,  ///< visit all of its leaves without asking again
   };
 
-  /// Calls look(sample_ball, is_leaf), which answers a branch_answer, from the largest ball down, and
-  /// visit(sample_ball, samples) for the leaves of the balls that it takes. A leaf that it leaves open is not
-  /// visited. The order is the tree's own.
+  /// A ball of the tree and its number. Balls are numbered from the largest down: halves have higher numbers than their
+  /// whole, and `right` is 0 for a leaf.
+  struct branch {
+    std::uint32_t number = 0, left = 0, right = 0;
+    const sample_tree* of = nullptr;
+
+    [[nodiscard]] bool is_leaf() const noexcept { return right == 0; }
+    [[nodiscard]] sample_ball ball() const noexcept { return of->balls_[number].in_double(); }
+  };
+
+  /// How many balls are numbered.
+  [[nodiscard]] std::size_t balls() const noexcept { return balls_.size(); }
+
+  /// Calls look(branch), which answers a branch_answer, from the largest ball down, and visit(sample_ball, samples) for
+  /// the leaves of the balls that it takes. A leaf that it leaves open is not visited. The order is the tree's own.
   /// @rt safe: no allocation; look and visit must not throw
   template <class Look, class Visit>
-  void query(Look&& look, Visit&& visit) const noexcept {
+  void walk(Look&& look, Visit&& visit) const noexcept {
     if (balls_.empty()) return;
-    struct branch {
+    struct waiting_branch {
       std::uint32_t first, end;
     };
     // Median splits halve the count, so 2^31 points need 32 levels and one waiting sibling at each.
-    std::array<branch, 64> waiting;
+    std::array<waiting_branch, 64> waiting;
     std::size_t count = 0;
     waiting[count++] = {0, static_cast<std::uint32_t>(balls_.size())};
     while (count > 0) {
       const auto [i, end] = waiting[--count];
-      const ball& b = balls_[i];
-      const bool is_leaf = b.right == 0;
-      const branch_answer answer = look(b.in_double(), is_leaf);
+      const std::uint32_t right = balls_[i].right;
+      const branch_answer answer = look(branch{i, i + 1, right, this});
       if (answer == branch_answer::taken) {
         for (std::uint32_t l = i; l < end; ++l) {
           if (balls_[l].right == 0) visit_leaf(balls_[l], visit);
         }
-      } else if (answer == branch_answer::open && !is_leaf) {
-        waiting[count++] = {b.right, end};
-        waiting[count++] = {i + 1, b.right};
+      } else if (answer == branch_answer::open && right != 0) {
+        waiting[count++] = {right, end};
+        waiting[count++] = {i + 1, right};
       }
     }
+  }
+
+  /// walk() for a visitor that needs no numbers: look(sample_ball, is_leaf).
+  /// @rt safe: no allocation; look and visit must not throw
+  template <class Look, class Visit>
+  void query(Look&& look, Visit&& visit) const noexcept {
+    walk([&](const branch& b) noexcept { return look(b.ball(), b.is_leaf()); }, visit);
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(samples_, balls_); }

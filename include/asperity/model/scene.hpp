@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct scene {
 struct scene_pose {
   pose T_wa;
   std::span<const pose> T_wb;
+  /// Gaps up to this are wanted as support planes, m: as far as a point of the probe may come until the tick is not
+  /// used any more. A renderer tells none beyond its own reach. No force depends on it.
+  double gaps_m = std::numeric_limits<double>::infinity();
 };
 
 /// Centre of mass of the probe in the world: the point c_A that torques and gradients are about.

@@ -56,6 +56,7 @@ struct near_patch {
   sample_ball ball{};      ///< around them, in the frame of the body that has them
   depth_bound in_other{};  ///< of that ball in the other body's field
   std::uint32_t first_leaf = 0, leaf_count = 0;  ///< in near_samples::leaves()
+  std::uint32_t branch = 0;                      ///< its ball's number in the sample_tree
 };
 
 /// A few neighbouring samples of a patch.

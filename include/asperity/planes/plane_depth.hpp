@@ -22,6 +22,7 @@ namespace asperity {
 
 class plane_watch;
 class first_met;
+class known_branches;
 class known_depths;
 class leaf_reader;
 
@@ -48,7 +49,9 @@ class ASPERITY_API plane_depth {
   /// @param bodies   the scene's, in its order
   /// @param reach_m  gaps up to this are reported, m
   /// @param most     planes that a tick may report: near_sample_limits::readings()
-  plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most);
+  /// @param branches shared with the finder, which this teaches; or nullptr
+  plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
+              std::shared_ptr<known_branches> branches = nullptr);
   plane_depth(plane_depth&&) noexcept;
   plane_depth& operator=(plane_depth&&) noexcept;
   ~plane_depth();
@@ -58,7 +61,8 @@ class ASPERITY_API plane_depth {
   [[nodiscard]] status measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept;
 
   /// The planes of the samples that are deeper than above_m at a pose near that of the last measure(), whether they had
-  /// a plane there or not. Where there are more than `out` takes, the deepest.
+  /// a plane there or not. Where there are more than `out` takes, the deepest. Of samples that may have been beyond the
+  /// reach of measure(), since they have come so far, nothing is told.
   /// @param found, read of the last measure()   @param moved from its pose to this one, about c_A
   /// @return ok | capacity_reached
   /// @rt safe
@@ -78,15 +82,16 @@ class ASPERITY_API plane_depth {
   // What known bounds grow by: how far samples have gone since the tick before.
   void learn_ways(const scene_pose& at) noexcept;
   // The deepest first, roughly.
-  void sort_by_depth(std::span<const near_patch> patches) noexcept;
+  void sort_by_depth(std::span<const near_patch> patches, double reach_m) noexcept;
   // The planes of a patch's leaves, where they can matter.
-  void read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
+  void read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader, double reach_m,
             std::span<near_plane> out) noexcept;
+  // The patches' bounds, as sharp as this tick made them.
+  void teach(const near_samples& found) noexcept;
 
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
   double reach_m_;
-  double always_m_ = 0.0;   // gaps up to this are reported whatever lies before them
   double sinking_m_ = 0.0;  // of a sample that looks away
   std::vector<support_plane> reported_;
   std::vector<std::uint32_t> order_;  // of patches
@@ -99,6 +104,7 @@ class ASPERITY_API plane_depth {
   std::unique_ptr<plane_watch> watch_;
   std::unique_ptr<first_met> met_;
   std::unique_ptr<known_depths> known_;
+  std::shared_ptr<known_branches> branches_;
   std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
   depth_work work_;
   tick_flag flags_ = tick_flag::none;

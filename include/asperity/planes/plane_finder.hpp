@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 
 #include "asperity/core/export.hpp"
 #include "asperity/field/field_scene.hpp"
@@ -11,17 +10,20 @@
 
 namespace asperity {
 
+class known_branches;
+
 /// Lists the patches of samples whose depth may be more than -reach, with a bound of it: of the probe in each fixed
-/// body's field, and of each fixed body in the probe's. It keeps nothing between ticks, and what it lists decides
-/// nothing: a patch too many gives planes that are far from active.
+/// body's field, and of each fixed body in the probe's. What earlier ticks know spares it most looks. What it
+/// lists decides nothing, because a patch that is listed and has no sample within reach gives no plane.
 class ASPERITY_API plane_finder {
  public:
   using policy_tag = collision_tag;
   using found_type = near_samples;
 
   /// @param reach_m gaps up to this are reported, m
-  plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m) noexcept
-      : bodies_(std::move(bodies)), reach_m_(reach_m) {}
+  /// @param known   of the renderer's ticks, shared with its depth backend, which knows more; or nullptr
+  plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m,
+               std::shared_ptr<known_branches> known = nullptr) noexcept;
 
   /// @return ok | capacity_reached
   /// @rt safe
@@ -29,6 +31,7 @@ class ASPERITY_API plane_finder {
 
  private:
   std::shared_ptr<const field_scene> bodies_;
+  std::shared_ptr<known_branches> known_;
   double reach_m_;
 };
 

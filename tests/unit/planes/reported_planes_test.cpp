@@ -86,14 +86,17 @@ TEST(ToldPlanes, DoNotDependOnTheTicksBefore) {
     pose T_wa = laid_down(draw, old, T_wb, 1e-4 * draw.unit());
     const double step_m = walk % 3 == 0 ? 1e-6 : (walk % 3 == 1 ? 5e-5 : 3e-4);
     for (int n = 0; n < 20; ++n) {
+      // As far as a loop that knows its speed wants to know gaps.
+      const double gaps_m = n % 3 == 0 ? 1.0 : 4e-4 * (1.0 + draw.unit());
       T_wa.position += step_m * draw.vector();
       T_wa.rotation = glm::normalize(exp_rotation(20.0 * step_m * draw.vector()) * T_wa.rotation);
       plane_renderer fresh = make_ridged();
       tick a, b;
-      ASSERT_EQ(old.step({T_wa, T_wb}, a), status::ok);
-      ASSERT_EQ(fresh.step({T_wa, T_wb}, b), status::ok);
+      ASSERT_EQ(old.step({T_wa, T_wb, gaps_m}, a), status::ok);
+      ASSERT_EQ(fresh.step({T_wa, T_wb, gaps_m}, b), status::ok);
       expect_same(a.planes, b.planes, n);
       reported += a.planes.size();
+      for (const support_plane& p : a.planes) EXPECT_GT(p.depth_m, -gaps_m);
       EXPECT_EQ(a.force.on_probe_w.force, b.force.on_probe_w.force);
       // Questions about poses near by: the old renderer is asked for a few, the new one for the last alone.
       vec6 moved{};
@@ -107,6 +110,46 @@ TEST(ToldPlanes, DoNotDependOnTheTicksBefore) {
     }
   }
   EXPECT_GT(reported, 10'000U);
+}
+
+// Bounds are kept for eight pairs of bodies. Among a dozen that the probe meets one after the other, and several at once,
+// a renderer that went all the way tells what a new one tells.
+TEST(ReportedPlanes, DoNotDependOnWhichBodiesWereNearBefore) {
+  draws draw{
+      std::mt19937_64(fresh_seed("ReportedPlanes.DoNotDependOnWhichBodiesWereNearBefore", "3 tours of 12 bodies"))};
+  const auto many = [] {
+    bodies out;
+    out.of.probe = ridged().of.probe;
+    out.fields = nullptr;
+    field_scene fields{ridged().fields->probe, {}};
+    for (int b = 0; b < 12; ++b) {
+      out.of.fixed.push_back(ridged().of.fixed[b % 2 == 0 ? 0 : 1]);
+      fields.fixed.push_back(ridged().fields->fixed[b % 2 == 0 ? 0 : 1]);
+    }
+    out.fields = std::make_shared<const field_scene>(std::move(fields));
+    return out;
+  }();
+  plane_renderer old = make_plane_renderer(many.of, many.fields).value();
+  std::size_t reported = 0;
+  for (int tour = 0; tour < 3; ++tour) {
+    // In a row; in the last tour in a heap, where the probe is near all of them.
+    std::vector<pose> T_wb;
+    for (int b = 0; b < 12; ++b) T_wb.push_back({draw.rotation(), {(tour < 2 ? 0.02 : 3e-4) * b, 0.0, -0.012}});
+    for (int stop = 0; stop < 12; ++stop) {
+      pose T_wa{draw.rotation(), T_wb[draw.bits() % 12U].position + vec3(0.0, 0.0, 0.012)};
+      if (tour == 2) T_wa = laid_down(draw, old, T_wb, 1e-4 * draw.unit());
+      for (int n = 0; n < 5; ++n) {
+        T_wa.position += 2e-4 * draw.vector();
+        plane_renderer fresh = make_plane_renderer(many.of, many.fields).value();
+        tick x, y;
+        ASSERT_EQ(old.step({T_wa, T_wb}, x), status::ok);
+        ASSERT_EQ(fresh.step({T_wa, T_wb}, y), status::ok);
+        expect_same(x.planes, y.planes, n);
+        reported += x.planes.size();
+      }
+    }
+  }
+  EXPECT_GT(reported, 1000U);
 }
 
 // Every sample that is near has a plane beside it that is as deep, at the tick's pose and at poses that are asked for.
