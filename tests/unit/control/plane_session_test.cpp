@@ -178,7 +178,7 @@ TEST(plane_session, foresees_what_is_reported_within_three_periods) {
     const std::vector<double> all = depths_with_gaps(0.1, hz, sessions, d);
     const double three = deeper_by(depths_with_gaps(3.0 * fastest_m_per_s / hz, hz, sessions, d), all);
     const double less = deeper_by(depths_with_gaps(0.2 * fastest_m_per_s / hz, hz, sessions, d), all);
-    EXPECT_LT(three, 5e-5) << hz;
+    EXPECT_LT(three, 2e-5) << hz;
     EXPECT_GT(less, 1.5e-4) << hz;
     std::printf("  %.0f Hz: deeper by %.3f mm, and by %.3f mm where a fifteenth of these gaps is reported\n", hz,
                 1e3 * three, 1e3 * less);
