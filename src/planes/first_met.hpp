@@ -22,9 +22,9 @@ struct trial_motions {
 
 /// Keeps, per body and direction, the largest depth known after each of 41 small motions of the probe: none, and in
 /// eight directions across the surface three tilts and two slides. The larger ones are those of a loop that is five
-/// times slower than its renderer was made for: without them a face at 200 Hz stepped by 1.6 N/ms. The coarse geometry moves and the relief is that
-/// of the pose, so a patch of samples is moved by one slope. What is less deep after every motion than something known
-/// is met later whatever the probe does.
+/// times slower than its renderer was made for: without them a face at 200 Hz stepped by 1.6 N/ms. The coarse geometry
+/// moves and the relief is that of the pose, so a patch of samples is moved by one slope. What is less deep after every
+/// motion than something known is met later whatever the probe does.
 class first_met {
  public:
   static constexpr std::size_t motions = 41;

@@ -1,4 +1,4 @@
-// What earlier ticks know of whole branches of samples: upper bounds of depths, so that most branches are not looked at.
+// What earlier ticks know of whole branches of samples: upper bounds of their depths.
 #pragma once
 
 #include <algorithm>
@@ -76,9 +76,9 @@ class branch_bounds {
   double grown_m_ = 0.0;
 };
 
-/// The branch_bounds of the pairs of bodies that were near last. They spare readings and decide nothing. Only a few pairs
-/// have room; where another one comes near, the pair that was not near for the longest time gives its room away, so
-/// memory does not grow with the number of bodies.
+/// The branch_bounds of the pairs of bodies that were near last. They spare readings and decide nothing. Only a few
+/// pairs have room; where another one comes near, the pair that was not near for the longest time gives its room away.
+/// So memory does not grow with the number of bodies.
 ///
 /// A tick moves a sample by less than the slide of the probe's centre of mass and the turn about it times a lever. That
 /// is true of samples within the lever. A sample beyond it lies further from the probe's grid than

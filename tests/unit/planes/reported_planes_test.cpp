@@ -112,8 +112,8 @@ TEST(ToldPlanes, DoNotDependOnTheTicksBefore) {
   EXPECT_GT(reported, 10'000U);
 }
 
-// Bounds are kept for eight pairs of bodies. Among a dozen that the probe meets one after the other, and several at once,
-// a renderer that went all the way tells what a new one tells.
+// Bounds are kept for eight pairs of bodies. Among a dozen that the probe meets one after the other, and all at once, a
+// renderer that went all the way tells what a new one tells.
 TEST(ToldPlanes, DoNotDependOnWhichBodiesWereNearBefore) {
   draws draw{std::mt19937_64(fresh_seed("ToldPlanes.DoNotDependOnWhichBodiesWereNearBefore", "3 tours of 12 bodies"))};
   const auto many = [] {
