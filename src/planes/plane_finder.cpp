@@ -1,12 +1,16 @@
 #include "asperity/planes/plane_finder.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "asperity/core/pose.hpp"
 #include "asperity/field/field_body.hpp"
+#include "model/body_sphere.hpp"
 #include "planes/ball_bound.hpp"
 #include "planes/known_branches.hpp"
 
@@ -58,17 +62,68 @@ bool may_be_near(const sample_tree& of_x, const body_field& in_y, const pose& T_
   return near;
 }
 
+// Of the nodes that may be next to a point of the grid's border.
+double largest_at_border_m(const detail::coarse_grid& grid) noexcept {
+  const auto at_border = [](std::size_t i, std::size_t nodes) { return i < 2 || i + 2 >= nodes; };
+  float largest = -std::numeric_limits<float>::infinity();
+  for (std::size_t k = 0; k < grid.nodes[2]; ++k) {
+    for (std::size_t j = 0; j < grid.nodes[1]; ++j) {
+      const bool whole_row = at_border(k, grid.nodes[2]) || at_border(j, grid.nodes[1]);
+      for (std::size_t i = 0; i < grid.nodes[0]; ++i) {
+        if (!whole_row && !at_border(i, grid.nodes[0])) i = grid.nodes[0] - 2;
+        largest = std::max(largest, grid.value[grid.at(i, j, k)]);
+      }
+    }
+  }
+  return static_cast<double>(largest);
+}
+
 }  // namespace
 
 plane_finder::plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m,
-                           std::shared_ptr<known_branches> known) noexcept
-    : bodies_(std::move(bodies)), known_(std::move(known)), reach_m_(reach_m) {}
+                           std::shared_ptr<known_branches> known)
+    : bodies_(std::move(bodies)), known_(std::move(known)), probe_(around(*bodies_->probe)), reach_m_(reach_m) {
+  const std::vector<field_body_ptr>& fixed = bodies_->fixed;
+  fixed_.reserve(fixed.size());
+  for (std::size_t b = 0; b < fixed.size(); ++b) {
+    const auto same = std::find(fixed.begin(), fixed.begin() + static_cast<std::ptrdiff_t>(b), fixed[b]);
+    const auto first = static_cast<std::size_t>(same - fixed.begin());
+    fixed_.push_back(first < b ? fixed_[first] : around(*fixed[b]));
+  }
+}
+
+// Where two such spheres are further apart than the reach, list() would find both bodies' largest balls too far away.
+// For body_field::most_near() of a ball outside the grid is at most the largest value at the grid's border, a pitch to
+// the node next to it, a pitch and a quarter, the relief and twice the ball's radius, less the way from the grid.
+plane_finder::sphere plane_finder::around(const field_body& body) noexcept {
+  constexpr double pitches = 1.0 + 1.25;
+  const detail::coarse_grid& grid = body.field.smooth;
+  const vec3 low = grid.clamped(vec3(-1e30)), high = grid.clamped(vec3(1e30)), middle = 0.5 * (low + high);
+  const double grid_m = 0.5 * glm::distance(low, high) + std::max(0.0, largest_at_border_m(grid)) +
+                        pitches * grid.pitch_m + body.field.highest_relief_m;
+  sphere out{middle, grid_m};
+  body.samples.walk(
+      [&](const sample_tree::branch& b) noexcept {
+        const sample_ball all = b.ball();
+        out = {all.centre_b, std::max(2.0 * all.radius_m, grid_m + glm::distance(all.centre_b, middle))};
+        return sample_tree::branch_answer::away;
+      },
+      [](const sample_ball&, std::span<const field_sample>) noexcept {});
+  return out;
+}
 
 status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
   out.clear();
+  near_bodies_ = 0;
   const double reach_m = std::min(reach_m_, at.gaps_m);
   if (known_) known_->begin(at);
+  // Most bodies of a large scene are left out by this alone.
+  const vec3 probe_w = at.T_wa * probe_.centre_b;
   for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
+    const sphere& body = fixed_[b];
+    const vec3 body_w = at.T_wb[b] * body.centre_b;
+    if (!may_be_within(reach_m, probe_w, probe_.radius_m, body_w, body.radius_m)) continue;
+    ++near_bodies_;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[b];
     const pose T_ba = inverse(at.T_wb[b]) * at.T_wa, T_ab = inverse(T_ba);
     if (!may_be_near(A.samples, B.field, T_ba, reach_m) && !may_be_near(B.samples, A.field, T_ab, reach_m)) continue;

@@ -39,8 +39,18 @@ class plane_watch {
   /// @pre as many bodies as it was made for   @rt safe
   [[nodiscard]] tick_flag look(const field_scene& bodies, const scene_pose& at, std::span<const support_plane> planes,
                                const vec3& c_a_w) noexcept {
+    for (watched& w : fixed_) w.deepest = nullptr;
+    for (const support_plane& p : planes) {
+      const support_plane*& deepest = fixed_[p.body].deepest;
+      if (deepest == nullptr || p.depth_m > deepest->depth_m) deepest = &p;
+    }
     tick_flag out = tick_flag::none;
-    for (std::size_t b = 0; b < fixed_.size(); ++b) out |= look_at(b, bodies, at, planes, c_a_w);
+    for (std::size_t b = 0; b < fixed_.size(); ++b) {
+      const watched& w = fixed_[b];
+      // Where nothing is near and no point is followed, there is nothing to say.
+      if (w.deepest == nullptr && !w.of_probe.active() && !w.of_fixed.active()) continue;
+      out |= look_at(b, bodies, at, c_a_w);
+    }
     return out;
   }
 
@@ -51,10 +61,11 @@ class plane_watch {
     field_reach reach{};
     passage of_probe{}, of_fixed{};  // a point of the probe in the body's field, and the other way round
     pose T_ba{};
+    const support_plane* deepest = nullptr;  // of the planes that look() is given
   };
 
   [[nodiscard]] tick_flag look_at(std::size_t b, const field_scene& bodies, const scene_pose& at,
-                                  std::span<const support_plane> planes, const vec3& c_a_w) noexcept {
+                                  const vec3& c_a_w) noexcept {
     const body_field &in_a = bodies.probe->field, &in_b = bodies.fixed[b]->field;
     const pose T_ba = inverse(at.T_wb[b]) * at.T_wa, T_ab = inverse(T_ba);
     watched& w = fixed_[b];
@@ -68,11 +79,7 @@ class plane_watch {
     w.T_ba = T_ba;
     if (w.of_probe.go(T_ba, in_b, w.reach) || w.of_fixed.go(T_ab, in_a, probe_)) out |= tick_flag::passed;
 
-    const support_plane* deepest = nullptr;
-    for (const support_plane& p : planes) {
-      if (p.body == b && (deepest == nullptr || p.depth_m > deepest->depth_m)) deepest = &p;
-    }
-    if (deepest != nullptr) {
+    if (const support_plane* const deepest = w.deepest; deepest != nullptr) {
       if (deepest->depth_m > deepest_held_m) out |= tick_flag::not_held;
       // The sample lies on one of the surfaces, and the other surface is beside it by the depth.
       const pose to_a = inverse(at.T_wa), to_b = inverse(at.T_wb[b]);

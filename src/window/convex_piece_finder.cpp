@@ -20,8 +20,20 @@ namespace asperity {
 
 class convex_piece_finder::search {
  public:
-  search(const scene& s, const window_finder_settings& settings) : probe_(s.probe) {
-    for (const model_ptr& m : s.fixed) sides_.emplace_back(probe_, m, settings);
+  search(const scene& s, const window_finder_settings& settings)
+      : clustering_(settings.close_pairs, settings.clusters), builder_(s.probe->mesh.triangles.size(), triangles(s)) {
+    bodies_.reserve(1 + s.fixed.size());
+    bodies_.emplace_back(s.probe);
+    sides_.reserve(s.fixed.size());
+    for (const model_ptr& m : s.fixed) add_side(m, settings);
+    bodies_.shrink_to_fit();
+    caches_.shrink_to_fit();
+    detail::reserve_resident(pairs_, settings.close_pairs);
+    detail::reserve_resident(previous_, tracks_of_one(settings));
+    detail::reserve_resident(current_, tracks_of_one(settings));
+    const std::size_t most_tracks = std::min(sides_.size(), most_touched) * tracks_of_one(settings);
+    detail::reserve_resident(tracks_before_, most_tracks);
+    detail::reserve_resident(tracks_, most_tracks);
   }
 
   status find(const scene_pose& at, contact_set& out) noexcept {
@@ -29,13 +41,15 @@ class convex_piece_finder::search {
     statistics_ = {};
     if (at.T_wb.size() != sides_.size()) return status::not_ready;
     if (!is_valid(at.T_wa) || !std::all_of(at.T_wb.begin(), at.T_wb.end(), is_valid)) return status::invalid_pose;
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      find_pairs(sides_[i], inverse(at.T_wa) * at.T_wb[i]);
-      if (!sides_[i].clustering.build(sides_[i].pairs, std::cos(sides_[i].settings.merge_angle_rad))) {
-        statistics_.dropped_clusters += sides_[i].clustering.left_out();
-      }
-      identify(sides_[i], at.T_wa, at.T_wb[i]);
-      report(sides_[i], static_cast<std::uint32_t>(i), at.T_wa, at.T_wb[i], out);
+    std::swap(tracks_, tracks_before_);
+    tracks_.clear();
+    const vec3 centre_w = at.T_wa * probe().sphere.centre_b;
+    for (std::uint32_t i = 0; i < sides_.size(); ++i) {
+      take_tracks_of(i);
+      // No pair of pieces is within reach then; what was held in the tick before is still asked about.
+      if (previous_.empty() && !within_reach(sides_[i], centre_w, at.T_wb[i])) continue;
+      ++statistics_.near_bodies;
+      find_in(sides_[i], i, at.T_wa, at.T_wb[i], out);
     }
     const bool complete = statistics_.dropped_pairs == 0 && statistics_.dropped_clusters == 0 && out.dropped() == 0;
     return complete ? status::ok : status::capacity_reached;
@@ -45,17 +59,21 @@ class convex_piece_finder::search {
   [[nodiscard]] const window_finder_settings& settings(std::size_t body) const noexcept {
     return sides_[body].settings;
   }
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(probe_, sides_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(bodies_, sides_, caches_, pairs_, clustering_, builder_, previous_, current_,
+                                tracks_before_, tracks_);
+  }
 
  private:
   /// A cached simplex and the pair it belongs to. Pairs share slots: losing one costs a cold start.
   struct cache_slot {
-    std::uint32_t a = 0, b = 0;
+    std::uint32_t side = 0, a = 0, b = 0;
     gjk_cache simplex;
   };
 
   /// A contact of the last tick, to know it again.
   struct track {
+    std::uint32_t side = 0;
     std::uint32_t id = 0;
     std::uint32_t cluster = 0;
     vec3 place_w{0.0};
@@ -68,52 +86,105 @@ class convex_piece_finder::search {
   static constexpr auto unknown = std::numeric_limits<std::uint32_t>::max();
   static constexpr double same_direction = 0.5;  // 60 degrees
 
-  /// Everything between the probe and one fixed body.
-  struct side {
-    collision_body body;
-    window_finder_settings settings;
-    std::vector<cache_slot> cache;
-    std::vector<close_pair> pairs;
-    pair_clustering clustering;
-    contact_builder builder;
-    std::vector<track> previous, current;
+  /// Simplices of the probe against all fixed bodies of one model.
+  struct simplex_cache {
+    std::vector<cache_slot> slots;
 
-    side(const collision_body& probe, const model_ptr& m, const window_finder_settings& s)
-        : body(m),
-          settings(resolve(s, *probe.model, *m)),
-          cache(slots(probe.shapes.size() * body.shapes.size())),
-          clustering(settings.close_pairs, settings.clusters),
-          builder(probe.model->mesh.triangles.size(), m->mesh.triangles.size()) {
-      detail::reserve_resident(pairs, settings.close_pairs);
-      // Held contacts come on top of the clusters.
-      detail::reserve_resident(previous, 2 * settings.clusters);
-      detail::reserve_resident(current, 2 * settings.clusters);
-    }
-
-    [[nodiscard]] std::size_t heap_bytes() const noexcept {
-      return asperity::heap_bytes(body, cache, pairs, clustering, builder, previous, current);
-    }
-
-    static std::size_t slots(std::size_t pairs) noexcept {
-      constexpr std::size_t most = std::size_t{1} << 16;
-      std::size_t n = 1;
-      while (n < pairs && n < most) n *= 2;
-      return n;
-    }
-    cache_slot& slot(std::uint32_t a, std::uint32_t b) noexcept {
-      const std::size_t n = std::size_t{b} * 2654435761U + a;
-      cache_slot& s = cache[n & (cache.size() - 1)];
-      if (s.a != a || s.b != b) s = {a, b, {}};
-      return s;
-    }
+    [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(slots); }
   };
+
+  /// What differs from one fixed body to the next: small, because a scene may have many of one model.
+  struct side {
+    std::uint32_t body = 0;   ///< its model, in bodies_
+    std::uint32_t cache = 0;  ///< in caches_
+    std::uint32_t among = 0;  ///< how many bodies before it have the same model
+    window_finder_settings settings;
+  };
+
+  /// Bodies that may be touched in one tick with as many contacts as window_finder_settings allows; more share their room.
+  static constexpr std::size_t most_touched = 2;
+
+  /// Held contacts come on top of the clusters.
+  static constexpr std::size_t tracks_of_one(const window_finder_settings& s) noexcept { return 2 * s.clusters; }
+
+  static std::size_t triangles(const scene& s) noexcept {
+    std::size_t most = 0;
+    for (const model_ptr& m : s.fixed) most = std::max(most, m->mesh.triangles.size());
+    return most;
+  }
+
+  static std::size_t slots(std::size_t pairs) noexcept {
+    constexpr std::size_t most = std::size_t{1} << 16;
+    std::size_t n = 1;
+    while (n < pairs && n < most) n *= 2;
+    return n;
+  }
+
+  void add_side(const model_ptr& m, const window_finder_settings& settings) {
+    side out{.settings = resolve(settings, *probe().model, *m)};
+    const auto of = [&](const side& s) { return bodies_[s.body].model == m; };
+    if (const auto same = std::find_if(sides_.begin(), sides_.end(), of); same != sides_.end()) {
+      out.body = same->body;
+      out.cache = same->cache;
+      out.among = static_cast<std::uint32_t>(std::count_if(sides_.begin(), sides_.end(), of));
+    } else {
+      if (m != probe().model) {
+        out.body = static_cast<std::uint32_t>(bodies_.size());
+        bodies_.emplace_back(m);
+      }
+      out.cache = static_cast<std::uint32_t>(caches_.size());
+      caches_.push_back({std::vector<cache_slot>(slots(probe().shapes.size() * bodies_[out.body].shapes.size()))});
+    }
+    sides_.push_back(out);
+  }
+
+  [[nodiscard]] const collision_body& probe() const noexcept { return bodies_.front(); }
+  [[nodiscard]] const collision_body& body(const side& s) const noexcept { return bodies_[s.body]; }
+
+  cache_slot& slot(const side& s, std::uint32_t a, std::uint32_t b) noexcept {
+    std::vector<cache_slot>& cache = caches_[s.cache].slots;
+    const std::size_t n = std::size_t{b} * 2654435761U + a + std::size_t{s.among} * 2246822519U;
+    cache_slot& found = cache[n & (cache.size() - 1)];
+    if (found.side != s.among || found.a != a || found.b != b) found = {s.among, a, b, {}};
+    return found;
+  }
+
+  [[nodiscard]] bool within_reach(const side& s, const vec3& probe_centre_w, const pose& T_wb) const noexcept {
+    const body_sphere &A = probe().sphere, &B = body(s).sphere;
+    return may_be_within(s.settings.tolerance_m, probe_centre_w, A.radius_m, T_wb * B.centre_b, B.radius_m);
+  }
+
+  /// The tracks of one side, in the order of the tick before, into previous_.
+  void take_tracks_of(std::uint32_t index) noexcept {
+    previous_.clear();
+    for (const track& t : tracks_before_) {
+      if (t.side == index) previous_.push_back(t);
+    }
+  }
+
+  void find_in(const side& s, std::uint32_t index, const pose& T_wa, const pose& T_wb, contact_set& out) noexcept {
+    find_pairs(s, inverse(T_wa) * T_wb);
+    if (!clustering_.build(pairs_, std::cos(s.settings.merge_angle_rad))) {
+      statistics_.dropped_clusters += clustering_.left_out();
+    }
+    identify(s, T_wa, T_wb);
+    report(s, index, T_wa, T_wb, out);
+    for (track& t : current_) {
+      t.side = index;
+      if (tracks_.size() < tracks_.capacity()) {
+        tracks_.push_back(t);
+      } else {
+        ++statistics_.dropped_clusters;
+      }
+    }
+  }
 
   /// Close pairs of pieces. Where hulls overlap, surfaces may have passed each other by more than the tolerance: then,
   /// and only then, a second pass looks for such pairs as far as the depth limit.
-  void find_pairs(side& s, const pose& T) noexcept {
+  void find_pairs(const side& s, const pose& T) noexcept {
     const placement T_ab(T);
     const std::size_t overlapping = statistics_.penetrating_pairs;
-    s.pairs.clear();
+    pairs_.clear();
     visit_candidates(s, T_ab, {-1.0, s.settings.tolerance_m});
     if (statistics_.penetrating_pairs == overlapping || s.settings.max_depth_m <= s.settings.tolerance_m) return;
     const std::size_t near = statistics_.close_pairs;
@@ -121,17 +192,18 @@ class convex_piece_finder::search {
     statistics_.deep_pairs += statistics_.close_pairs - near;
   }
 
-  void visit_candidates(side& s, const placement& T_ab, const distance_shell& shell) noexcept {
+  void visit_candidates(const side& s, const placement& T_ab, const distance_shell& shell) noexcept {
     const narrow_phase_limits limits{s.settings.tolerance_m, s.settings.max_depth_m};
     const double margin = shell.outer_m;
     const mat3 size(glm::abs(T_ab.rotation[0]), glm::abs(T_ab.rotation[1]), glm::abs(T_ab.rotation[2]));
-    for (std::uint32_t j = 0; j < s.body.shapes.size(); ++j) {
-      const convex_shape& B = s.body.shapes[j];
+    const std::vector<convex_shape>& shapes_b = body(s).shapes;
+    for (std::uint32_t j = 0; j < shapes_b.size(); ++j) {
+      const convex_shape& B = shapes_b[j];
       const vec3 centre = T_ab * B.centre;
       const vec3 extent = size * (0.5 * (B.box.high - B.box.low));
       const bounds box_b{centre - extent, centre + extent};
-      probe_.piece_tree.query({box_b.low - margin, box_b.high + margin}, [&](std::uint32_t i) {
-        const convex_shape& A = probe_.shapes[i];
+      probe().piece_tree.query({box_b.low - margin, box_b.high + margin}, [&](std::uint32_t i) {
+        const convex_shape& A = probe().shapes[i];
         const vec3 apart = centre - A.centre;
         const double reach = A.radius + B.radius + margin;
         if (glm::dot(apart, apart) > reach * reach) return;
@@ -141,7 +213,7 @@ class convex_piece_finder::search {
         pair.a = i;
         pair.b = j;
         narrow_phase_cost cost;
-        evaluate_pair(A, B, T_ab, limits, shell, s.slot(i, j).simplex, pair, cost);
+        evaluate_pair(A, B, T_ab, limits, shell, slot(s, i, j).simplex, pair, cost);
         statistics_.gjk_iterations = std::max(statistics_.gjk_iterations, cost.gjk_iterations);
         if (cost.overlapping) ++statistics_.penetrating_pairs;
         if (pair.kind == pair_kind::apart) return;
@@ -153,20 +225,20 @@ class convex_piece_finder::search {
     }
   }
 
-  void add_pair(side& s, const close_pair& pair) noexcept {
+  void add_pair(const side& s, const close_pair& pair) noexcept {
     ++statistics_.close_pairs;
     if (pair.kind == pair_kind::passive) ++statistics_.passive_pairs;
-    if (s.pairs.size() == s.settings.close_pairs) {
+    if (pairs_.size() == s.settings.close_pairs) {
       ++statistics_.dropped_pairs;
     } else {
-      s.pairs.push_back(pair);
+      pairs_.push_back(pair);
     }
   }
 
-  [[nodiscard]] static const close_pair& deepest_pair(const side& s, const pair_cluster& c) noexcept {
+  [[nodiscard]] const close_pair& deepest_pair(const pair_cluster& c) const noexcept {
     const close_pair* deepest = nullptr;
-    for (const std::uint32_t m : s.clustering.members(c).first(c.active)) {
-      if (deepest == nullptr || s.pairs[m].separation_m < deepest->separation_m) deepest = &s.pairs[m];
+    for (const std::uint32_t m : clustering_.members(c).first(c.active)) {
+      if (deepest == nullptr || pairs_[m].separation_m < deepest->separation_m) deepest = &pairs_[m];
     }
     return *deepest;  // a cluster has at least its seed
   }
@@ -182,29 +254,28 @@ class convex_piece_finder::search {
   /// not the same one.
   [[nodiscard]] bool is_to_hold(const side& s, const track& old, const pose& T_wa, const pose& T_wb) const noexcept {
     if (!old.kept.valid() || old.kept.moved_m(T_wa, T_wb) > old.reach_m) return false;
-    if (has_passed_through(probe_.model->box, s.body.model->box, old.n_ab_w, T_wa, T_wb)) return false;
+    if (has_passed_through(probe().model->box, body(s).model->box, old.n_ab_w, T_wa, T_wb)) return false;
     if (old.kept.depth_m(T_wa, T_wb) > s.settings.max_depth_m) return true;
     if (!old.held || old.kept.separation_m(T_wa, T_wb) > s.settings.tolerance_m) return false;
-    return std::none_of(s.current.begin(), s.current.end(), [&](const track& now) { return may_be(now, old); });
+    return std::none_of(current_.begin(), current_.end(), [&](const track& now) { return may_be(now, old); });
   }
 
   /// Gives every cluster the id and axes of the contact that was nearest to it in the last tick, or new ones. Clusters
   /// that belong to a held contact are part of it. While one is held, a cluster that comes up deep inside is the way
   /// out on another side: it is left out.
-  void identify(side& s, const pose& T_wa, const pose& T_wb) noexcept {
-    const auto clusters = s.clustering.clusters();
-    std::swap(s.previous, s.current);
-    s.current.clear();
+  void identify(const side& s, const pose& T_wa, const pose& T_wb) noexcept {
+    const auto clusters = clustering_.clusters();
+    current_.clear();
     for (std::uint32_t i = 0; i < clusters.size(); ++i) {
       track now;
       now.id = unknown;
       now.cluster = i;
       now.place_w = T_wa * clusters[i].place;
       now.n_ab_w = T_wa.rotation * clusters[i].n_ab;
-      s.current.push_back(now);
+      current_.push_back(now);
     }
     bool holding = false;
-    for (track& old : s.previous) {
+    for (track& old : previous_) {
       if (old.held || old.kept.valid()) {
         const track moved = carried(old, T_wa, T_wb);
         const bool hold = is_to_hold(s, moved, T_wa, T_wb);
@@ -213,30 +284,30 @@ class convex_piece_finder::search {
         holding = holding || hold;
       }
     }
-    match(s);
+    match();
     if (holding) {
-      std::erase_if(s.current, [&](const track& now) {
+      std::erase_if(current_, [&](const track& now) {
         const bool left_out =
-            now.id == unknown && -deepest_pair(s, clusters[now.cluster]).separation_m > s.settings.tolerance_m;
+            now.id == unknown && -deepest_pair(clusters[now.cluster]).separation_m > s.settings.tolerance_m;
         if (left_out) ++statistics_.unheld_clusters;
         return left_out;
       });
-      for (const track& old : s.previous) {
+      for (const track& old : previous_) {
         if (!old.held) continue;
-        if (s.current.size() == 2 * s.settings.clusters) {
+        if (current_.size() == tracks_of_one(s.settings)) {
           ++statistics_.dropped_clusters;
         } else {
-          s.current.push_back(old);
+          current_.push_back(old);
         }
       }
     }
-    for (track& now : s.current) {
+    for (track& now : current_) {
       if (now.id == unknown) now.id = next_id_++;
       const vec3 u = now.u_w - glm::dot(now.u_w, now.n_ab_w) * now.n_ab_w;
       const double length = std::sqrt(glm::dot(u, u));
       now.u_w = length > 1e-3 ? u / length : any_orthogonal(now.n_ab_w);
     }
-    std::sort(s.current.begin(), s.current.end(), [](const track& x, const track& y) { return x.id < y.id; });
+    std::sort(current_.begin(), current_.end(), [](const track& x, const track& y) { return x.id < y.id; });
   }
 
   /// A track whose place and direction went with its bodies since the last tick.
@@ -248,36 +319,36 @@ class convex_piece_finder::search {
 
   /// Nearest first: a contact of the last tick hands its id on once; a held one takes in every cluster that it is
   /// nearest to.
-  static void match(side& s) noexcept {
+  void match() noexcept {
     for (;;) {
       std::size_t best = 0, best_old = 0;
       double nearest = std::numeric_limits<double>::infinity();
-      for (std::size_t i = 0; i < s.current.size(); ++i) {
-        const track& now = s.current[i];
+      for (std::size_t i = 0; i < current_.size(); ++i) {
+        const track& now = current_[i];
         if (now.id != unknown) continue;
-        for (std::size_t k = 0; k < s.previous.size(); ++k) {
-          const double distance = glm::distance(now.place_w, s.previous[k].place_w);
-          if (distance >= nearest || !may_be(now, s.previous[k])) continue;
+        for (std::size_t k = 0; k < previous_.size(); ++k) {
+          const double distance = glm::distance(now.place_w, previous_[k].place_w);
+          if (distance >= nearest || !may_be(now, previous_[k])) continue;
           best = i;
           best_old = k;
           nearest = distance;
         }
       }
       if (nearest == std::numeric_limits<double>::infinity()) return;
-      if (s.previous[best_old].held) {
-        s.current.erase(s.current.begin() + static_cast<std::ptrdiff_t>(best));
+      if (previous_[best_old].held) {
+        current_.erase(current_.begin() + static_cast<std::ptrdiff_t>(best));
         continue;
       }
-      s.current[best].id = s.previous[best_old].id;
-      s.current[best].u_w = s.previous[best_old].u_w;
-      s.previous.erase(s.previous.begin() + static_cast<std::ptrdiff_t>(best_old));
+      current_[best].id = previous_[best_old].id;
+      current_[best].u_w = previous_[best_old].u_w;
+      previous_.erase(previous_.begin() + static_cast<std::ptrdiff_t>(best_old));
     }
   }
 
-  void report(side& s, std::uint32_t body, const pose& T_wa, const pose& T_wb, contact_set& out) noexcept {
-    for (track& now : s.current) {
+  void report(const side& s, std::uint32_t index, const pose& T_wa, const pose& T_wb, contact_set& out) noexcept {
+    for (track& now : current_) {
       contact c;
-      c.body = body;
+      c.body = index;
       c.id = now.id;
       c.window.u_w = now.u_w;
       c.held = now.held;
@@ -290,25 +361,33 @@ class convex_piece_finder::search {
       // A contact that moved no further than across its window is the same one.
       now.reach_m = 2.0 * c.window.half_size_m + s.settings.tolerance_m;
       if (now.held) ++statistics_.held_contacts;
-      (void)out.add(c, s.builder.patch_a(), s.builder.patch_b());  // a refusal is counted in out.dropped()
+      (void)out.add(c, builder_.patch_a(), builder_.patch_b());  // a refusal is counted in out.dropped()
     }
   }
 
-  [[nodiscard]] bool build(side& s, track& now, const pose& T_wa, const pose& T_wb, contact& c) noexcept {
+  [[nodiscard]] bool build(const side& s, track& now, const pose& T_wa, const pose& T_wb, contact& c) noexcept {
     if (now.held) {
       now.kept.last_b = inverse(T_wb) * (T_wa * now.kept.p_a);
-      return s.builder.build(probe_, s.body, T_wa, T_wb, s.settings, now.kept, c);
+      return builder_.build(probe(), body(s), T_wa, T_wb, s.settings, now.kept, c);
     }
-    const pair_cluster& cluster = s.clustering.clusters()[now.cluster];
-    if (!s.builder.build(probe_, s.body, T_wa, T_wb, s.settings, s.pairs, s.clustering.members(cluster), cluster, c)) {
+    const pair_cluster& cluster = clustering_.clusters()[now.cluster];
+    if (!builder_.build(probe(), body(s), T_wa, T_wb, s.settings, pairs_, clustering_.members(cluster), cluster, c)) {
       return false;
     }
-    now.kept = keep_contact(c, cluster, deepest_pair(s, cluster), s.builder.near(), T_wa, T_wb);
+    now.kept = keep_contact(c, cluster, deepest_pair(cluster), builder_.near(), T_wa, T_wb);
     return true;
   }
 
-  collision_body probe_;
+  std::vector<collision_body> bodies_;  ///< of every model, the probe's first
   std::vector<side> sides_;
+  std::vector<simplex_cache> caches_;  ///< of every model of a fixed body
+  // Of the side that is looked at.
+  std::vector<close_pair> pairs_;
+  pair_clustering clustering_;
+  contact_builder builder_;
+  std::vector<track> previous_, current_;
+  // Of all sides, by side and id.
+  std::vector<track> tracks_before_, tracks_;
   std::uint32_t next_id_ = 0;
   finder_statistics statistics_;
 };

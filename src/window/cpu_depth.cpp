@@ -49,13 +49,13 @@ class cpu_depth::grid_search {
         b_(samples(), triangles(1, scene_.fixed.size())),
         weight_(samples()) {
     if (!ready_) return;
-    bodies_.emplace_back(*scene_.probe);
-    const detail::texture_scale probe = measure_texture(*scene_.probe, bodies_.front());
-    for (const model_ptr& model : scene_.fixed) {
-      bodies_.emplace_back(*model);
-      pairs_.push_back(scale_of(settings_, probe, measure_texture(*model, bodies_.back()),
-                                std::min(scene_.probe->box.diagonal(), model->box.diagonal())));
-    }
+    surfaces_.emplace_back(*scene_.probe);
+    surface_of_.push_back(0);
+    const detail::texture_scale probe = measure_texture(*scene_.probe, surfaces_.front());
+    for (std::size_t b = 0; b < scene_.fixed.size(); ++b) add_fixed(b, probe);
+    surfaces_.shrink_to_fit();
+    surface_of_.shrink_to_fit();
+    pairs_.shrink_to_fit();
   }
 
   [[nodiscard]] status measure(const scene_pose& at, const contact_set& contacts, std::span<penetration> out) noexcept {
@@ -75,7 +75,7 @@ class cpu_depth::grid_search {
   [[nodiscard]] const window_depth_settings& settings() const noexcept { return settings_; }
   [[nodiscard]] const detail::pair_scale& pair(std::size_t body) const noexcept { return pairs_[body]; }
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(scene_.fixed, a_, b_, weight_, bodies_, pairs_);
+    return asperity::heap_bytes(scene_.fixed, a_, b_, weight_, surfaces_, surface_of_, pairs_);
   }
 
  private:
@@ -110,6 +110,27 @@ class cpu_depth::grid_search {
   }
   [[nodiscard]] const textured_model& body(std::size_t i) const noexcept {
     return i == 0 ? *scene_.probe : *scene_.fixed[i - 1];
+  }
+  [[nodiscard]] const detail::surface_index& surface(std::size_t i) const noexcept { return surfaces_[surface_of_[i]]; }
+
+  // Bodies of one model share what is known of its surface, and of its scale against the probe.
+  void add_fixed(std::size_t b, const detail::texture_scale& probe) {
+    const model_ptr& model = scene_.fixed[b];
+    const auto begin = scene_.fixed.begin();
+    const auto same = std::find(begin, begin + static_cast<std::ptrdiff_t>(b), model);
+    if (const auto first = static_cast<std::size_t>(same - begin); first < b) {
+      surface_of_.push_back(surface_of_[first + 1]);
+      pairs_.push_back(pairs_[first]);
+      return;
+    }
+    if (model == scene_.probe) {
+      surface_of_.push_back(0);
+    } else {
+      surface_of_.push_back(static_cast<std::uint32_t>(surfaces_.size()));
+      surfaces_.emplace_back(*model);
+    }
+    pairs_.push_back(scale_of(settings_, probe, measure_texture(*model, surface(b + 1)),
+                              std::min(scene_.probe->box.diagonal(), model->box.diagonal())));
   }
 
   [[nodiscard]] penetration measure_one(const scene_pose& at, const contact_set& contacts, const contact& c) noexcept {
@@ -163,13 +184,13 @@ class cpu_depth::grid_search {
 
   void project(side& s, std::size_t body_index, std::span<const std::uint32_t> patch, const detail::window_map& map,
                detail::layer which, const detail::sample_grid& grid) noexcept {
-    s.patch.project(body(body_index).mesh, bodies_[body_index], patch, map, which, settings_.facing_cosine);
+    s.patch.project(body(body_index).mesh, surface(body_index), patch, map, which, settings_.facing_cosine);
     rasterise(s.patch, grid, which, s.field);
   }
 
   [[nodiscard]] detail::body_view view(const side& s, std::size_t body_index,
                                        const detail::window_map& map) const noexcept {
-    return {body(body_index).texture, bodies_[body_index], s.patch, map};
+    return {body(body_index).texture, surface(body_index), s.patch, map};
   }
 
   [[nodiscard]] double depth_of(const detail::deepest_sample& d, const detail::sample_grid& grid) const noexcept {
@@ -245,8 +266,9 @@ class cpu_depth::grid_search {
   bool ready_;
   side a_, b_;
   std::vector<double> weight_;
-  std::vector<detail::surface_index> bodies_;  ///< the probe, then the fixed bodies
-  std::vector<detail::pair_scale> pairs_;      ///< probe against each fixed body
+  std::vector<detail::surface_index> surfaces_;  ///< of every model, the probe's first
+  std::vector<std::uint32_t> surface_of_;        ///< of the probe, then of each fixed body: in surfaces_
+  std::vector<detail::pair_scale> pairs_;        ///< probe against each fixed body
 };
 
 cpu_depth::cpu_depth(asperity::scene scene, const window_depth_settings& settings)

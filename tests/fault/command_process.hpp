@@ -57,6 +57,9 @@ class running_command {
   bool reaped_ = false;
 };
 
+/// Lines on stderr but those that only note something, as of the machine's speed before a session.
+[[nodiscard]] std::string without_notes(const std::string& err);
+
 /// A folder of its own for every test, removed afterwards.
 class command_test : public testing::Test {
  protected:
@@ -69,8 +72,8 @@ class command_test : public testing::Test {
   /// Names of everything in the folder.
   [[nodiscard]] std::set<std::string> files() const;
 
-  /// Runs the command, with and without --json, and expects: this exit status, one line on stderr that begins with
-  /// "asperity: ", nothing else on stdout but (with --json) one error document of this code, and a folder that is as it
+  /// Runs the command, with and without --json, and expects: this exit status, one line on stderr, notes aside, that begins
+  /// with "asperity: ", nothing else on stdout but (with --json) one error document of this code, and a folder that is as it
   /// was before. @return the message
   std::string expect_failure(const arguments& args, int exit_status, const std::string& code,
                              const process_options& options = {}) const;

@@ -337,7 +337,11 @@ TEST_F(documents, run) {
                   "fault_record", "interrupted",      "recording",    "plot",
                   "units",        "device_recording", "replay",       "real_time",
                   "signal",       "driver_fault",     "rates",        "vibration",
-                  "wall",         "coupling"});
+                  "wall",         "coupling",         "rate_check"});
+  for (const char* loop : {"contact_loop", "device_loop"}) {
+    expect_keys(d[loop], {"rate", "ticks", "idle", "late", "skipped", "over_period", "kept", "tick_time"});
+  }
+  expect_keys(d["rate_check"], {"tick_time", "processor_p99", "kept", "kept_rate"});
   EXPECT_EQ(d["formulation"], "planes");
   for (const char* key : {"band", "rest", "force", "torque"}) EXPECT_TRUE(d["vibration"].contains(key)) << key;
   EXPECT_EQ(d["device_loop"]["ticks"], 800);
@@ -408,6 +412,8 @@ TEST_F(documents, bench) {
     EXPECT_GE(times["p99"], times["p50"]) << what;
   }
   EXPECT_GT(d["ratios"]["contact_central_to_soft"], 0.0);
+  EXPECT_GT(d["ratios"]["tick_planes_with_far_bodies"], 0.0);
+  EXPECT_GT(d["ratios"]["tick_soft_with_far_bodies"], 0.0);
 }
 
 TEST_F(documents, examples_of_the_reference_page_work) {

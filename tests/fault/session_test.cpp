@@ -94,6 +94,49 @@ TEST_F(session, recording_is_a_table_that_ends_with_no_wrench) {
   }
 }
 
+// A row for each device tick at its own rate, the same bytes again, and what the document says of both loops.
+TEST_F(session, has_the_rates_that_it_is_given) {
+  for (const auto& [device_hz, contact_hz] : {std::pair{200, 4000}, {1000, 200}, {4000, 1000}, {10000, 10000}}) {
+    const arguments rates{
+        "--seconds", "0.3", "--device-rate", std::to_string(device_hz), "--contact-rate", std::to_string(contact_hz)};
+    const json document = expect_document(session_to("first.csv", rates), "asperity.run/1");
+    ASSERT_EQ(run(session_to("second.csv", rates)).exit_status, 0);
+    EXPECT_TRUE(read("first.csv") == read("second.csv")) << device_hz << ' ' << contact_hz;
+    const auto rows = table("first.csv");
+    ASSERT_GT(rows.size(), static_cast<std::size_t>(0.3 * device_hz));
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      ASSERT_NEAR(std::stod(rows[i][0]), static_cast<double>(i - 1) / device_hz, 1e-12);
+    }
+    const json &device = document["device_loop"], &contact = document["contact_loop"];
+    EXPECT_EQ(device["rate"], device_hz);
+    EXPECT_EQ(contact["rate"], contact_hz);
+    EXPECT_EQ(device["ticks"], 3 * device_hz / 10);
+    EXPECT_NEAR(contact["ticks"].get<double>(), 0.3 * std::min(device_hz, contact_hz), 2.0);
+    EXPECT_EQ(contact["idle"].get<int>() > 10, contact_hz > device_hz);
+    EXPECT_EQ(contact["late"], contact["over_period"]);
+    EXPECT_TRUE(contact["kept"].is_boolean());
+    EXPECT_EQ(document["fault"], "none");
+    EXPECT_EQ(document["rates"]["lost_periods"], 0);
+    const json& check = document["rate_check"];
+    EXPECT_GE(check["tick_time"]["count"].get<int>(), 5);
+    EXPECT_LE(check["tick_time"]["count"].get<int>(), 200);
+    EXPECT_EQ(check["kept"].get<bool>(), check["tick_time"]["p99"].get<double>() <= 1.0 / contact_hz);
+    EXPECT_TRUE(!check["kept"].get<bool>() || check["kept_rate"].is_null());
+  }
+}
+
+TEST_F(session, says_before_it_begins_whether_the_rate_is_kept) {
+  const arguments brief{"--seconds", "0.05"};
+  const outcome told = run(session_to("session.csv", brief));
+  EXPECT_EQ(told.exit_status, 0);
+  EXPECT_EQ(told.err.find("asperity: note: contact loop: a tick takes "), 0U) << told.err;
+  EXPECT_EQ(std::count(told.err.begin(), told.err.end(), '\n'), 1) << told.err;
+  arguments quiet = session_to("session.csv", brief);
+  quiet.insert(quiet.begin(), "--quiet");
+  EXPECT_EQ(run(quiet).err, "");
+  EXPECT_FALSE(expect_document(session_to("session.csv", brief), "asperity.run/1")["rate_check"].is_null());
+}
+
 TEST_F(session, interrupted_on_the_real_clock) {
   const outcome stopped = interrupted(session_to("session.csv", {"--seconds", "600", "--clock", "real", "--json"}));
   EXPECT_EQ(stopped.exit_status, 130);

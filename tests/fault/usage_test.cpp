@@ -50,6 +50,18 @@ TEST_F(usage, bad_number) {
   }
 }
 
+TEST_F(usage, rates_that_no_loop_is_made_for) {
+  for (const char* option : {"--device-rate", "--contact-rate"}) {
+    for (const char* rate : {"99.9", "10000.1", "0", "-1000", "nan", "inf", "1e9", "1 kHz", ""}) {
+      const std::string message =
+          expect_failure({"run", "--probe", path("a.glb"), "--fixed", path("b.glb"), option, rate}, 2, "usage");
+      EXPECT_NE(message.find(option), std::string::npos) << message;
+      EXPECT_NE(message.find("'" + std::string(rate) + "' is not a rate from 100 to 10000 Hz"), std::string::npos)
+          << message;
+    }
+  }
+}
+
 TEST_F(usage, words_that_are_not_choices) {
   const arguments session{"run", "--probe", path("a.glb"), "--fixed", path("b.glb")};
   for (const arguments& wrong : std::initializer_list<arguments>{{"--motion", "dance"},

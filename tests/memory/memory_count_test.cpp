@@ -1,4 +1,5 @@
 // The bytes that a model and a renderer report are those that they have asked for, to the byte.
+#include <cstdio>
 #include <gtest/gtest.h>
 #include <memory>
 #include <optional>
@@ -104,6 +105,28 @@ TEST_F(RendererMemory, AForgottenPartWouldShow) {
     EXPECT_GT(part, 0U);
     EXPECT_NE(feel_->memory_bytes() - part, sizeof(window_renderer) + asked_);
   }
+}
+
+// What is known of a model is kept once, and what a tick works with once: a body more is its place, its scale and where
+// its model is. Contacts of two bodies at once have room of their own.
+TEST_F(RendererMemory, OfManyBodiesOfOneModelIsThatOfOne) {
+  const auto bytes = [&](std::size_t count) {
+    const std::size_t before = bytes_on_loan();
+    const auto made = make_window_renderer({model_, std::vector<model_ptr>(count, other_)});
+    EXPECT_TRUE(made);
+    const std::size_t asked = bytes_on_loan() - before;
+    EXPECT_EQ(made.value().memory_bytes(), sizeof(window_renderer) + asked);
+    return asked;
+  };
+  const std::size_t one = bytes(1), two = bytes(2), hundred = bytes(100);
+  std::printf("  1 body %zu bytes, 2 bodies %zu, 100 bodies %zu\n", one, two, hundred);
+  EXPECT_LT(hundred - two, 98U * 512U);
+  EXPECT_LT(static_cast<double>(hundred), 1.1 * static_cast<double>(one));
+  // As many models cost what they cost each.
+  scene of_their_own{model_, {}};
+  for (int i = 0; i < 4; ++i) of_their_own.fixed.push_back(std::make_shared<const textured_model>(*other_));
+  EXPECT_GT(make_window_renderer(of_their_own).value().memory_bytes(),
+            two + sizeof(window_renderer) + 3 * collision_body(other_).heap_bytes());
 }
 
 /// A finder that holds memory and does not say so.

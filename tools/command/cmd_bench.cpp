@@ -54,6 +54,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
   const time_summary central_tick = summarise(m.central_tick_s);
   const time_summary planes_tick = summarise(m.planes_tick_s);
   const time_summary every_sample = summarise(m.every_sample_s);
+  const time_summary planes_far_tick = summarise(m.planes_far_tick_s);
+  const time_summary soft_far_tick = summarise(m.soft_far_tick_s);
   const auto mean_of = [&](std::uint32_t depth_work::*part) {
     double sum = 0.0;
     for (const depth_work& w : m.planes_work) sum += static_cast<double>(w.*part);
@@ -91,6 +93,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                    {{"contact_central_to_soft", central.p50_s / soft.p50_s},
                     {"every_sample_to_tick_planes", every_sample.p50_s / planes_tick.p50_s},
                     {"tick_planes_p99_to_p50", planes_tick.p99_s / planes_tick.p50_s},
+                    {"tick_planes_with_far_bodies", planes_far_tick.p50_s / planes_tick.p50_s},
+                    {"tick_soft_with_far_bodies", soft_far_tick.p50_s / soft_tick.p50_s},
                     {"tick_least_motion_to_soft", least_motion_tick.p50_s / soft_tick.p50_s},
                     {"tick_least_motion_to_soft_p99", least_motion_tick.p99_s / soft_tick.p99_s},
                     {"tick_central_to_soft", central_tick.p50_s / soft_tick.p50_s},
@@ -127,6 +131,9 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                                             brief(100.0 * query.p50_s / soft_tick.p50_s) + " % collision)");
   out.text += row("tick, central diff.", to_text(central_tick) + "  (" + brief(1.0 / central_tick.p50_s) + " Hz, " +
                                              ratio_text(central_tick.p50_s / soft_tick.p50_s) + " soft)");
+  out.text += row("with " + std::to_string(far_bodies) + " bodies out of reach",
+                  ratio_text(planes_far_tick.p50_s / planes_tick.p50_s) + " tick, planes; " +
+                      ratio_text(soft_far_tick.p50_s / soft_tick.p50_s) + " tick, soft maximum");
   return out;
 }
 

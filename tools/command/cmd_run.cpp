@@ -1,5 +1,4 @@
 // asperity run: a session of the two-rate loop with a device.
-#include <cmath>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "known_devices.hpp"
 #include "options.hpp"
 #include "poses.hpp"
+#include "rate_check.hpp"
 #include "render_kinds.hpp"
 #include "run_abandon.hpp"
 #include "run_command.hpp"
@@ -51,6 +51,7 @@ result<void> check_options(const run_command& options) {
     return error{error_code::invalid_argument,
                  "--backend exact takes as long as its search does, no contact would be in time: use --clock virtual"};
   }
+  const double longest_recorded_s = most_recorded_ticks / options.device_rate_hz;
   if (!options.record_device.empty() && options.seconds.value_or(usual_seconds) > longest_recorded_s) {
     return error{error_code::invalid_argument, "--record-device holds " + brief(longest_recorded_s) +
                                                    " s at the most, more calls are in no recording: use --seconds " +
@@ -130,6 +131,25 @@ result<void> make_ready(any_renderer& feel, const gpu_use& gpu, const given_pose
   return {};
 }
 
+// Whether this machine keeps the contact loop's rate. Nothing for contacts that a session does not wait for, and on a
+// GPU, whose ticks are counted and whose contexts stay with one thread.
+std::optional<rate_check> look_at_rate(const render_options& chosen, any_renderer& feel,
+                                       const scene_placement& placement, const std::optional<pose>& touch_T_wa,
+                                       const control_settings& control) {
+  if (chosen.backend != "cpu") return std::nullopt;
+  const auto look = [&](any_renderer& with) -> std::optional<rate_check> {
+    if (touch_T_wa) return check_rate(with, placement, *touch_T_wa, control, chosen.periods);
+    const result<pose> touch = first_touch(with, placement.T_wb);
+    if (!touch) return std::nullopt;
+    return check_rate(with, placement, *touch, control, chosen.periods);
+  };
+  // Windows go on from those of the tick before, so a session begins with a renderer that knows of none of
+  // these. The others tell the same whatever they were asked before.
+  if (formulation_name(chosen) != "window") return look(feel);
+  result<any_renderer> another = make_chosen_renderer(feel.scene(), chosen);
+  return another ? look(*another) : std::nullopt;
+}
+
 error gpu_lost(const session_record& tick) {
   return {error_code::unsupported, "the GPU gave no answer after " + brief(1e-9 * static_cast<double>(tick.time_ns)) +
                                        " s, the wrench went to zero: its driver lost the context or reports an error; "
@@ -138,7 +158,7 @@ error gpu_lost(const session_record& tick) {
 
 result<answer> run_session(const run_command& options, const common_options& common) {
   if (const result<void> ok = check_options(options); !ok) return ok.error();
-  session_findings found;
+  session_findings found(periods_of(options));
   result<given_poses> poses = read_poses(options);
   if (!poses) return poses.error();
   result<session_files> files = session_files::open(options);
@@ -167,17 +187,19 @@ result<answer> run_session(const run_command& options, const common_options& com
   }
   if (const result<void> opened = open_device(options, *bodies, felt); !opened) return opened.error();
   render_options chosen = options.render;
-  chosen.contact_rate_hz = options.contact_rate_hz;
+  chosen.periods = periods_of(options);
   result<any_renderer> feel = make_chosen_renderer(std::move(bodies).value(), chosen);
   if (!feel) return feel.error();
   const std::shared_ptr<gpu_use> gpu = gpu_use_of(*feel);
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   if (gpu && !common.quiet) warn(*gpu);
+  std::optional<pose> touch_T_wa;
   if (!poses->T_wa) {
-    const result<pose> start = start_above(options, *feel, poses->T_wb);
+    const result<pose> touch = first_touch(*feel, poses->T_wb);
     if (gpu && gpu->failed > 0) return gpu_failed(*gpu);
-    if (!start) return start.error();
-    poses->T_wa = *start;
+    if (!touch) return touch.error();
+    touch_T_wa = *touch;
+    poses->T_wa = start_above(options, *touch);
   }
   if (gpu) {
     if (const result<void> ready = make_ready(*feel, *gpu, *poses); !ready) return ready.error();
@@ -193,28 +215,31 @@ result<answer> run_session(const run_command& options, const common_options& com
   control.probe = found.probe = solid_probe(shape);
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
   control.coupling = found.coupling.settings;
+  found.rate = look_at_rate(chosen, *feel, {poses->T_wb, shape.centre_of_mass}, touch_T_wa, control);
+  if (found.rate && !common.quiet && !common.json) complain("note: " + to_text(*found.rate));
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
-  result<session_outcome> ended =
-      run_session({.feel = std::move(feel).value(),
-                   .placement = {poses->T_wb, shape.centre_of_mass},
-                   .device = std::move(device),
-                   .control = control,
-                   .clock = clock_of(options) == "real" ? session_clock::real_time : session_clock::virtual_time,
-                   .seconds = options.seconds.value_or(felt.replay ? felt.replay->seconds() : usual_seconds),
-                   .contact_period_ns = std::llround(1e9 / options.contact_rate_hz),
-                   .ticks = felt.replay ? std::optional(felt.replay->ticks()) : std::nullopt,
-                   .on_tick = [&](const session_record& tick) -> result<void> {
-                     found.summary.add(tick);
-                     if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
-                     return files->add(tick);
-                   },
-                   .on_start =
-                       [&](const real_time_grants& got) {
-                         if (!common.quiet) complain("note: real time: " + to_text(got));
-                       },
-                   .guard = guard ? &*guard : nullptr,
-                   .rescue = &rescue},
-                  progress);
+  result<session_outcome> ended = run_session(
+      {.feel = std::move(feel).value(),
+       .placement = {poses->T_wb, shape.centre_of_mass},
+       .device = std::move(device),
+       .control = control,
+       .clock = clock_of(options) == "real" ? session_clock::real_time : session_clock::virtual_time,
+       .seconds =
+           options.seconds.value_or(felt.replay ? felt.replay->seconds(periods_of(options).device_ns) : usual_seconds),
+       .periods = periods_of(options),
+       .ticks = felt.replay ? std::optional(felt.replay->ticks()) : std::nullopt,
+       .on_tick = [&](const session_record& tick) -> result<void> {
+         found.summary.add(tick);
+         if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
+         return files->add(tick);
+       },
+       .on_start =
+           [&](const real_time_grants& got) {
+             if (!common.quiet) complain("note: real time: " + to_text(got));
+           },
+       .guard = guard ? &*guard : nullptr,
+       .rescue = &rescue},
+      progress);
   if (!ended) return ended.error();
   if (felt.replay) found.replay = felt.replay->outcome();
   if (felt.known) found.driver = felt.known->what_happened();
@@ -263,9 +288,12 @@ void add_run(command_line& line) {
   sub.add_option("--press", o->press_m, "How far below the first touch the hand aims (m)")
       ->check(positive_number_error, "NUMBER > 0")
       ->capture_default_str();
-  sub.add_option("--contact-rate", o->contact_rate_hz, "Rate of the contact loop (Hz); the device loop runs at 1000")
-      ->check(positive_number_error, "NUMBER > 0")
-      ->check(CLI::Range(1.0, 100000.0))
+  sub.add_option("--device-rate", o->device_rate_hz, "Rate of the device loop (Hz), 100 to 10000")
+      ->check(loop_rate_error, "RATE")
+      ->capture_default_str();
+  sub.add_option("--contact-rate", o->contact_rate_hz,
+                 "Rate of the contact loop (Hz), 100 to 10000; faster than the device loop, contacts are fresher")
+      ->check(loop_rate_error, "RATE")
       ->capture_default_str();
   sub.add_option("--coupling", o->coupling_n_per_m,
                  "Stiffness of the virtual coupling (N/m); by default what the device can show, and 500 with other "

@@ -14,8 +14,8 @@
 
 namespace asperity::command {
 
-/// Longest session whose calls fit into one recording, s.
-inline constexpr double longest_recorded_s = 4000.0;
+/// Device ticks of the longest session whose calls fit into one recording: 4000 s at 1 kHz.
+inline constexpr double most_recorded_ticks = 4e6;
 
 /// Calls come from the device's thread and wait in a ring; drain() writes them. The file appears with commit().
 class device_recorder {

@@ -195,7 +195,7 @@ result<device_replay> device_replay::open(const std::filesystem::path& file) {
 
 any_device device_replay::device() const { return any_device(shared_replay(on_record_)); }
 
-double device_replay::seconds() const noexcept {
+double device_replay::seconds(std::int64_t device_period_ns) const noexcept {
   if (ticks_.of_session == 0) return 0.0;
   const std::int64_t last_ns = ticks_.times_ns[ticks_.of_session - 1];
   return 1e-9 * static_cast<double>(last_ns - ticks_.times_ns.front() + device_period_ns);

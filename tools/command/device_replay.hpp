@@ -41,7 +41,7 @@ class device_replay {
   [[nodiscard]] const std::optional<pose>& T_dh_start() const noexcept { return T_dh_start_; }
   [[nodiscard]] const given_ticks& ticks() const noexcept { return ticks_; }
   /// How long the session was, s.
-  [[nodiscard]] double seconds() const noexcept;
+  [[nodiscard]] double seconds(std::int64_t device_period_ns) const noexcept;
   /// What has happened up to now.
   [[nodiscard]] replay_outcome outcome() const;
 

@@ -20,6 +20,16 @@ namespace asperity::command {
   return "'" + text + "' is not a finite number greater than zero";
 }
 
+/// A rate that a loop of a session can be asked to keep.
+[[nodiscard]] inline std::string loop_rate_error(const std::string& text) {
+  constexpr double least_hz = 100.0, most_hz = 10'000.0;
+  double value = 0.0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = failed == std::errc() && end == text.data() + text.size();
+  if (whole && value >= least_hz && value <= most_hz) return {};
+  return "'" + text + "' is not a rate from 100 to 10000 Hz";
+}
+
 /// A whole number, zero or larger, that fits 64 bits.
 [[nodiscard]] inline std::string whole_number_error(const std::string& text) {
   std::uint64_t value = 0;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "asperity/control/control_settings.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
 #include "asperity/render/any_renderer.hpp"
@@ -26,9 +27,9 @@ struct render_options {
   std::optional<std::string> gpu;       ///< index of a GPU or part of its name; of backends on a GPU only
   bool fallback = false;                ///< of backends on a GPU only
   bool allow_scale_mismatch = false;
-  /// Of the loop that renders, where there is one: planes are reported as far as it needs, and the least motion is as
-  /// soft as it can follow.
-  double contact_rate_hz = 1000.0;
+  /// Of the loops that render and use contacts, where there are any: planes are reported as far as these need, and the
+  /// least motion is as soft as these can follow.
+  loop_periods periods{};
   /// Of the least motion, N/m. For experiments: the command line has no option for it.
   std::optional<double> contact_stiffness_n_per_m;
   /// Of windows on grids with central differences, m; 0: the backend's choice. For experiments: the

@@ -1,6 +1,7 @@
 // What `asperity run` was asked.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "asperity/control/control_settings.hpp"
 #include "known_devices.hpp"
 #include "render_options.hpp"
 
@@ -23,6 +25,7 @@ struct run_command {
   std::string motion = "scrub";
   std::uint64_t seed = 1;
   double press_m = 0.012;
+  double device_rate_hz = 1000.0;
   double contact_rate_hz = 1000.0;
   std::optional<double> coupling_n_per_m, coupling_n_m_per_rad;  // what fits device and contacts
   std::string clock;                                             // empty: what fits the device
@@ -44,6 +47,11 @@ inline constexpr std::string_view replay_prefix = "replay:";
 /// File of a replay. @pre is_replay()
 [[nodiscard]] inline std::string replayed_file(const run_command& options) {
   return options.device.substr(replay_prefix.size());
+}
+
+/// Periods of the rates that were asked for, whole nanoseconds.
+[[nodiscard]] inline loop_periods periods_of(const run_command& options) {
+  return {std::llround(1e9 / options.device_rate_hz), std::llround(1e9 / options.contact_rate_hz)};
 }
 
 /// `virtual` or `real`.

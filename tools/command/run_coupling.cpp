@@ -1,7 +1,6 @@
 #include "run_coupling.hpp"
 
 #include "asperity/control/virtual_coupling.hpp"
-#include "session.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -41,7 +40,7 @@ virtual_coupling made_of(const chosen_coupling& chosen, const probe_settings& pr
 chosen_coupling coupling_of(const run_command& options, const device_capabilities& device, double scale) {
   chosen_coupling out;
   if (formulation_name(options.render) == "planes") {
-    out.settings = coupling_for(device, 1e9 / static_cast<double>(device_period_ns), scale);
+    out.settings = coupling_for(device, options.device_rate_hz, scale);
     if (device.max_stiffness_n_per_m > 0.0) out.translation = coupling_source::device;
     if (device.max_stiffness_n_m_per_rad > 0.0) out.rotation = coupling_source::device;
   }

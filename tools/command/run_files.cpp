@@ -33,8 +33,9 @@ std::string plot_caption(const run_command& options) {
           : is_replay(options)
               ? "Replay of " + printable(std::filesystem::path(replayed_file(options)).filename().string())
               : printable(options.device)) +
-         " at 1 kHz, contact loop at " + brief(options.contact_rate_hz) + " Hz, " + clock_of(options) + " clock, " +
-         contacts_in_words(options.render) + (is_simulated(options) ? ", seed " + std::to_string(options.seed) : "") +
+         " at " + rate_text(options.device_rate_hz) + ", contact loop at " + rate_text(options.contact_rate_hz) + ", " +
+         clock_of(options) + " clock, " + contacts_in_words(options.render) +
+         (is_simulated(options) ? ", seed " + std::to_string(options.seed) : "") +
          "; world axes, torque about the probe's centre of mass.";
 }
 
@@ -56,7 +57,7 @@ result<session_files> session_files::open(const run_command& options) {
     result<output_file> opened = output_file::create(options.plot);
     if (!opened) return opened.error();
     files.plot_.emplace(std::move(opened).value());
-    files.curves_.emplace(static_cast<std::size_t>(options.seconds.value_or(usual_seconds) * 1000.0));
+    files.curves_.emplace(static_cast<std::size_t>(options.seconds.value_or(usual_seconds) * options.device_rate_hz));
   }
   return files;
 }

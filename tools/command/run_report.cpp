@@ -17,13 +17,31 @@ json pose_json(const pose& T) {
   return {T.position.x, T.position.y, T.position.z, q[0], q[1], q[2], q[3]};
 }
 
-json loop_json(const loop_times& times, const time_summary& measured) {
-  return {{"ticks", times.ticks}, {"late", times.late}, {"skipped", times.skipped}, {"tick_time", to_json(measured)}};
+bool keeps_rate(const loop_times& times) {
+  return static_cast<double>(times.over_period) <= allowed_over_period * static_cast<double>(times.seconds.size());
 }
 
-std::string loop_text(const loop_times& times, const time_summary& measured) {
-  return std::to_string(times.ticks) + " ticks, " + std::to_string(times.late) + " late, " +
-         std::to_string(times.skipped) + " skipped; " + to_text(measured);
+json loop_json(double rate_hz, const loop_times& times, const time_summary& measured) {
+  return {{"rate", rate_hz},           {"ticks", times.ticks},          {"idle", times.idle},
+          {"late", times.late},        {"skipped", times.skipped},      {"over_period", times.over_period},
+          {"kept", keeps_rate(times)}, {"tick_time", to_json(measured)}};
+}
+
+std::string loop_text(double rate_hz, const loop_times& times, const time_summary& measured, bool real_time) {
+  return rate_text(rate_hz) + ", " + std::to_string(times.ticks) + " ticks, " +
+         (real_time ? std::to_string(times.late) + " late, " + std::to_string(times.skipped) + " skipped"
+                    : std::to_string(times.over_period) + " longer than " + time_text(1.0 / rate_hz)) +
+         "; " + to_text(measured);
+}
+
+// The virtual clock waits for every tick, so nothing that was felt or recorded depends on this.
+std::string rate_warning(const run_command& options, const loop_times& contact, const time_summary& measured) {
+  if (keeps_rate(contact) || options.render.backend == "exact") return "";
+  return std::string("  warning: the contact loop ") +
+         (clock_of(options) == "real" ? "did not keep " : "would not keep ") + rate_text(options.contact_rate_hz) +
+         (clock_of(options) == "real" ? "" : " in real time") + ": " + std::to_string(contact.over_period) + " of " +
+         std::to_string(contact.seconds.size()) + " ticks took longer than " +
+         time_text(1.0 / options.contact_rate_hz) + "; " + advice_for(rate_within(measured.p99_s)) + "\n";
 }
 
 json rates_json(const rate_report& r) {
@@ -132,7 +150,8 @@ std::string to_text(const real_time_grants& got) {
 }
 
 answer report(const run_command& options, const session_findings& found) {
-  const auto& [poses, ended, summary, memory, coupling, probe, replay, driver] = found;
+  const auto& [poses, ended, summary, memory, coupling, rate, probe, replay, driver] = found;
+  const bool real_time = clock_of(options) == "real";
   const time_summary contact = summarise(ended.contact.seconds);
   const time_summary device = summarise(ended.device.seconds);
   json T_wb = json::array();
@@ -154,8 +173,9 @@ answer report(const run_command& options, const session_findings& found) {
                   {"lookup", lookup_json(options.render)},
                   {"coupling", command::to_json(coupling, probe)}};
   out.document.update(summary.to_json());
-  out.document["contact_loop"] = loop_json(ended.contact, contact);
-  out.document["device_loop"] = loop_json(ended.device, device);
+  out.document["contact_loop"] = loop_json(options.contact_rate_hz, ended.contact, contact);
+  out.document["rate_check"] = rate ? command::to_json(*rate) : json();
+  out.document["device_loop"] = loop_json(options.device_rate_hz, ended.device, device);
   out.document["tick_time_is"] = clock_of(options) == "virtual" ? "cpu" : "wall";
   out.document["memory"] = {{"models", memory.models}, {"renderer", memory.renderer}};
   if (memory.gpu) out.document["gpu"] = command::to_json(*memory.gpu);
@@ -178,8 +198,8 @@ answer report(const run_command& options, const session_findings& found) {
              brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
              clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("coupling", to_text(coupling, probe));
-  out.text += row("contact loop", loop_text(ended.contact, contact));
-  out.text += row("device loop", loop_text(ended.device, device));
+  out.text += row("contact loop", loop_text(options.contact_rate_hz, ended.contact, contact, real_time));
+  out.text += row("device loop", loop_text(options.device_rate_hz, ended.device, device, real_time));
   out.text += row("rates", rates_text(ended.rates));
   if (ended.real_time) out.text += row("real time", to_text(*ended.real_time));
   out.text += row("memory", memory_text(memory.models) + " models, " + memory_text(memory.renderer) + " renderer");
@@ -194,6 +214,7 @@ answer report(const run_command& options, const session_findings& found) {
     out.text += "  warning: the probe never touched anything: lower it with --press or --probe-pose\n";
   out.text += summary.wall().warnings();
   out.text += summary.vibration_warning();
+  out.text += rate_warning(options, ended.contact, contact);
   if (ended.rates.lowest_scale < 1.0) out.text += late_warning(ended.rates);
   if (ended.lost_records > 0) {
     out.text += "  warning: " + std::to_string(ended.lost_records) + " ticks are missing from the recording\n";

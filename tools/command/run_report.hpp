@@ -9,6 +9,7 @@
 #include "cli.hpp"
 #include "device_replay.hpp"
 #include "gpu_use.hpp"
+#include "rate_check.hpp"
 #include "run_command.hpp"
 #include "run_coupling.hpp"
 #include "run_start.hpp"
@@ -26,11 +27,14 @@ struct memory_use {
 
 /// All that a session left to tell.
 struct session_findings {
+  explicit session_findings(const loop_periods& periods) : summary(periods.device_ns) {}
+
   given_poses poses;
   session_outcome ended;
   session_summary summary;
   memory_use memory;
   chosen_coupling coupling;
+  std::optional<rate_check> rate;  ///< what contact ticks took before the session
   probe_settings probe;
   std::optional<replay_outcome> replay;  ///< only of a replay
   std::string driver{};                  ///< what became of the driver's process; empty where all is well

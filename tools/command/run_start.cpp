@@ -39,11 +39,14 @@ result<given_poses> read_poses(const run_command& options) {
   return out;
 }
 
-result<pose> start_above(const run_command& options, any_renderer& feel, const std::vector<pose>& T_wb) {
+result<pose> first_touch(any_renderer& feel, const std::vector<pose>& T_wb) {
   const step_function step = [&](const scene_pose& at, tick& out) { return feel.step(at, out); };
-  result<pose> touch = find_touch(feel.scene(), step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
-  if (touch && options.motion != "free") touch->position.z += clearance_m;
-  return touch;
+  return find_touch(feel.scene(), step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
+}
+
+pose start_above(const run_command& options, pose touch_T_wa) {
+  if (options.motion != "free") touch_T_wa.position.z += clearance_m;
+  return touch_T_wa;
 }
 
 workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a) {

@@ -21,8 +21,11 @@ struct given_poses {
 /// @return invalid_argument
 [[nodiscard]] result<given_poses> read_poses(const run_command& options);
 
-/// The probe's pose just above the first touch, or at the touch for a motion that has no approach.
-[[nodiscard]] result<pose> start_above(const run_command& options, any_renderer& feel, const std::vector<pose>& T_wb);
+/// Where the probe first touches when it comes straight down over the first fixed body.
+[[nodiscard]] result<pose> first_touch(any_renderer& feel, const std::vector<pose>& T_wb);
+
+/// The probe's pose just above its first touch, or at the touch for a motion that has no approach.
+[[nodiscard]] pose start_above(const run_command& options, pose touch_T_wa);
 
 /// The simulated hand's: the handle sits at the probe's centre of mass, and its torque is then the one that turns the
 /// probe in the hand.

@@ -74,12 +74,14 @@ void keep_fault(const output_gate& gate, std::int64_t origin_ns, session_outcome
 // When the device ticks of a virtual session are, in its own time and on the clock.
 class tick_times {
  public:
-  tick_times(const std::optional<given_ticks>& given, double seconds) : given_(given ? &*given : nullptr) {
+  tick_times(const std::optional<given_ticks>& given, double seconds, std::int64_t device_period_ns)
+      : given_(given ? &*given : nullptr) {
+    const auto period_ns = static_cast<double>(device_period_ns);
     if (given_ == nullptr) {
-      ticks_ = static_cast<std::uint64_t>(std::llround(seconds * 1e9 / device_period_ns));
+      ticks_ = static_cast<std::uint64_t>(std::llround(seconds * 1e9 / period_ns));
       return;
     }
-    const auto until_ns = static_cast<double>(origin_ns()) + seconds * 1e9 - 0.5 * device_period_ns;
+    const auto until_ns = static_cast<double>(origin_ns()) + seconds * 1e9 - 0.5 * period_ns;
     while (ticks_ < given_->of_session && static_cast<double>(given_->times_ns[ticks_]) < until_ns) ++ticks_;
   }
 
@@ -103,16 +105,17 @@ class tick_times {
 
 result<session_outcome> run_virtual(session_setup setup, any_device& dev, progress_line& progress) {
   session_outcome out;
-  const tick_times times(setup.ticks, setup.seconds);
+  const loop_periods& periods = setup.periods;
+  const tick_times times(setup.ticks, setup.seconds, periods.device_ns);
   const std::uint64_t device_ticks = times.ticks();
-  const double contact_ticks = setup.seconds * 1e9 / static_cast<double>(setup.contact_period_ns);
+  const double contact_ticks = setup.seconds * 1e9 / static_cast<double>(periods.contact_ns);
   out.device.seconds.reserve(device_ticks);
   out.contact.seconds.reserve(static_cast<std::size_t>(std::ceil(contact_ticks)) + 1);
 
   session_record last;
   const virtual_schedule schedule{.start_ns = times.origin_ns(),
-                                  .device_period_ns = device_period_ns,
-                                  .contact_period_ns = setup.contact_period_ns,
+                                  .device_period_ns = periods.device_ns,
+                                  .contact_period_ns = periods.contact_ns,
                                   .contact_one_period_late = setup.contact_one_period_late};
   virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
                           setup.control, schedule, keep_last{&last});
@@ -146,25 +149,27 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   out.ended_at_s = 1e-9 * static_cast<double>(session.now_ns() - times.origin_ns());
   out.device.ticks = session.device_ticks();
   out.contact.ticks = session.contact().computed();
+  out.contact.idle = session.contact_ticks() - out.contact.ticks;
   keep_fault(session.device().gate(), times.origin_ns(), out);
   const gate_fault end = session.device_ticks() == device_ticks ? times.end() : gate_fault::stopped;
   session.device().stop(out.interrupted ? gate_fault::interrupted : end);
-  constexpr int longest_wind_down = 200;
-  for (int i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
+  const std::int64_t longest_wind_down = std::max<std::int64_t>(200, 200'000'000 / periods.device_ns);
+  for (std::int64_t i = 0; i < longest_wind_down && !session.device().gate().at_rest(); ++i) step();
   static_cast<void>(dev.disarm());
   if (thrown) std::rethrow_exception(thrown);
   if (failed) return after_session(*failed, out);
 
   out.rates = session.device().rates().report();
   out.rejected_samples = session.device().samples().rejected();
-  out.contact.late = count_above(out.contact.seconds, setup.contact_period_ns);
-  out.device.late = count_above(out.device.seconds, device_period_ns);
+  out.contact.late = out.contact.over_period = count_above(out.contact.seconds, periods.contact_ns);
+  out.device.late = out.device.over_period = count_above(out.device.seconds, periods.device_ns);
   return out;
 }
 
-loop_times to_times(const tick_timing& t) {
-  loop_times out{.seconds = {}, .ticks = t.ticks, .late = t.late, .skipped = t.skipped};
+loop_times to_times(const tick_timing& t, std::int64_t period_ns) {
+  loop_times out{.seconds = {}, .ticks = t.ticks - t.idle, .idle = t.idle, .late = t.late, .skipped = t.skipped};
   for (const std::int64_t ns : t.durations_ns) out.seconds.push_back(1e-9 * static_cast<double>(ns));
+  out.over_period = count_above(out.seconds, period_ns);
   return out;
 }
 
@@ -205,10 +210,10 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   session_outcome out;
   // Times of an hour at 1 kHz; what comes later is counted, not timed.
   constexpr double most_timed = 3.6e6;
-  const std::int64_t shortest = std::min(device_period_ns, setup.contact_period_ns);
+  const std::int64_t shortest = std::min(setup.periods.device_ns, setup.periods.contact_ns);
   const double wanted = 1.1 * setup.seconds * 1e9 / static_cast<double>(shortest) + 1000.0;
-  const real_schedule schedule{.device_period_ns = device_period_ns,
-                               .contact_period_ns = setup.contact_period_ns,
+  const real_schedule schedule{.device_period_ns = setup.periods.device_ns,
+                               .contact_period_ns = setup.periods.contact_ns,
                                .timed_ticks = static_cast<std::size_t>(std::min(wanted, most_timed)),
                                .set_up_thread = set_up_and_count};
   setup.control.watchdog_ns = longest_silence_ns;
@@ -267,8 +272,8 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   const bool ended = fault == gate_fault::stopped || fault == gate_fault::interrupted;
   out.fault = ended ? gate_fault::none : fault;
   keep_fault(session.device().gate(), origin_ns.value_or(0), out);
-  out.contact = to_times(session.contact_timing());
-  out.device = to_times(session.device_timing());
+  out.contact = to_times(session.contact_timing(), schedule.contact_period_ns);
+  out.device = to_times(session.device_timing(), schedule.device_period_ns);
   out.rates = session.device().rates().report();
   out.rejected_samples = session.device().samples().rejected();
   out.lost_records = queue->lost();

@@ -52,10 +52,10 @@ struct session_setup {
   control_settings control{};
   session_clock clock = session_clock::virtual_time;
   double seconds = 3.0;
-  std::int64_t contact_period_ns = 1'000'000;
+  loop_periods periods{};
   /// On the virtual clock: a contact is used when its computation is over and not when it begins, as on a real machine.
   bool contact_one_period_late = true;
-  std::optional<given_ticks> ticks{};  ///< virtual clock only; without them one every device_period_ns
+  std::optional<given_ticks> ticks{};  ///< virtual clock only; without them one every device period
   /// Told of every device tick, outside it and in order. An error ends the session.
   std::function<result<void>(const session_record&)> on_tick;
   /// Real clock only, and may be empty: told once, when both threads run, what the system gave them.
@@ -65,14 +65,14 @@ struct session_setup {
   session_rescue* rescue = nullptr;
 };
 
-inline constexpr std::int64_t device_period_ns = 1'000'000;
-
 /// Times of the ticks of one loop. CPU time on the virtual clock, time on the wall on the real one.
 struct loop_times {
   std::vector<double> seconds;  ///< of each tick that was timed
   std::uint64_t ticks = 0;
+  std::uint64_t idle = 0;  ///< of the contact loop: found no new pose; not among ticks
   std::uint64_t late = 0;  ///< began after the following deadline (real clock) or took longer than its period (virtual)
-  std::uint64_t skipped = 0;  ///< periods left out to catch up; real clock only
+  std::uint64_t skipped = 0;      ///< periods left out to catch up; real clock only
+  std::uint64_t over_period = 0;  ///< of the timed ticks, those that took longer than their period
 };
 
 struct session_outcome {

@@ -32,7 +32,7 @@ json level_json(const vibration_level& level, bool measured) {
           {"excessive", level.excessive}};
 }
 
-json vibration_json(const vibration_report& seen) {
+json vibration_json(const vibration_report& seen, std::int64_t device_period_ns) {
   const bool measured = seen.measurements > 0;
   return {{"band", {vibration_monitor::corner_hz, 0.5e9 / static_cast<double>(device_period_ns)}},
           {"rest", 1e-9 * static_cast<double>(seen.rest_ns)},
@@ -40,7 +40,9 @@ json vibration_json(const vibration_report& seen) {
           {"torque", level_json(seen.torque, measured)}};
 }
 
-std::string vibration_text(const vibration_report& seen) {
+std::string vibration_text(const vibration_monitor& monitor) {
+  if (!monitor.valid()) return "not measured: that needs a device loop of 200 Hz to 10 kHz";
+  const vibration_report& seen = monitor.report();
   if (seen.measurements == 0) return "not measured: the hand never rested for 0.7 s";
   return "at most " + brief(1e3 * seen.force.worst_rms) + " mN and " + brief(1e3 * seen.torque.worst_rms) +
          " mN m rms above 60 Hz, in " + brief(1e-9 * static_cast<double>(seen.rest_ns)) + " s at rest";
@@ -103,7 +105,7 @@ json session_summary::to_json() const {
           {"energy",
            {{"delivered_to_hand", delivered_j_}, {"largest_surplus", surplus_max_j_}, {"guarded_ticks", guarded_}}},
           {"wall", wall_.to_json()},
-          {"vibration", vibration_json(vibration_.report())}};
+          {"vibration", vibration_json(vibration_.report(), device_period_ns_)}};
 }
 
 std::string session_summary::to_text() const {
@@ -119,7 +121,7 @@ std::string session_summary::to_text() const {
   out += row("torque on the hand", range_text(hand_torque_, "mN m", 1e3));
   out += row("energy", brief(1e3 * delivered_j_) + " mJ to the hand, surplus at most " + brief(1e3 * surplus_max_j_) +
                            " mJ; the guard acted in " + std::to_string(guarded_) + " ticks");
-  out += row("vibration at rest", vibration_text(vibration_.report()));
+  out += row("vibration at rest", vibration_text(vibration_));
   return out;
 }
 

@@ -33,6 +33,10 @@ class vector_range {
 /// Accumulates device ticks. Constant size.
 class session_summary {
  public:
+  /// @param device_period_ns of the device loop
+  explicit session_summary(std::int64_t device_period_ns)
+      : device_period_ns_(device_period_ns), vibration_(device_period_ns) {}
+
   void add(const session_record& tick) noexcept;
 
   [[nodiscard]] json to_json() const;
@@ -46,6 +50,7 @@ class session_summary {
   [[nodiscard]] double largest_hand_torque_n_m() const noexcept { return hand_torque_.largest(); }
 
  private:
+  std::int64_t device_period_ns_;
   std::uint64_t ticks_ = 0;
   std::uint64_t touching_ = 0;
   std::uint64_t contact_sum_ = 0;
@@ -55,7 +60,7 @@ class session_summary {
   double delivered_j_ = 0.0;
   double surplus_max_j_ = 0.0;
   std::uint64_t guarded_ = 0;
-  vibration_monitor vibration_{device_period_ns};
+  vibration_monitor vibration_;
   wall_summary wall_;
 };
 

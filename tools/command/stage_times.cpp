@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <span>
 #include <utility>
@@ -71,6 +72,26 @@ double sum_of_all(plane_renderer& feel, const scene_pose& at) {
   return sum;
 }
 
+/// The same scene with many more of its first fixed body, all out of reach.
+struct crowd {
+  scene bodies;
+  std::shared_ptr<const field_scene> fields;
+  std::vector<pose> T_wb;
+
+  crowd(const scene& alone, const field_scene& made, const std::vector<pose>& T_wb_alone)
+      : bodies(alone), T_wb(T_wb_alone) {
+    field_scene all = made;
+    const double apart_m = 2.0 * (alone.probe->box.diagonal() + alone.fixed.front()->box.diagonal());
+    for (std::size_t i = 0; i < far_bodies; ++i) {
+      bodies.fixed.push_back(alone.fixed.front());
+      all.fixed.push_back(made.fixed.front());
+      T_wb.push_back({quat(1.0, 0.0, 0.0, 0.0),
+                      {apart_m * static_cast<double>(1 + i / 10), apart_m * static_cast<double>(i % 10), 0.0}});
+    }
+    fields = std::make_shared<const field_scene>(std::move(all));
+  }
+};
+
 }  // namespace
 
 result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, progress_line& progress) {
@@ -84,10 +105,20 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
   result<window_renderer> central = make_window_renderer(bodies, central_settings);
   if (!central) return central.error();
 
-  result<plane_renderer> planes = make_plane_renderer(bodies, {.reach_m = reach_for(1e-3)});
+  result<field_scene> fields = make_field_scene(bodies);
+  if (!fields) return fields.error();
+  const auto made = std::make_shared<const field_scene>(std::move(fields).value());
+  const plane_renderer_settings plane_settings{.reach_m = reach_for(1e-3)};
+  result<plane_renderer> planes = make_plane_renderer(bodies, made, plane_settings);
   if (!planes) return planes.error();
 
   const std::vector<pose> T_wb(bodies.fixed.size());
+  const crowd others(bodies, *made, T_wb);
+  result<plane_renderer> planes_far = make_plane_renderer(others.bodies, others.fields, plane_settings);
+  if (!planes_far) return planes_far.error();
+  result<window_renderer> soft_far = make_window_renderer(others.bodies, soft_settings);
+  if (!soft_far) return soft_far.error();
+
   const step_function step = [&](const scene_pose& at, tick& found) { return soft->step(at, found); };
   const result<pose> touch = find_touch(bodies, step, quat(1.0, 0.0, 0.0, 0.0), T_wb);
   if (!touch) return touch.error();
@@ -125,6 +156,8 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
     });
     time(out.least_motion_tick_s, 1.0, [&] { return least->step(at, found); });
     time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
+    time(out.planes_far_tick_s, 1.0, [&] { return planes_far->step({at_surface.T_wa, others.T_wb}, found); });
+    time(out.soft_far_tick_s, 1.0, [&] { return soft_far->step({at.T_wa, others.T_wb}, found); });
     time(out.central_tick_s, 1.0, [&] { return central->step(at, found); });
   }
   if (out.soft_contact_s.empty()) {

@@ -18,6 +18,9 @@ struct scrubbing {
   std::uint64_t seed = 1;
 };
 
+/// How many bodies out of reach a tick is also timed with.
+inline constexpr std::size_t far_bodies = 100;
+
 /// CPU times along a path, one entry per pose; contact times are divided by the contacts of the pose.
 struct stage_times {
   std::vector<double> query_s;
@@ -25,7 +28,9 @@ struct stage_times {
   std::vector<double> least_motion_tick_s, soft_tick_s, central_tick_s;
   std::vector<double> planes_tick_s;   ///< of the plane renderer, with the probe at the surface, as a loop keeps it
   std::vector<double> every_sample_s;  ///< what reading all samples that such a tick finds near would take
-  double sum_of_samples = 0.0;         ///< of that reading, so that it is made
+  /// The same ticks in a scene with far_bodies more bodies that are all out of reach.
+  std::vector<double> planes_far_tick_s, soft_far_tick_s;
+  double sum_of_samples = 0.0;  ///< of that reading, so that it is made
   std::vector<depth_work> planes_work;
   std::vector<double> contacts;
 };

@@ -13,6 +13,7 @@ namespace asperity::command {
 using text::brief;
 using text::length_text;
 using text::memory_text;
+using text::rate_text;
 using text::time_text;
 
 /// Appends the shortest decimal that reads back as the same double: recordings are exact and compare byte by byte.

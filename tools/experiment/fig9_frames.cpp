@@ -101,7 +101,7 @@ result<scrubbed> scrub(workbench& bench) {
   bench.progress("fig9, scrubbing", 0.0);
   const result<trial_log> log = run_trial(std::move(feel).value(), file_in_hole(wanted));
   if (!log) return log.error();
-  constexpr std::size_t ticks_per_frame = frame_ns / command::device_period_ns;
+  constexpr std::size_t ticks_per_frame = frame_ns / device_period_ns;
   for (std::size_t i = 0; i < log->ticks.size(); i += ticks_per_frame) path.T_wa.push_back(log->ticks[i].T_wa);
   time_collision(path, repeats);
   return path;

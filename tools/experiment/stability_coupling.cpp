@@ -10,7 +10,7 @@
 namespace asperity::experiment {
 namespace {
 
-constexpr double period_s = 1e-9 * static_cast<double>(command::device_period_ns);
+constexpr double period_s = 1e-9 * static_cast<double>(device_period_ns);
 constexpr double softest_coupling_n_per_m = 100.0, stiffest_coupling_n_per_m = 2e5;
 
 trial kicked_hand(double stiffness_n_per_m, double damping_n_s_per_m) {

@@ -160,7 +160,7 @@ any_renderer notch::with(double stiffness_n_per_m, contact_line line) const {
 
 double guard_bound_j(double speed_m_per_s, double speed_rad_per_s) noexcept {
   const device_capabilities real = simulated_capabilities();
-  constexpr double h_s = 1e-9 * static_cast<double>(command::device_period_ns);
+  constexpr double h_s = 1e-9 * static_cast<double>(device_period_ns);
   const auto beyond = [](double peak, double slew, double speed) { return 0.5 * peak * speed * (peak / slew + h_s); };
   return guard_settings{}.hard_limit_j + beyond(real.peak_force_n, real.force_slew_n_per_s, speed_m_per_s) +
          beyond(real.peak_torque_n_m, real.torque_slew_n_m_per_s, speed_rad_per_s);
@@ -171,7 +171,7 @@ result<held_still> hold_still(const notch& where, const holding& how) {
   if (!log) return log.error();
   held_still out;
   out.shut = log->ended.fault != gate_fault::none;
-  constexpr double h_s = 1e-9 * static_cast<double>(command::device_period_ns);
+  constexpr double h_s = 1e-9 * static_cast<double>(device_period_ns);
   std::vector<vec3> velocity;
   double fastest = 0.0, fastest_turn = 0.0, before_j = 0.0;
   std::size_t acted = 0;

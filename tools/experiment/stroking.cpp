@@ -82,7 +82,7 @@ hand_grip loose_grip() {
 }
 
 felt_stroke cut_stroke(const std::vector<session_record>& ticks, double from_s, double to_s, int felt) {
-  constexpr double h = 1e-9 * static_cast<double>(command::device_period_ns);
+  constexpr double h = 1e-9 * static_cast<double>(device_period_ns);
   felt_stroke out;
   out.felt = felt;
   out.sample_s = h;

@@ -46,7 +46,7 @@ result<trial_log> run_trial(any_renderer feel, trial wanted) {
                             .control = wanted.control,
                             .clock = command::session_clock::virtual_time,
                             .seconds = wanted.seconds,
-                            .contact_period_ns = wanted.contact_period_ns,
+                            .periods = {.contact_ns = wanted.contact_period_ns},
                             .contact_one_period_late = wanted.contact_one_period_late,
                             .on_tick = [&](const session_record& tick) -> result<void> {
                               if (log.ticks.size() < log.ticks.capacity()) log.ticks.push_back(tick);

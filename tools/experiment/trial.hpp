@@ -12,6 +12,9 @@
 
 namespace asperity::experiment {
 
+/// Device period of every trial.
+inline constexpr std::int64_t device_period_ns = loop_periods{}.device_ns;
+
 /// What is done in a session. The device's base frame is the world's, and the handle sits at the probe's centre of mass
 /// with the world's axes at the start: a wish's pose is where the hand wants the probe's centre of mass, its rotation
 /// how far it has turned the probe from the start.
@@ -21,7 +24,7 @@ struct trial {
   std::function<hand_wish(double t_s)> script;
   hand_grip grip{};
   double seconds = 1.0;
-  std::int64_t contact_period_ns = 1'000'000;
+  std::int64_t contact_period_ns = loop_periods{}.contact_ns;
   bool contact_one_period_late = true;  ///< as on a real machine, where a contact takes its time to compute
   bool hold_wrench = false;    ///< the contact's wrench without its stiffness: what a loop without linear contacts does
   control_settings control{};  ///< its map is set by the trial

@@ -44,6 +44,12 @@ struct unit {
   return seconds == 0.0 ? "0 s" : in_units(seconds, units);
 }
 
+/// A rate in hertz, as in "1.25 kHz".
+[[nodiscard]] inline std::string rate_text(double hertz) {
+  constexpr unit units[]{{1e3, "kHz"}, {1.0, "Hz"}};
+  return in_units(hertz, units);
+}
+
 /// An amount of memory, as in "12.7 MB", in powers of ten.
 [[nodiscard]] inline std::string memory_text(std::size_t bytes) {
   constexpr unit units[]{{1e9, "GB"}, {1e6, "MB"}, {1e3, "kB"}, {1.0, "B"}};

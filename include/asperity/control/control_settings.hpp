@@ -1,6 +1,7 @@
 // Settings of a device loop.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "asperity/control/contact_solver.hpp"
@@ -14,6 +15,21 @@
 #include "asperity/device/sample_check.hpp"
 
 namespace asperity {
+
+/// Periods of the two loops, and what follows from both.
+///
+/// A device tick tells one pose of the probe, and of a pose there is one contact. So a contact loop that is faster than
+/// the device loop finds no more poses; it hands the contact of a pose over sooner.
+struct loop_periods {
+  std::int64_t device_ns = 1'000'000;
+  std::int64_t contact_ns = 1'000'000;
+
+  /// Time between two contacts, ns: what a hand does in it decides which planes are told and how soft contacts are.
+  [[nodiscard]] constexpr std::int64_t renewal_ns() const noexcept { return std::max(device_ns, contact_ns); }
+  /// No contact that is used by loops in time is as old, ns. Its pose waits for a contact tick, the contact is handed
+  /// over one period later, and it is used until the next one is handed over and the device ticks.
+  [[nodiscard]] constexpr std::int64_t oldest_contact_ns() const noexcept { return 2 * contact_ns + device_ns; }
+};
 
 /// Settings of the device loop. The defaults are those of science, section 8.
 struct control_settings {
@@ -38,9 +54,14 @@ struct control_settings {
   std::int64_t longest_step_ns = 20'000'000;  ///< a later tick advances the probe by this much only
 };
 
-/// The same with the nominal period of a session, where the caller has stated none.
-[[nodiscard]] inline control_settings with_period(control_settings settings, std::int64_t device_period_ns) noexcept {
-  if (settings.rates.period_ns == 0) settings.rates.period_ns = device_period_ns;
+/// The same with the nominal period of a session, where the caller has stated none. A contact that is as old as these
+/// loops make it, and one more period late, is no surprise, down to 100 Hz: slower loops are a surprise as such.
+[[nodiscard]] inline control_settings with_periods(control_settings settings, const loop_periods& periods) noexcept {
+  if (settings.rates.period_ns == 0) settings.rates.period_ns = periods.device_ns;
+  constexpr loop_periods slowest{10'000'000, 10'000'000};
+  const std::int64_t usual_ns =
+      std::min(periods.oldest_contact_ns() + periods.renewal_ns(), slowest.oldest_contact_ns() + slowest.renewal_ns());
+  settings.rates.surprise_age_ns = std::max(settings.rates.surprise_age_ns, usual_ns);
   return settings;
 }
 

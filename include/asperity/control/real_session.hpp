@@ -26,11 +26,14 @@ struct real_schedule {
   /// Called once in each new thread: the place to ask for a scheduling class, an affinity, locked memory. May be null.
   /// asperity asks for nothing by itself, because what a program may do to its machine is the program's decision.
   void (*set_up_thread)(session_thread) = nullptr;
+
+  [[nodiscard]] constexpr loop_periods periods() const noexcept { return {device_period_ns, contact_period_ns}; }
 };
 
 /// How the ticks of one thread went.
 struct tick_timing {
   std::uint64_t ticks = 0;
+  std::uint64_t idle = 0;       ///< of these, ticks of the contact loop that found no new pose; their time is not kept
   std::uint64_t late = 0;       ///< ticks that began after the deadline of the tick that should have followed
   std::uint64_t skipped = 0;    ///< periods left out to catch up
   std::int64_t longest_ns = 0;  ///< longest tick
@@ -47,8 +50,8 @@ class real_session {
   real_session(Renderer feel, scene_placement placement, Device& dev, const control_settings& settings,
                const real_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
-        contact_(std::move(feel), placement, shared_, selection_for(schedule.contact_period_ns)),
-        device_(dev, with_period(settings, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
+        contact_(std::move(feel), placement, shared_, selection_for(schedule.periods().renewal_ns())),
+        device_(dev, with_periods(settings, schedule.periods()), placement.centre_of_mass_a, shared_,
                 std::move(observer)) {}
 
   // The loops hold the address of the exchange, the threads that of the session.
@@ -69,11 +72,18 @@ class real_session {
     const std::int64_t origin_ns = clock_ns();
     contact_thread_ = std::thread([this, origin_ns] {
       loop(session_thread::contact, origin_ns, schedule_.contact_period_ns, contact_running_, contact_timing_,
-           [this](std::int64_t now_ns) { static_cast<void>(contact_.tick(now_ns)); });
+           [this](std::int64_t now_ns) {
+             const std::uint64_t before = contact_.computed();
+             static_cast<void>(contact_.tick(now_ns));
+             return contact_.computed() != before;
+           });
     });
     device_thread_ = std::thread([this, origin_ns] {
       loop(session_thread::device, origin_ns, schedule_.device_period_ns, device_running_, device_timing_,
-           [this](std::int64_t now_ns) { static_cast<void>(device_.tick(now_ns)); });
+           [this](std::int64_t now_ns) {
+             static_cast<void>(device_.tick(now_ns));
+             return true;
+           });
       wind_down();
     });
   }
@@ -104,6 +114,7 @@ class real_session {
   }
 
  private:
+  // tick(begin_ns) answers whether there was something to do.
   template <class Tick>
   void loop(session_thread which, std::int64_t origin_ns, std::int64_t period_ns, const std::atomic<bool>& running,
             tick_timing& timing, Tick tick) noexcept {
@@ -112,14 +123,17 @@ class real_session {
     while (running.load(std::memory_order_acquire)) {
       sleep_until(due_ns);
       const std::int64_t begin_ns = clock_ns();
-      tick(begin_ns);
+      const bool worked = tick(begin_ns);
       const std::int64_t end_ns = clock_ns();
 
       ++timing.ticks;
+      timing.idle += worked ? 0U : 1U;
       timing.late += begin_ns - due_ns > period_ns ? 1U : 0U;
       timing.latest_ns = std::max(timing.latest_ns, begin_ns - due_ns);
       timing.longest_ns = std::max(timing.longest_ns, end_ns - begin_ns);
-      if (timing.durations_ns.size() < timing.durations_ns.capacity()) timing.durations_ns.push_back(end_ns - begin_ns);
+      if (worked && timing.durations_ns.size() < timing.durations_ns.capacity()) {
+        timing.durations_ns.push_back(end_ns - begin_ns);
+      }
 
       due_ns += period_ns;
       if (end_ns > due_ns + period_ns) {

@@ -17,6 +17,8 @@ struct virtual_schedule {
   /// When a contact is handed over: in the tick that computed it, or at the next contact tick, as if it had taken the
   /// whole period to compute.
   bool contact_one_period_late = false;
+
+  [[nodiscard]] constexpr loop_periods periods() const noexcept { return {device_period_ns, contact_period_ns}; }
 };
 
 /// A contact loop and a device loop, interleaved by one fixed rule: in time order, and where both fall on one instant
@@ -30,8 +32,8 @@ class virtual_session {
   virtual_session(Renderer feel, scene_placement placement, Device& dev, const control_settings& settings,
                   const virtual_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
-        contact_(std::move(feel), placement, shared_, selection_for(schedule.contact_period_ns)),
-        device_(dev, with_period(settings, schedule.device_period_ns), placement.centre_of_mass_a, shared_,
+        contact_(std::move(feel), placement, shared_, selection_for(schedule.periods().renewal_ns())),
+        device_(dev, with_periods(settings, schedule.periods()), placement.centre_of_mass_a, shared_,
                 std::move(observer)),
         next_contact_ns_(schedule.start_ns),
         next_device_ns_(schedule.start_ns) {}

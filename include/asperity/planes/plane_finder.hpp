@@ -1,9 +1,13 @@
 // Which samples may touch: balls of one body's samples against the other body's depth field.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "asperity/core/export.hpp"
+#include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/collision_finder.hpp"
@@ -13,8 +17,9 @@ namespace asperity {
 class known_branches;
 
 /// Lists the patches of samples whose depth may be more than -reach, with a bound of it: of the probe in each fixed
-/// body's field, and of each fixed body in the probe's. What earlier ticks know spares it most looks. What it
-/// lists decides nothing, because a patch that is listed and has no sample within reach gives no plane.
+/// body's field, and of each fixed body in the probe's. Bodies that are too far away as a whole are known by a sphere
+/// around each. What earlier ticks know spares it most looks. What it lists decides nothing, because a patch that is
+/// listed and has no sample within reach gives no plane.
 class ASPERITY_API plane_finder {
  public:
   using policy_tag = collision_tag;
@@ -23,16 +28,31 @@ class ASPERITY_API plane_finder {
   /// @param reach_m gaps up to this are reported, m
   /// @param known   of the renderer's ticks, shared with its depth backend, which knows more; or nullptr
   plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m,
-               std::shared_ptr<known_branches> known = nullptr) noexcept;
+               std::shared_ptr<known_branches> known = nullptr);
 
   /// @return ok | capacity_reached
   /// @rt safe
   [[nodiscard]] status find(const scene_pose& at, near_samples& out) noexcept;
 
+  /// Fixed bodies that the last find() looked into.
+  [[nodiscard]] std::size_t near_bodies() const noexcept { return near_bodies_; }
+  /// Without the bodies, which others share.
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_); }
+
  private:
+  // Nothing of two bodies whose spheres are further apart than the reach is listed.
+  struct sphere {
+    vec3 centre_b{0.0};
+    double radius_m = 0.0;
+  };
+  [[nodiscard]] static sphere around(const field_body& body) noexcept;
+
   std::shared_ptr<const field_scene> bodies_;
   std::shared_ptr<known_branches> known_;
+  sphere probe_;
+  std::vector<sphere> fixed_;
   double reach_m_;
+  std::size_t near_bodies_ = 0;
 };
 
 static_assert(collision_finder<plane_finder>);

@@ -32,6 +32,13 @@ struct plane_renderer_settings {
 /// touch of a loop of 200 Hz, late by a period, was 0.7 mm deep before its plane was known; with 4 v T, 0.1 mm.
 [[nodiscard]] constexpr double reach_for(double period_s) noexcept { return 3.0 * 0.6 * period_s; }
 
+/// The same for loops of two periods. A contact is in use for up to two contact periods and a device period after its
+/// pose, so a device loop that is slower than the contact loop counts once of three.
+[[nodiscard]] constexpr double reach_for(double contact_period_s, double device_period_s) noexcept {
+  const bool device_is_slower = device_period_s > contact_period_s;
+  return reach_for(device_is_slower ? (2.0 * contact_period_s + device_period_s) / 3.0 : contact_period_s);
+}
+
 /// Says whether gaps can be reported up to this, m: finite, and not negative.
 [[nodiscard]] ASPERITY_API result<void> check_reach(double reach_m);
 

@@ -19,11 +19,12 @@ struct window_finder_settings {
   double max_half_size_m = 0.0;     ///< largest window
   double merge_angle_rad = 0.5236;  ///< pairs whose directions differ less may share a contact; 30 degrees
   std::size_t close_pairs = 2048;   ///< capacity, per fixed body
-  std::size_t clusters = 32;        ///< capacity, per fixed body
+  std::size_t clusters = 32;        ///< capacity, per fixed body, and twice as much for all bodies of a tick
 };
 
 /// Counts of the last find(), over all fixed bodies.
 struct finder_statistics {
+  std::size_t near_bodies = 0;      ///< fixed bodies that were looked into: the others are beyond the tolerance
   std::size_t candidate_pairs = 0;  ///< pairs of pieces whose boxes and spheres came within the tolerance
   std::size_t close_pairs = 0;      ///< pairs within the tolerance (active and passive)
   std::size_t passive_pairs = 0;    ///< close pairs without a direction of the real surface: see pair_kind
@@ -49,7 +50,8 @@ struct finder_statistics {
 
 /// Finds contacts between the convex pieces of the probe and of every fixed body.
 ///
-/// Broad phase: boxes of B's pieces, moved into A's frame and grown by the tolerance, against a static tree over A's.
+/// Broad phase: a sphere around either body; boxes of B's pieces, moved into A's frame and grown by the tolerance,
+/// against a static tree over A's.
 /// Narrow phase: GJK with cached simplices; for overlaps, separating axes of the real surface
 /// (src/window/close_pair.hpp). Clusters (src/window/clustering.hpp) become contacts with a window and patches
 /// (src/window/contact_builder.hpp). Contacts are ordered by body and id. docs/explanation/collision.md says what is

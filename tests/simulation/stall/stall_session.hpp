@@ -20,7 +20,7 @@ class stall_session {
         with_stalls_(with_stalls),
         device_(opened(s)),
         contact_(s.ground, {{pose{}}, vec3(0.0)}, shared_),
-        loop_(device_, with_period(s.control, s.device_period_ns), vec3(0.0), shared_) {
+        loop_(device_, with_periods(s.control, {s.device_period_ns, s.contact_period_ns}), vec3(0.0), shared_) {
     static_cast<void>(device_.open());
     static_cast<void>(device_.arm());
   }

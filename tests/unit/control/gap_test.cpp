@@ -46,7 +46,7 @@ struct rig {
                Renderer feel = {})
       : dev(hand, c),
         contact(feel, {{pose{}}, vec3(0.0)}, shared),
-        loop((static_cast<void>(dev.open()), static_cast<void>(dev.arm()), dev), with_period(control, ms), vec3(0.0),
+        loop((static_cast<void>(dev.open()), static_cast<void>(dev.arm()), dev), with_periods(control, {}), vec3(0.0),
              shared) {}
 
   void tick(std::int64_t at_ns) {

@@ -226,5 +226,76 @@ TEST(FieldRenderer, RefusesPosesThatAreNone) {
   EXPECT_EQ(feel.step({pose{}, {}}, t), status::not_ready);
 }
 
+// Where bodies are left out as a whole, none of their samples is near.
+TEST(FieldRenderer, DoesNotLookIntoFarBodies) {
+  drawn_pose draw{std::mt19937_64(fresh_seed("FieldRenderer.DoesNotLookIntoFarBodies", "300 poses"))};
+  const scene alone = two_boxes();
+  scene many{alone.probe, {}};
+  const auto fields = fields_of(alone);
+  field_scene fields_of_many{fields->probe, {}};
+  std::vector<pose> T_wb;
+  constexpr std::size_t near = 37;
+  for (std::size_t i = 0; i < 101; ++i) {
+    many.fixed.push_back(alone.fixed.front());
+    fields_of_many.fixed.push_back(fields->fixed.front());
+    const vec3 far_m = glm::normalize(draw.vector() + vec3(0.0, 0.0, 1e-3)) * (0.7 + 0.5 * draw.unit());
+    T_wb.push_back(i == near ? pose{} : pose{draw.rotation(), far_m});
+  }
+  plane_renderer with =
+      make_plane_renderer(many, std::make_shared<const field_scene>(std::move(fields_of_many))).value();
+  plane_renderer without = make_boxes();
+  const std::vector<pose> T_wb_alone{pose{}};
+  std::size_t planes = 0;
+  for (int i = 0; i < 100; ++i) {
+    const pose T_wa = lowered(draw, 5e-4 * draw.unit());
+    tick found, expected;
+    ASSERT_EQ(with.step({T_wa, T_wb}, found), without.step({T_wa, T_wb_alone}, expected));
+    EXPECT_EQ(with.finder().near_bodies(), 1U);
+    EXPECT_EQ(with.depth().work().listed, without.depth().work().listed);
+    EXPECT_EQ(found.flags, expected.flags);
+    ASSERT_EQ(found.planes.size(), expected.planes.size());
+    for (std::size_t p = 0; p < found.planes.size(); ++p) {
+      EXPECT_EQ(found.planes[p].body, near);
+      EXPECT_EQ(found.planes[p].depth_m, expected.planes[p].depth_m);
+      EXPECT_EQ(found.planes[p].gradient.angular, expected.planes[p].gradient.angular);
+    }
+    planes += found.planes.size();
+  }
+  EXPECT_GT(planes, 100U);
+
+  // At the distance where spheres decide: what is left out has no ball that could be near.
+  const auto root_of = [](const field_body& body) {
+    sample_ball root;
+    body.samples.query(
+        [&](const sample_ball& all, bool) noexcept {
+          root = all;
+          return sample_tree::branch_answer::away;
+        },
+        [](const sample_ball&, std::span<const field_sample>) noexcept {});
+    return root;
+  };
+  const field_body &A = *fields->probe, &B = *fields->fixed.front();
+  const sample_ball ball_a = root_of(A), ball_b = root_of(B);
+  constexpr double reach_m = 0.002;
+  plane_finder finder(fields, reach_m);
+  near_samples listed;
+  std::size_t left_out = 0, looked_into = 0;
+  for (int i = 0; i < 200; ++i) {
+    const vec3 way = glm::normalize(draw.vector() + vec3(0.0, 0.0, 1e-3));
+    const pose T_wa{draw.rotation(), (0.11 + 0.05 * draw.unit()) * way};
+    static_cast<void>(finder.find({T_wa, T_wb_alone}, listed));
+    if (finder.near_bodies() > 0) {
+      ++looked_into;
+      continue;
+    }
+    ++left_out;
+    EXPECT_EQ(listed.size(), 0U);
+    EXPECT_LE(B.field.most_near(T_wa * ball_a.centre_b, ball_a.radius_m), -reach_m);
+    EXPECT_LE(A.field.most_near(inverse(T_wa) * ball_b.centre_b, ball_b.radius_m), -reach_m);
+  }
+  EXPECT_GT(left_out, 20U);
+  EXPECT_GT(looked_into, 20U);
+}
+
 }  // namespace
 }  // namespace asperity
