@@ -101,7 +101,7 @@ class convex_piece_finder::search {
     window_finder_settings settings;
   };
 
-  /// Bodies that may be touched in one tick with as many contacts as window_finder_settings allows; more share their room.
+  /// Bodies that may be touched in one tick with as many contacts as the settings allow; more share their room.
   static constexpr std::size_t most_touched = 2;
 
   /// Held contacts come on top of the clusters.

@@ -72,9 +72,9 @@ class command_test : public testing::Test {
   /// Names of everything in the folder.
   [[nodiscard]] std::set<std::string> files() const;
 
-  /// Runs the command, with and without --json, and expects: this exit status, one line on stderr, notes aside, that begins
-  /// with "asperity: ", nothing else on stdout but (with --json) one error document of this code, and a folder that is as it
-  /// was before. @return the message
+  /// Runs the command, with and without --json, and expects: this exit status, one line on stderr, notes aside, that
+  /// begins with "asperity: ", nothing else on stdout but (with --json) one error document of this code, and a folder
+  /// that is as it was before. @return the message
   std::string expect_failure(const arguments& args, int exit_status, const std::string& code,
                              const process_options& options = {}) const;
 
