@@ -156,7 +156,7 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
     });
     time(out.least_motion_tick_s, 1.0, [&] { return least->step(at, found); });
     time(out.soft_tick_s, 1.0, [&] { return soft->step(at, found); });
-    // After the same ticks as the renderer without far bodies has made: what earlier ticks know makes the next one faster.
+    // After the same ticks as the other renderer has made: what earlier ticks know makes the next one faster.
     static_cast<void>(lifted(*planes_far, {at.T_wa, others.T_wb}));
     time(out.planes_far_tick_s, 1.0, [&] { return planes_far->step({at_surface.T_wa, others.T_wb}, found); });
     time(out.soft_far_tick_s, 1.0, [&] { return soft_far->step({at.T_wa, others.T_wb}, found); });
