@@ -15,6 +15,9 @@
 #include "stage_times.hpp"
 #include "statistics.hpp"
 #include "text.hpp"
+#ifdef ASPERITY_HAS_RIVALS
+#include "rival_report.hpp"
+#endif
 
 namespace asperity::command {
 namespace {
@@ -24,6 +27,10 @@ struct bench_command {
   std::string fixed;
   std::string models;
   scrubbing motion;
+  std::optional<std::size_t> poses;    ///< not given: as many as what is measured usually takes
+  bool rivals = false;                 ///< race with other libraries instead
+  std::optional<std::size_t> judged;
+  std::string plot;
   std::optional<std::string> backend;  ///< given: compare depth backends instead
   std::optional<std::string> gpu;
   std::optional<std::uint32_t> grid;
@@ -142,9 +149,29 @@ result<void> check(const bench_command& options) {
                                   : options.grid    ? "--grid"
                                   : options.repeats ? "--repeats"
                                                     : nullptr;
-  if (options.backend || of_backends == nullptr) return {};
-  return error{error_code::invalid_argument,
-               std::string(of_backends) + " is for comparing depth backends: add --backend all"};
+  if (!options.backend && of_backends != nullptr) {
+    return error{error_code::invalid_argument,
+                 std::string(of_backends) + " is for comparing depth backends: add --backend all"};
+  }
+  if (!options.rivals && (options.judged || !options.plot.empty())) {
+    return error{error_code::invalid_argument,
+                 std::string(options.judged ? "--judged" : "--plot") + " is for the race with other libraries: add --rivals"};
+  }
+  return {};
+}
+
+result<answer> race_with_rivals(const bench_command& options, progress_line& progress) {
+#ifdef ASPERITY_HAS_RIVALS
+  rival_bench wanted{.settings = {.seed = options.motion.seed}, .models = options.models, .plot = options.plot};
+  wanted.settings.poses = options.poses.value_or(wanted.settings.poses);
+  wanted.settings.judged = options.judged.value_or(wanted.settings.judged);
+  return race_rivals(wanted, progress);
+#else
+  static_cast<void>(options), static_cast<void>(progress);
+  return error{error_code::unsupported,
+               "other libraries are not part of this build: run ./dev bench --rivals, or build with "
+               "ASPERITY_BUILD_RIVALS on"};
+#endif
 }
 
 result<answer> compare_backends(const scene& bodies, const bench_command& options, const common_options& common,
@@ -166,12 +193,15 @@ result<answer> compare_backends(const scene& bodies, const bench_command& option
 result<answer> bench(const bench_command& options, const common_options& common) {
   if (const result<void> ok = check(options); !ok) return ok.error();
   progress_line progress(common.quiet);
+  if (options.rivals) return race_with_rivals(options, progress);
   const result<scene> bodies = bench_scene(options, progress);
   if (!bodies) return bodies.error();
   if (options.backend) return compare_backends(*bodies, options, common, progress);
-  const result<stage_times> m = time_stages(*bodies, options.motion, progress);
+  bench_command along = options;
+  along.motion.poses = options.poses.value_or(along.motion.poses);
+  const result<stage_times> m = time_stages(*bodies, along.motion, progress);
   if (!m) return m.error();
-  return report(*bodies, options, *m);
+  return report(*bodies, along, *m);
 }
 
 }  // namespace
@@ -189,14 +219,24 @@ void add_bench(command_line& line) {
   sub.add_option("--models", o->models, "Folder of baked benchmark models; what is missing there is baked and kept")
       ->check(CLI::ExistingDirectory)
       ->excludes(probe);
-  sub.add_option("--poses", o->motion.poses, "Poses of the path")
+  sub.add_option("--poses", o->poses, "Poses of the path; with --rivals 400")
       ->check(CLI::Range(10, 1000000))
-      ->capture_default_str();
+      ->default_str(std::to_string(o->motion.poses));
   sub.add_option("--seed", o->motion.seed, "Seed of the path")
       ->check(whole_number_error, "WHOLE NUMBER")
       ->capture_default_str();
+  auto* rivals = sub.add_flag("--rivals", o->rivals,
+                              "Race with other libraries on full-resolution meshes instead, judged by the originals; "
+                              "./dev bench --rivals builds them in")
+                     ->excludes(probe);
+  sub.add_option("--judged", o->judged, "Poses of the path that are judged, with --rivals")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100000}))
+      ->default_str("60");
+  sub.add_option("--plot", o->plot, "Picture of error over time to write, with --rivals (.png, .svg)")
+      ->check([](const std::string& text) { return extension_error(text, {".png", ".svg"}); });
   sub.add_option("--backend", o->backend, "Compare depth backends on a GPU with the CPU instead: all, or one of them")
-      ->check(CLI::IsMember({"all", "gl-occlusion", "gl-compute"}));
+      ->check(CLI::IsMember({"all", "gl-occlusion", "gl-compute"}))
+      ->excludes(rivals);
   sub.add_option("--gpu", o->gpu, "GPU to measure, an index or a part of a name; see `asperity devices --gpu`")
       ->type_name("DEVICE");
   sub.add_option("--grid", o->grid, "Samples per side of a contact's window, with --backend")

@@ -29,13 +29,14 @@ struct colour {
   double r, g, b;
 };
 // Okabe and Ito's palette: told apart by people with any kind of colour vision.
-constexpr std::array<colour, 7> line_colours{{{0.0, 0.447, 0.698},
+constexpr std::array<colour, 8> line_colours{{{0.0, 0.447, 0.698},
                                               {0.835, 0.369, 0.0},
                                               {0.0, 0.620, 0.451},
                                               {0.8, 0.475, 0.655},
                                               {0.902, 0.624, 0.0},
                                               {0.337, 0.706, 0.914},
-                                              {0.35, 0.35, 0.35}}};
+                                              {0.35, 0.35, 0.35},
+                                              {0.5, 0.1, 0.15}}};
 constexpr colour ink{0.15, 0.15, 0.15}, grid{0.88, 0.88, 0.88}, fine_grid{0.95, 0.95, 0.95};
 constexpr std::array<double, 2> dashes{7.0, 5.0};
 
