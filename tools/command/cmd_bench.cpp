@@ -27,8 +27,8 @@ struct bench_command {
   std::string fixed;
   std::string models;
   scrubbing motion;
-  std::optional<std::size_t> poses;    ///< not given: as many as what is measured usually takes
-  bool rivals = false;                 ///< race with other libraries instead
+  std::optional<std::size_t> poses;  ///< not given: as many as what is measured usually takes
+  bool rivals = false;               ///< race with other libraries instead
   std::optional<std::size_t> judged;
   std::string plot;
   std::optional<std::string> backend;  ///< given: compare depth backends instead
@@ -154,8 +154,8 @@ result<void> check(const bench_command& options) {
                  std::string(of_backends) + " is for comparing depth backends: add --backend all"};
   }
   if (!options.rivals && (options.judged || !options.plot.empty())) {
-    return error{error_code::invalid_argument,
-                 std::string(options.judged ? "--judged" : "--plot") + " is for the race with other libraries: add --rivals"};
+    return error{error_code::invalid_argument, std::string(options.judged ? "--judged" : "--plot") +
+                                                   " is for the race with other libraries: add --rivals"};
   }
   return {};
 }
@@ -231,9 +231,11 @@ void add_bench(command_line& line) {
                      ->excludes(probe);
   sub.add_option("--judged", o->judged, "Poses of the path that are judged, with --rivals")
       ->check(CLI::Range(std::size_t{1}, std::size_t{100000}))
-      ->default_str("60");
+      ->default_str("40");
   sub.add_option("--plot", o->plot, "Picture of error over time to write, with --rivals (.png, .svg)")
-      ->check([](const std::string& text) { return extension_error(text, {".png", ".svg"}); });
+      ->check([](const std::string& text) {
+        return extension_error(text, {".png", ".svg"});
+      });
   sub.add_option("--backend", o->backend, "Compare depth backends on a GPU with the CPU instead: all, or one of them")
       ->check(CLI::IsMember({"all", "gl-occlusion", "gl-compute"}))
       ->excludes(rivals);

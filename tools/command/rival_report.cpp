@@ -110,8 +110,9 @@ answer report(std::span<const race> races, const rivals::race_settings& settings
                 " triangles, " + std::to_string(r.poses) + " poses, " + std::to_string(r.judged.size()) + " judged, " +
                 std::to_string(directed) + " with a direction\n";
     std::array<char, 200> line{};
-    std::snprintf(line.data(), line.size(), "  %-26s %18s %9s %9s %9s %6s %18s %18s %16s\n", "contender", "ms: p50, p99",
-                  "x planes", "MB", "contacts", "missed", "depth um: p50, p99", "outside: p50, p99", "deg: p50, p99");
+    std::snprintf(line.data(), line.size(), "  %-26s %18s %9s %9s %9s %6s %18s %18s %16s\n", "contender",
+                  "ms: p50, p99", "x planes", "MB", "contacts", "missed", "depth um: p50, p99", "outside: p50, p99",
+                  "deg: p50, p99");
     out.text += line.data();
     for (const outcome& o : r.outcomes) {
       contenders.push_back(to_json(o, planes_s));
@@ -142,10 +143,12 @@ answer report(std::span<const race> races, const rivals::race_settings& settings
 
 plot_page picture(std::span<const race> races) {
   plot_page page;
-  page.title = "What a pose costs and how wrong its depth is: asperity's renderers and other libraries at full resolution";
-  page.caption = "Each dot is one pose: processor time across, |depth told - shortest translation that parts the originals| "
-                 "up. " +
-                 experiment::machine_text() + ". asperity bench --rivals";
+  page.title =
+      "What a pose costs and how wrong its depth is: asperity's renderers and other libraries at full resolution";
+  page.caption =
+      "Each dot is one pose: processor time across, |reported depth - shortest translation that parts the originals| "
+      "up. " +
+      experiment::machine_text() + ". `asperity bench --rivals`";
   page.x_label = "processor time of a pose, ms";
   for (const race& r : races) {
     plot_panel panel;
@@ -159,7 +162,8 @@ plot_page picture(std::span<const race> races) {
       line.style = plot_style::points;
       std::vector<std::size_t> order(o.judged_s.size());
       std::iota(order.begin(), order.end(), std::size_t{0});
-      std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return o.judged_s[a] < o.judged_s[b]; });
+      std::sort(order.begin(), order.end(),
+                [&](std::size_t a, std::size_t b) { return o.judged_s[a] < o.judged_s[b]; });
       for (const std::size_t i : order) {
         line.x.push_back(1e3 * o.judged_s[i]);
         // What is right to a nanometre is drawn at a nanometre: a logarithm has no zero.

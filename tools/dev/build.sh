@@ -6,11 +6,12 @@ export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
 # The compiler's own list of headers tells what a result depends on: no run of the preprocessor before it for that.
 export CCACHE_DEPEND=${CCACHE_DEPEND:-1}
 
+# configure PRESET [CMAKE ARGUMENT...]
 configure() {
   local preset=$1 launcher=()
   command -v ccache > /dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   mkdir -p build
-  cmake --preset "$preset" "${launcher[@]}" > "build/$preset.configure.log" 2>&1 || {
+  cmake --preset "$preset" "${launcher[@]}" "${@:2}" > "build/$preset.configure.log" 2>&1 || {
     cat "build/$preset.configure.log" >&2
     die "configuring the preset $preset failed; its output is above and in build/$preset.configure.log"
   }

@@ -1,4 +1,4 @@
-// What every contender of `asperity bench --rivals` is given and answers, asperity's renderers and others' libraries alike.
+// What every contender of `asperity bench --rivals` is given and reports: asperity's renderers, and other libraries.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +21,12 @@ struct body_pair {
   scene baked;                 ///< of one probe and one fixed body; only asperity's own contenders read it
 };
 
-/// What a contender tells of one pose.
+/// What a contender reports of one pose.
 struct felt {
-  bool touches = false;     ///< it found an overlap
-  double depth_m = 0.0;     ///< the deepest that it tells
-  vec3 force_w{0.0};        ///< on the probe, of any scale: directions are compared, stiffnesses are not
-  std::size_t contacts = 0; ///< as it counts them
+  bool touches = false;      ///< it found an overlap
+  double depth_m = 0.0;      ///< the largest that it reports
+  vec3 force_w{0.0};         ///< on the probe, of any scale: directions are compared, stiffnesses are not
+  std::size_t contacts = 0;  ///< as it counts them
 };
 
 /// One way to feel a pair of bodies. Not for two threads.

@@ -32,12 +32,14 @@ void add_mesh(std::string& xml, const char* name, const triangle_mesh& mesh) {
 
 /// A scene of two mesh geoms, the probe on a free joint. Vertices alone: MuJoCo makes the hull of them.
 std::string scene_xml(const body_pair& bodies) {
-  std::string xml = "<mujoco><compiler inertiafromgeom=\"true\" boundmass=\"0.001\" boundinertia=\"1e-9\"/>"
-                    "<size nconmax=\"200\"/><asset>\n";
+  std::string xml =
+      "<mujoco><compiler inertiafromgeom=\"true\" boundmass=\"0.001\" boundinertia=\"1e-9\"/>"
+      "<size nconmax=\"200\"/><asset>\n";
   add_mesh(xml, "probe", bodies.probe);
   add_mesh(xml, "fixed", bodies.fixed);
-  xml += "</asset><worldbody><geom type=\"mesh\" mesh=\"fixed\" margin=\"0\"/>"
-         "<body><freejoint/><geom type=\"mesh\" mesh=\"probe\" margin=\"0\"/></body></worldbody></mujoco>";
+  xml +=
+      "</asset><worldbody><geom type=\"mesh\" mesh=\"fixed\" margin=\"0\"/>"
+      "<body><freejoint/><geom type=\"mesh\" mesh=\"probe\" margin=\"0\"/></body></worldbody></mujoco>";
   return xml;
 }
 

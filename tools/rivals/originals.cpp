@@ -37,7 +37,8 @@ triangle_mesh near_part(const placed_mesh& mesh, const placed_mesh& other, doubl
   for (const auto& t : mesh.triangles()) {
     const vec3 &a = mesh.points()[t[0]], &b = mesh.points()[t[1]], &c = mesh.points()[t[2]];
     const vec3 low = glm::min(a, glm::min(b, c)), high = glm::max(a, glm::max(b, c));
-    if (glm::any(glm::greaterThan(low, box.high + reach_m)) || glm::any(glm::lessThan(high, box.low - reach_m))) continue;
+    if (glm::any(glm::greaterThan(low, box.high + reach_m)) || glm::any(glm::lessThan(high, box.low - reach_m)))
+      continue;
     const double within = reach_m + 0.5 * glm::length(high - low);
     if (other.distance_to(0.5 * (low + high), 1.001 * within) > within) continue;
     std::array<std::uint32_t, 3> corners{};
@@ -155,15 +156,14 @@ parting originals::part(const pose& T_wa, double at_most_m) {
     const double down = 1.0 + (lowest - 1.0) * (k + 0.5) / spread, across = std::sqrt(1.0 - down * down);
     starts.push_back(ways.along({across * std::cos(golden * k), across * std::sin(golden * k), -down}));
   }
-  std::sort(starts.begin(), starts.end(),
-            [](const way_out& a, const way_out& b) { return a.length_m < b.length_m; });
+  std::sort(starts.begin(), starts.end(), [](const way_out& a, const way_out& b) { return a.length_m < b.length_m; });
   constexpr std::size_t settled = 12, refined = 3;
   std::vector<way_out> ends;
   for (std::size_t i = 0; i < settled; ++i) ends.push_back(ways.settle(starts[i]));
   std::sort(ends.begin(), ends.end(), [](const way_out& a, const way_out& b) { return a.length_m < b.length_m; });
   for (std::size_t i = 0; i < refined; ++i) ends[i] = ways.refine(ends[i]);
-  const way_out best = *std::min_element(
-      ends.begin(), ends.end(), [](const way_out& a, const way_out& b) { return a.length_m < b.length_m; });
+  const way_out best = *std::min_element(ends.begin(), ends.end(),
+                                         [](const way_out& a, const way_out& b) { return a.length_m < b.length_m; });
 
   out.depth_m = best.length_m;
   out.n_ab_w = best.n_ab_w;

@@ -14,9 +14,9 @@ namespace asperity::rivals {
 
 /// What the originals say of a pose.
 struct parting {
-  double depth_m = 0.0;      ///< length of the shortest translation found that parts them
-  vec3 n_ab_w{0.0};          ///< against it: from the probe into the fixed body, unit
-  double at_least_m = 0.0;   ///< no motion shorter parts them: the deepest vertex of either body in the other
+  double depth_m = 0.0;     ///< length of the shortest translation found that parts them
+  vec3 n_ab_w{0.0};         ///< against it: from the probe into the fixed body, unit
+  double at_least_m = 0.0;  ///< no motion shorter parts them: the deepest vertex of either body in the other
   /// The shortest found that points more than `elsewhere_rad` away from the shortest. Where it is hardly longer, the
   /// direction of the shortest means little.
   double elsewhere_m = std::numeric_limits<double>::infinity();

@@ -4,9 +4,9 @@
 #include <memory>
 #include <utility>
 
-#include "asperity/least_motion/default_renderer.hpp"
-#include "asperity/planes/field_renderer.hpp"
-#include "asperity/window/paper_renderer.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
+#include "asperity/planes/plane_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
 #include "contender.hpp"
 
 namespace asperity::rivals {
@@ -48,9 +48,10 @@ result<contender_ptr> contender_of(result<Renderer> made) {
 std::vector<entry> our_entries() {
   return {
       {"asperity, planes", true,
-       [](const body_pair& b) { return contender_of(make_field_renderer(b.baked, {.reach_m = reach_for(1e-3)})); }},
-      {"asperity, least motion", true, [](const body_pair& b) { return contender_of(make_renderer(b.baked)); }},
-      {"asperity, the paper's", true, [](const body_pair& b) { return contender_of(make_paper_renderer(b.baked)); }},
+       [](const body_pair& b) { return contender_of(make_plane_renderer(b.baked, {.reach_m = reach_for(1e-3)})); }},
+      {"asperity, least motion", true,
+       [](const body_pair& b) { return contender_of(make_least_motion_renderer(b.baked)); }},
+      {"asperity, the paper's", true, [](const body_pair& b) { return contender_of(make_window_renderer(b.baked)); }},
   };
 }
 

@@ -71,8 +71,14 @@ class reader {
     const auto i = static_cast<std::size_t>(p.x), j = static_cast<std::size_t>(p.y), k = static_cast<std::size_t>(p.z);
     at = p - point(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k));
     const float* const v = values_ + i * along_x_ + j * along_y_ + k;
-    c = {v[0],        v[1],        v[along_y_],            v[along_y_ + 1],
-         v[along_x_], v[along_x_ + 1], v[along_x_ + along_y_], v[along_x_ + along_y_ + 1]};
+    c = {v[0],
+         v[1],
+         v[along_y_],
+         v[along_y_ + 1],
+         v[along_x_],
+         v[along_x_ + 1],
+         v[along_x_ + along_y_],
+         v[along_x_ + along_y_ + 1]};
     return true;
   }
 
@@ -197,7 +203,8 @@ result<contender_ptr> make_point_shell(const body_pair& bodies, double voxel) {
     return contender_ptr(std::make_unique<point_shell>(
         bodies.probe, make_distance_grid(bodies.fixed, voxel * glm::length(high - low), band_m)));
   } catch (const std::exception& fault) {
-    return error{error_code::bad_mesh, "OpenVDB could not make a distance grid of " + bodies.name + ": " + fault.what()};
+    return error{error_code::bad_mesh,
+                 "OpenVDB could not make a distance grid of " + bodies.name + ": " + fault.what()};
   }
 }
 

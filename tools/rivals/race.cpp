@@ -29,12 +29,10 @@ error cancelled() { return {error_code::cancelled, "the race was ended before it
 
 void judge(const felt& answer, double seconds, const judged_pose& pose, outcome& into) {
   const parting& truth = pose.truth;
-  if (!answer.touches) {
-    into.missed += truth.at_least_m > felt_from_m ? 1 : 0;
-    return;
-  }
-  into.depth_error_m.push_back(answer.depth_m - truth.depth_m);
-  into.outside_m.push_back(std::max({0.0, truth.at_least_m - answer.depth_m, answer.depth_m - truth.depth_m}));
+  if (!answer.touches && truth.at_least_m > felt_from_m) ++into.missed;
+  const double reported_m = answer.touches ? answer.depth_m : 0.0;
+  into.depth_error_m.push_back(reported_m - truth.depth_m);
+  into.outside_m.push_back(std::max({0.0, truth.at_least_m - reported_m, reported_m - truth.depth_m}));
   into.judged_s.push_back(seconds);
   const double force = glm::length(answer.force_w);
   if (pose.has_direction() && force > 0.0) {
