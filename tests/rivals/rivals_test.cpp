@@ -1,5 +1,5 @@
-// Balls and boxes of known overlap: each rival has to report it within its own resolution, and so has the truth that all are
-// judged by.
+// Balls and boxes of known overlap: each rival has to report it within its own resolution, and so has the truth that
+// all are judged by.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -160,7 +160,8 @@ TEST(rivals_truth, apart_is_apart) {
   EXPECT_EQ(truth.part(known.T_wa, 1e-3).depth_m, 0.0);
 }
 
-/// A rival and what it resolves. A pair of triangles knows nothing of what lies deeper: of a mesh on a mesh only a bound
+/// A rival and what it resolves. A pair of triangles knows nothing of what lies deeper: of a mesh on a mesh only a
+/// bound
 /// is known.
 struct known_rival {
   const char* name;
