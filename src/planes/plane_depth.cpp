@@ -113,6 +113,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   });
   *asked_at_ = {};
   work_ = reading.work();
+  work_.looked_at = found.looked_at();
   for (const near_leaf& leaf : found.leaves()) work_.listed += leaf.count;
   flags_ = watch_->look(*bodies_, at, reported_, c_a_w);
   return status::ok;

@@ -25,6 +25,7 @@ void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, con
   of_x.walk(
       [&](const sample_tree::branch& b) noexcept {
         if (known != nullptr && !(known->most_m(b.number) > -reach_m)) return answer::away;
+        out.look_at();
         const sample_ball ball = b.ball();
         const double near_m = in_y.most_near(T_yx * ball.centre_b, ball.radius_m);
         // Over a pitch the smooth part is nearly straight, and one reading serves all leaves of a ball.

@@ -7,7 +7,7 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
-#include "asperity/planes/near_samples.hpp"
+#include "asperity/render/depth_work.hpp"
 #include "progress.hpp"
 
 namespace asperity::command {
@@ -30,7 +30,9 @@ struct stage_times {
   std::vector<double> every_sample_s;  ///< what reading all samples that such a tick finds near would take
   /// The same ticks in a scene with far_bodies more bodies that are all out of reach.
   std::vector<double> planes_far_tick_s, soft_far_tick_s;
-  double sum_of_samples = 0.0;  ///< of that reading, so that it is made
+  double sum_of_samples = 0.0;      ///< of that reading, so that it is made
+  std::vector<double> loop_tick_s;  ///< such a tick with gaps as far as this path's speed asks for
+  std::vector<depth_work> loop_work;
   std::vector<depth_work> planes_work;
   std::vector<double> contacts;
 };

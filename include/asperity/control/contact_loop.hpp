@@ -91,14 +91,8 @@ class contact_loop {
     return std::sqrt(glm::dot(far, far));
   }
 
-  // How far a point of the probe may come until this contact is not used any more: it is handed over a period late, is
-  // used for another, and a hand starts to move within one.
   [[nodiscard]] double gaps_wanted_m(const motion_speed& speed) const noexcept {
-    constexpr double periods = 3.0;
-    // A hand gains this much in three periods of 1 kHz: 70 m/s2, more than a tap of 20 mm at 6 Hz has.
-    constexpr double sudden_m_per_s = 0.2;
-    const double point_m_per_s = speed.linear_m_per_s + speed.angular_rad_per_s * probe_radius_m_;
-    return periods * selection_.period_s * (point_m_per_s + sudden_m_per_s);
+    return gaps_for(selection_.period_s, speed.linear_m_per_s + speed.angular_rad_per_s * probe_radius_m_);
   }
 
   Renderer renderer_;

@@ -41,14 +41,6 @@ struct depth_bound {
   }
 };
 
-/// How many samples a tick found near, and what it took to tell which of them count.
-struct depth_work {
-  std::uint32_t listed = 0;   ///< samples within reach
-  std::uint32_t bounded = 0;  ///< leaves that a reading bounded
-  std::uint32_t quick = 0;    ///< samples that were read in single precision, to decide whether they need more
-  std::uint32_t exact = 0;    ///< samples that were read in double precision with all derivatives
-};
-
 /// A patch of one body's surface that may touch the other body: a few leaves of its sample_tree that are neighbours.
 struct near_patch {
   std::uint32_t body = 0;  ///< index of B in scene::fixed
@@ -92,7 +84,11 @@ class near_samples {
     leaves_.clear();
     patches_.clear();
     dropped_ = 0;
+    looked_at_ = 0;
   }
+  /// Counts a ball of samples that a finder has looked at. @rt safe
+  void look_at() noexcept { ++looked_at_; }
+  [[nodiscard]] std::uint32_t looked_at() const noexcept { return looked_at_; }
   /// Begins a patch; the leaves that are added next belong to it.
   /// @return false where the limit was hit: its leaves will be dropped   @rt safe
   bool begin(const near_patch& patch) noexcept {
@@ -132,6 +128,7 @@ class near_samples {
   std::vector<near_leaf> leaves_;
   std::vector<near_patch> patches_;
   std::size_t dropped_ = 0;
+  std::uint32_t looked_at_ = 0;
 };
 
 }  // namespace asperity

@@ -14,6 +14,7 @@
 #include "asperity/model/scene.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/depth_backend.hpp"
+#include "asperity/render/depth_work.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 #include "asperity/render/tick_flag.hpp"
@@ -112,5 +113,6 @@ class ASPERITY_API plane_depth {
 
 static_assert(depth_backend<plane_depth>);
 static_assert(reports_planes_nearby<plane_depth>);
+static_assert(reports_work<plane_depth>);
 
 }  // namespace asperity

@@ -11,6 +11,7 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/render/collision_finder.hpp"
 #include "asperity/render/depth_backend.hpp"
+#include "asperity/render/depth_work.hpp"
 #include "asperity/render/force_model.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
@@ -27,6 +28,7 @@ struct tick {
   std::span<const support_plane> planes;  ///< gaps included; empty where the depth backend knows none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
   tick_flag flags = tick_flag::none;      ///< what the planes do not answer
+  depth_work work{};                      ///< what it took
 };
 
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
@@ -88,6 +90,7 @@ class basic_renderer {
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
     out.dropped_contacts = found_.dropped();
     if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
+    if constexpr (reports_work<Depth>) out.work = depth_.work();
     if constexpr (reports_planes_nearby<Depth>) {
       at_.T_wa = at.T_wa;
       std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
