@@ -44,8 +44,12 @@ result<render_function> render_by_windows(const press_body& probe, const press_b
 }
 
 // Support planes bring the stiffness of the control loop's contact_law; the reported force has the one asked for.
-result<render_function> render_by_planes(const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
+result<render_function> render_by_planes(const press_body& probe, const press_body& fixed, double stiffness_n_per_m,
+                                         double contact_period_s) {
   plane_renderer_settings settings;
+  constexpr double of_the_diagonal = 0.1;
+  const double smaller_m = std::min(probe.model->box.diagonal(), fixed.model->box.diagonal());
+  settings.reach_m = std::min(reach_for(contact_period_s), of_the_diagonal * smaller_m);
   settings.springs.stiffness_n_per_m = stiffness_n_per_m;
   return render_of(make_plane_renderer({probe.model, {fixed.model}}, settings));
 }
@@ -71,7 +75,11 @@ press_law law_of(std::string name, decltype(press_law::render) render) {
 press_law least_motion_renderer_law() { return law_of("least-motion", render_by_least_motion); }
 press_law window_renderer_law() { return law_of("window", render_by_windows); }
 
-press_law plane_renderer_law() { return {"planes", {}, render_by_planes}; }
+press_law plane_renderer_law(double contact_period_s) {
+  return {"planes", {}, [=](const press_body& probe, const press_body& fixed, double stiffness_n_per_m) {
+            return render_by_planes(probe, fixed, stiffness_n_per_m, contact_period_s);
+          }};
+}
 
 press_law true_exit_law() {
   return {"exit",

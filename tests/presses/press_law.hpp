@@ -30,7 +30,8 @@ struct press_law {
 [[nodiscard]] press_law window_renderer_law();
 /// "planes": the renderer for control loops. In sessions only: it holds the probe by its support planes, and its force
 /// is meant for a probe at the surface.
-[[nodiscard]] press_law plane_renderer_law();
+/// @param contact_period_s of the loop that its gaps reach far enough for
+[[nodiscard]] press_law plane_renderer_law(double contact_period_s = 1e-3);
 /// "exit": the force that the true depth of the originals has, k times the shortest way out that a search finds, along
 /// it. It is right for every pair, and far too slow for a tick.
 [[nodiscard]] press_law true_exit_law();
