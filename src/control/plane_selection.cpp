@@ -74,7 +74,6 @@ result<void> check(const plane_selection& s) {
   if (!(s.slide_m > 0.0 && std::isfinite(s.slide_m))) return bad("slide_m must be a finite length above 0");
   if (!(s.same_direction > 0.0 && s.same_direction < 1.0))
     return bad("same_direction must be a cosine between 0 and 1");
-  if (!(s.period_s > 0.0 && std::isfinite(s.period_s))) return bad("period_s must be a finite time above 0");
   return {};
 }
 

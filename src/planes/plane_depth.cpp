@@ -87,7 +87,6 @@ plane_depth::~plane_depth() = default;
 
 status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
-  const double reach_m = std::min(reach_m_, at.gaps_m);
   readers reading(*bodies_, at, c_a_w, sinking_m_);
   reported_.clear();
   met_->clear();
@@ -99,13 +98,13 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
     return steepest_depth * (w.slid_m + w.chord * (r_m + w.slid_m));
   });
   // What may be near is read first: it hides what lies behind it.
-  sort_by_depth(found.patches(), reach_m);
+  sort_by_depth(found.patches());
   for (const std::uint32_t i : order_) {
     const near_patch& patch = found.patches()[i];
-    read(patch, found.leaves_of(patch), reading.of(patch), reach_m, out.subspan(patch.first_leaf, patch.leaf_count));
+    read(patch, found.leaves_of(patch), reading.of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
   for (const near_plane& p : out) {
-    if (p.plane.depth_m > -reach_m && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
+    if (p.plane.depth_m > -reach_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
   teach(found);
   known_->ask(found, [&](const near_patch& patch) noexcept {
@@ -137,11 +136,11 @@ void plane_depth::teach(const near_samples& found) noexcept {
   branches_->fold();
 }
 
-void plane_depth::sort_by_depth(std::span<const near_patch> patches, double reach_m) noexcept {
+void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
   constexpr std::size_t bins = 64;
   std::array<std::uint32_t, bins + 1> first{};
   const auto bin_of = [&](const near_patch& p) noexcept {
-    const double from_top = (reach_m - p.in_other.most_m) * static_cast<double>(bins) / (2.0 * reach_m);
+    const double from_top = (reach_m_ - p.in_other.most_m) * static_cast<double>(bins) / (2.0 * reach_m_);
     return from_top > 0.0 ? static_cast<std::size_t>(std::min(from_top, static_cast<double>(bins - 1))) : 0;
   };
   for (const near_patch& p : patches) ++first[bin_of(p) + 1];
@@ -151,9 +150,9 @@ void plane_depth::sort_by_depth(std::span<const near_patch> patches, double reac
 }
 
 void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
-                       double reach_m, std::span<near_plane> out) noexcept {
+                       std::span<near_plane> out) noexcept {
   // Gaps up to this are reported whatever lies before them.
-  const double always_m = reach_m / 9.0;
+  const double always_m = reach_m_ / 9.0;
   // The pose alone decides which patches have a plane, and only these are compared with others. So it decides which
   // planes are reported; a patch without a plane may be listed or not.
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
@@ -164,8 +163,8 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
   };
   move();
   const auto least_that_matters_m = [&]() noexcept {
-    if (group == nullptr) return -reach_m;
-    return std::max(-reach_m, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
+    if (group == nullptr) return -reach_m_;
+    return std::max(-reach_m_, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
   };
   double above_m = least_that_matters_m();
   const auto most_of_patch_m = leaf_reader::rounded_up(patch.in_other.most_m);
@@ -199,7 +198,6 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
 status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
                               const vec6& moved, double above_m, plane_list& out) const noexcept {
   readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, sinking_m_);
-  const double reach_m = std::min(reach_m_, at.gaps_m);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
   const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
@@ -211,7 +209,7 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
     known_depths::grow(asked, steepest_depth * way_m);
     const vec3 come_w = moved.linear + glm::cross(moved.angular, asked.r_w);
     const double come_m = std::sqrt(glm::dot(come_w, come_w)) + moved_rad * asked.radius_m;
-    const double least_m = std::max(above_m, steepest_depth * come_m - reach_m);
+    const double least_m = std::max(above_m, steepest_depth * come_m - reach_m_);
     if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     const near_patch& patch = found.patches()[p];
     const leaf_reader& reader = reading.of(patch);

@@ -60,27 +60,13 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
   const time_summary soft_tick = summarise(m.soft_tick_s);
   const time_summary central_tick = summarise(m.central_tick_s);
   const time_summary planes_tick = summarise(m.planes_tick_s);
-  const time_summary loop_tick = summarise(m.loop_tick_s);
   const time_summary every_sample = summarise(m.every_sample_s);
   const time_summary planes_far_tick = summarise(m.planes_far_tick_s);
   const time_summary soft_far_tick = summarise(m.soft_far_tick_s);
-  const auto mean_of = [](const std::vector<depth_work>& ticks, std::uint32_t depth_work::*part) {
+  const auto mean_of = [&](std::uint32_t depth_work::*part) {
     double sum = 0.0;
-    for (const depth_work& w : ticks) sum += static_cast<double>(w.*part);
-    return sum / static_cast<double>(ticks.size());
-  };
-  const auto work = [&](const std::vector<depth_work>& ticks) {
-    return json{{"balls_looked_at", mean_of(ticks, &depth_work::looked_at)},
-                {"near", mean_of(ticks, &depth_work::listed)},
-                {"leaves_bounded", mean_of(ticks, &depth_work::bounded)},
-                {"read_quickly", mean_of(ticks, &depth_work::quick)},
-                {"read_exactly", mean_of(ticks, &depth_work::exact)}};
-  };
-  const auto work_text = [&](const std::vector<depth_work>& ticks) {
-    return brief(mean_of(ticks, &depth_work::looked_at)) + " balls looked at, " +
-           brief(mean_of(ticks, &depth_work::listed)) + " samples near, " + brief(mean_of(ticks, &depth_work::quick)) +
-           " read quickly, " + brief(mean_of(ticks, &depth_work::exact)) + " exactly; " +
-           brief(mean_of(ticks, &depth_work::bounded)) + " leaves bounded";
+    for (const depth_work& w : m.planes_work) sum += static_cast<double>(w.*part);
+    return sum / static_cast<double>(m.planes_work.size());
   };
   double contacts = 0.0;
   for (const double n : m.contacts) contacts += n / static_cast<double>(m.contacts.size());
@@ -95,15 +81,18 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                   {"poses", options.motion.poses},
                   {"seed", options.motion.seed},
                   {"contacts", {{"mean", contacts}, {"max", most}}},
-                  {"samples", work(m.planes_work)},
-                  {"samples_in_loop", work(m.loop_work)},
+                  {"samples",
+                   {{"balls_looked_at", mean_of(&depth_work::looked_at)},
+                    {"near", mean_of(&depth_work::listed)},
+                    {"leaves_bounded", mean_of(&depth_work::bounded)},
+                    {"read_quickly", mean_of(&depth_work::quick)},
+                    {"read_exactly", mean_of(&depth_work::exact)}}},
                   {"time_is", "cpu"},
                   {"seconds",
                    {{"collision_query", to_json(query)},
                     {"contact_soft", to_json(soft)},
                     {"contact_central", to_json(central)},
                     {"tick_planes", to_json(planes_tick)},
-                    {"tick_planes_in_loop", to_json(loop_tick)},
                     {"every_sample", to_json(every_sample)},
                     {"tick_least_motion", to_json(least_motion_tick)},
                     {"tick_soft", to_json(soft_tick)},
@@ -111,8 +100,6 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                   {"ratios",
                    {{"contact_central_to_soft", central.p50_s / soft.p50_s},
                     {"every_sample_to_tick_planes", every_sample.p50_s / planes_tick.p50_s},
-                    {"every_sample_to_tick_planes_in_loop", every_sample.p50_s / loop_tick.p50_s},
-                    {"tick_planes_in_loop_p99_to_p50", loop_tick.p99_s / loop_tick.p50_s},
                     {"tick_planes_p99_to_p50", planes_tick.p99_s / planes_tick.p50_s},
                     {"tick_planes_with_far_bodies", planes_far_tick.p50_s / planes_tick.p50_s},
                     {"tick_soft_with_far_bodies", soft_far_tick.p50_s / soft_tick.p50_s},
@@ -125,7 +112,6 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                     {"tick_central_p99_to_p50", central_tick.p99_s / central_tick.p50_s}}},
                   {"rates_hz",
                    {{"tick_planes", 1.0 / planes_tick.p50_s},
-                    {"tick_planes_in_loop", 1.0 / loop_tick.p50_s},
                     {"tick_least_motion", 1.0 / least_motion_tick.p50_s},
                     {"tick_soft", 1.0 / soft_tick.p50_s},
                     {"tick_central", 1.0 / central_tick.p50_s}}},
@@ -142,11 +128,11 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
   out.text += row("tick, planes", to_text(planes_tick) + "  (" + brief(1.0 / planes_tick.p50_s) + " Hz)");
   out.text += row("all near samples", to_text(every_sample) + "  (" +
                                           ratio_text(every_sample.p50_s / planes_tick.p50_s) + " tick, planes)");
-  out.text += row("samples of that tick", work_text(m.planes_work));
-  out.text += row("tick, planes, in loop", to_text(loop_tick) + "  (" + brief(1.0 / loop_tick.p50_s) +
-                                               " Hz; all near samples " +
-                                               ratio_text(every_sample.p50_s / loop_tick.p50_s) + " it)");
-  out.text += row("samples of that tick", work_text(m.loop_work));
+  out.text += row("samples of that tick", brief(mean_of(&depth_work::looked_at)) + " balls looked at, " +
+                                              brief(mean_of(&depth_work::listed)) + " samples near, " +
+                                              brief(mean_of(&depth_work::quick)) + " read quickly, " +
+                                              brief(mean_of(&depth_work::exact)) + " exactly; " +
+                                              brief(mean_of(&depth_work::bounded)) + " leaves bounded");
   out.text +=
       row("tick, one potential", to_text(least_motion_tick) + "  (" + brief(1.0 / least_motion_tick.p50_s) + " Hz, " +
                                      ratio_text(least_motion_tick.p50_s / soft_tick.p50_s) + " soft)");

@@ -24,12 +24,6 @@ struct lent_renderer {
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept { return feel->step(at, out); }
 };
 
-motion_speed speed_of(const probe_motion& motion) {
-  const twist &of_probe = motion.velocity_w(), &of_hand = motion.target_velocity_w();
-  return {std::max(glm::length(of_probe.linear), glm::length(of_hand.linear)),
-          std::max(glm::length(of_probe.angular), glm::length(of_hand.angular))};
-}
-
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -60,7 +54,7 @@ rate_check check_rate(any_renderer& feel, const scene_placement& placement, cons
   const double begin_s = wall_seconds();
   for (int i = 0; i < most_ticks; ++i) {
     const std::int64_t now_ns = i * periods.renewal_ns();
-    shared->poses.back() = {motion.probe().state().T_wc, now_ns, motion.pull(), speed_of(motion)};
+    shared->poses.back() = {motion.probe().state().T_wc, now_ns, motion.pull()};
     shared->poses.publish();
     const double tick_begin_s = wall_seconds(), processor_begin_s = cpu_seconds();
     static_cast<void>(contact.tick(now_ns));

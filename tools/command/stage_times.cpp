@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <random>
 #include <span>
 #include <utility>
 
 #include "approach.hpp"
-#include "asperity/control/plane_selection.hpp"
 #include "asperity/field/field_body.hpp"
 #include "asperity/least_motion/least_motion_renderer.hpp"
 #include "asperity/planes/plane_renderer.hpp"
@@ -148,15 +146,8 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
       time(out.soft_contact_s, share, [&] { return soft->depth().measure(at, contacts, found); });
       time(out.central_contact_s, share, [&] { return central->depth().measure(at, contacts, found); });
     }
-    scene_pose at_surface{lifted(*planes, at), T_wb};
+    const scene_pose at_surface{lifted(*planes, at), T_wb};
     tick found;
-    // As a contact loop asks for it that knows how fast the probe is.
-    constexpr double period_s = 1e-3;
-    const double way_m = i == 0 ? 0.0 : glm::distance(path[i].position, path[i - 1].position);
-    at_surface.gaps_m = gaps_for(period_s, way_m / period_s);
-    time(out.loop_tick_s, 1.0, [&] { return planes->step(at_surface, found); });
-    out.loop_work.push_back(found.work);
-    at_surface.gaps_m = std::numeric_limits<double>::infinity();
     time(out.planes_tick_s, 1.0, [&] { return planes->step(at_surface, found); });
     out.planes_work.push_back(found.work);
     time(out.every_sample_s, 1.0, [&] {

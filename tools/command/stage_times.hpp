@@ -30,9 +30,7 @@ struct stage_times {
   std::vector<double> every_sample_s;  ///< what reading all samples that such a tick finds near would take
   /// The same ticks in a scene with far_bodies more bodies that are all out of reach.
   std::vector<double> planes_far_tick_s, soft_far_tick_s;
-  double sum_of_samples = 0.0;      ///< of that reading, so that it is made
-  std::vector<double> loop_tick_s;  ///< such a tick with gaps as far as this path's speed asks for
-  std::vector<depth_work> loop_work;
+  double sum_of_samples = 0.0;  ///< of that reading, so that it is made
   std::vector<depth_work> planes_work;
   std::vector<double> contacts;
 };

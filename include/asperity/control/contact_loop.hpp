@@ -1,7 +1,6 @@
 // The slower of the two rates: from the newest probe pose to a linear contact.
 #pragma once
 
-#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <utility>
@@ -39,11 +38,7 @@ class contact_loop {
   /// @param shared outlives the loop
   /// @param selection which support planes are handed on; selection_for() knows what fits a period
   contact_loop(Renderer feel, scene_placement placement, exchange& shared, const plane_selection& selection = {})
-      : renderer_(std::move(feel)), placement_(std::move(placement)), shared_(&shared), selection_(selection) {
-    if constexpr (requires { renderer_.scene().probe->box; }) {
-      if (renderer_.scene().probe) probe_radius_m_ = radius_of(*renderer_.scene().probe);
-    }
-  }
+      : renderer_(std::move(feel)), placement_(std::move(placement)), shared_(&shared), selection_(selection) {}
 
   /// compute() and publish() in one.
   /// @return the renderer's answer; ok without work where no new pose came
@@ -60,7 +55,7 @@ class contact_loop {
     if (!shared_->poses.refresh()) return status::ok;
     const timed_pose& at = shared_->poses.front();
     const pose T_wa = at.T_wc * inverse(placement_.T_ac());
-    const status answer = renderer_.step({T_wa, placement_.T_wb, gaps_wanted_m(at.speed)}, last_);
+    const status answer = renderer_.step({T_wa, placement_.T_wb}, last_);
     linearise(last_, answer, at, selection_, rest_, shared_->contacts.back());
     shared_->contacts.back().flags = flags_.held(shared_->contacts.back().flags, at.time_ns);
     pending_ = true;
@@ -85,19 +80,8 @@ class contact_loop {
   [[nodiscard]] const scene_placement& placement() const noexcept { return placement_; }
 
  private:
-  // Of the ball about the centre of mass that holds a body.
-  [[nodiscard]] static double radius_of(const textured_model& body) noexcept {
-    const vec3 far = glm::max(body.box.high - body.mass.centre_of_mass, body.mass.centre_of_mass - body.box.low);
-    return std::sqrt(glm::dot(far, far));
-  }
-
-  [[nodiscard]] double gaps_wanted_m(const motion_speed& speed) const noexcept {
-    return gaps_for(selection_.period_s, speed.linear_m_per_s + speed.angular_rad_per_s * probe_radius_m_);
-  }
-
   Renderer renderer_;
   scene_placement placement_;
-  double probe_radius_m_ = 0.0;
   exchange* shared_;
   plane_selection selection_;
   rest_prediction rest_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -123,7 +122,7 @@ class device_loop {
       static_cast<void>(device_->disarm());
     }
     if (placed_) {
-      shared_->poses.back() = {motion_.probe().state().T_wc, now_ns, motion_.pull(), speed()};
+      shared_->poses.back() = {motion_.probe().state().T_wc, now_ns, motion_.pull()};
       shared_->poses.publish();
     }
     report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);
@@ -216,15 +215,6 @@ class device_loop {
     const wrench change = motion_.push_of(shared_->contacts.front()) - before;
     return glm::length(change.force) > rates_.limits().surprise_n ||
            glm::length(change.torque) > rates_.limits().surprise_n_m;
-  }
-
-  // Of the probe or of the hand, whichever is faster.
-  [[nodiscard]] motion_speed speed() const noexcept {
-    const auto faster = [](const vec3& a, const vec3& b) noexcept {
-      return std::sqrt(std::max(glm::dot(a, a), glm::dot(b, b)));
-    };
-    const twist &of_probe = motion_.velocity_w(), &of_hand = motion_.target_velocity_w();
-    return {faster(of_probe.linear, of_hand.linear), faster(of_probe.angular, of_hand.angular)};
   }
 
   [[nodiscard]] pose pose_of_sample() const noexcept { return settings_.map.to_world(last_seen_.T_dh) * T_hc_; }

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <limits>
 
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/virtual_coupling.hpp"
@@ -12,18 +11,11 @@
 
 namespace asperity {
 
-/// How fast the probe or the hand that pulls it moves, whichever is faster.
-struct motion_speed {
-  double linear_m_per_s = std::numeric_limits<double>::infinity();  ///< of c_A; infinite: not known
-  double angular_rad_per_s = 0.0;
-};
-
 /// Where the probe was, when, and how the virtual coupling pulled at it: enough to know where it will come to rest.
 struct timed_pose {
   pose T_wc{};  ///< the probe's centre-of-mass frame
   std::int64_t time_ns = 0;
   coupling_pull pull{};
-  motion_speed speed{};
 };
 
 /// How an application shows that it is alive: any of its threads beats, the device thread counts. It carries no time,

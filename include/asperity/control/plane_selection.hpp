@@ -20,8 +20,6 @@ struct plane_selection {
   /// Cosine between n_ab of two planes of one body above which they share a direction. Within 35 degrees planes replace
   /// each other when the probe tilts; further apart they hold the probe in different ways.
   double same_direction = 0.82;
-  /// The contact period that tilt and slide are for, s. A contact_loop asks for gaps of three of them.
-  double period_s = 1e-3;
 };
 
 /// The selection for a contact loop of this period.
@@ -33,18 +31,7 @@ struct plane_selection {
   plane_selection out;
   out.tilt_rad = turn_rad_per_s * period_s;
   out.slide_m = slide_m_per_s * period_s;
-  out.period_s = period_s;
   return out;
-}
-
-/// The gaps that a contact loop of this period has to know, m, where no point of the probe and of the hand is faster than
-/// this now: a contact is handed over a period late and is used for another, and a hand starts to move within one. At
-/// least half a millimetre.
-[[nodiscard]] constexpr double gaps_for(double period_s, double point_m_per_s) noexcept {
-  // A hand gains 0.2 m/s in three periods of 1 kHz: 67 m/s2, more than a tap of 20 mm at 6 Hz has.
-  constexpr double periods = 3.0, sudden_m_per_s_per_s = 200.0, least_m = 5e-4;
-  const double gaps_m = periods * period_s * (point_m_per_s + sudden_m_per_s_per_s * period_s);
-  return gaps_m > least_m ? gaps_m : least_m;
 }
 
 /// Says which setting is out of range and what would do.

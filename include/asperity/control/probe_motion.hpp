@@ -100,10 +100,6 @@ class probe_motion {
   /// What the coupling's springs do to the probe where it is.
   [[nodiscard]] coupling_pull pull() const noexcept { return coupling_.pull(target_T_wc_, probe_.state().T_wc); }
 
-  /// How fast the probe moves, and how fast its target does. World axes, of c_A.
-  [[nodiscard]] const twist& velocity_w() const noexcept { return probe_.state().velocity_w; }
-  [[nodiscard]] const twist& target_velocity_w() const noexcept { return target_velocity_w_; }
-
   /// Where the handle wants the probe's centre-of-mass frame, as far as the target has come.
   [[nodiscard]] const pose& target() const noexcept { return target_T_wc_; }
   /// Whether the target is where the handle is.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,9 +38,6 @@ struct scene {
 struct scene_pose {
   pose T_wa;
   std::span<const pose> T_wb;
-  /// Gaps up to this are wanted as support planes, m: as far as a point of the probe may come until the tick is not
-  /// used any more. A renderer tells none beyond its own reach. No force depends on it.
-  double gaps_m = std::numeric_limits<double>::infinity();
 };
 
 /// Centre of mass of the probe in the world: the point c_A that torques and gradients are about.

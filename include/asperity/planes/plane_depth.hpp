@@ -83,9 +83,9 @@ class ASPERITY_API plane_depth {
   // What known bounds grow by: how far samples have gone since the tick before.
   void learn_ways(const scene_pose& at) noexcept;
   // The deepest first, roughly.
-  void sort_by_depth(std::span<const near_patch> patches, double reach_m) noexcept;
+  void sort_by_depth(std::span<const near_patch> patches) noexcept;
   // The planes of a patch's leaves, where they can matter.
-  void read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader, double reach_m,
+  void read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
             std::span<near_plane> out) noexcept;
   // The patches' bounds, as sharp as this tick made them.
   void teach(const near_samples& found) noexcept;

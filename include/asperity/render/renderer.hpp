@@ -94,7 +94,6 @@ class basic_renderer {
     if constexpr (reports_planes_nearby<Depth>) {
       at_.T_wa = at.T_wa;
       std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
-      at_.gaps_m = at.gaps_m;
       out.planes_near = plane_source(*this);
     }
     if constexpr (reports_support_planes<Depth>) out.planes = depth_.support_planes();
@@ -112,8 +111,7 @@ class basic_renderer {
     const pose T_wa{glm::normalize(turn * at_.T_wa.rotation),
                     c_a_w + moved.linear + turn * (at_.T_wa.position - c_a_w)};
     if (!is_valid(T_wa)) return status::invalid_pose;
-    return depth_.planes_at({T_wa, at_.T_wb, at_.gaps_m}, found_, std::span(readings_).first(found_.size()), moved,
-                            above_m, out);
+    return depth_.planes_at({T_wa, at_.T_wb}, found_, std::span(readings_).first(found_.size()), moved, above_m, out);
   }
 
   [[nodiscard]] const asperity::scene& scene() const noexcept { return scene_; }
@@ -143,7 +141,6 @@ class basic_renderer {
   struct kept_poses {
     pose T_wa{};
     std::vector<pose> T_wb;
-    double gaps_m = 0.0;
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(T_wb); }
   };
   struct nothing {

@@ -1,7 +1,6 @@
 #include <array>
 #include <gtest/gtest.h>
 #include <limits>
-#include <memory>
 
 #include <asperity/control/contact_loop.hpp>
 
@@ -63,36 +62,6 @@ TEST_F(contact_loop_test, does_not_render_the_same_pose_twice) {
   ASSERT_EQ(loop.tick(1), status::ok);
   ASSERT_EQ(loop.tick(2), status::ok);
   EXPECT_EQ(loop.computed(), 1U);
-}
-
-// Keeps what it is asked for. Its probe is a box of 80 x 60 x 0 mm about its centre of mass: no point is further away
-// than 50 mm.
-struct gap_listener {
-  double* gaps_m;
-  asperity::scene bodies{};
-  [[nodiscard]] const asperity::scene& scene() const noexcept { return bodies; }
-  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
-    out = {};
-    *gaps_m = at.gaps_m;
-    return status::ok;
-  }
-};
-
-// Three periods of what the fastest point of probe and hand does, and of what a hand may gain meanwhile.
-TEST_F(contact_loop_test, asks_for_gaps_as_far_as_probe_and_hand_can_come) {
-  textured_model body;
-  body.box = {{-0.04, -0.03, 0.0}, {0.04, 0.03, 0.0}};
-  double gaps_m = 0.0;
-  contact_loop<gap_listener> loop({&gaps_m, {std::make_shared<const textured_model>(body), {}}}, {{}, vec3(0.0)},
-                                  shared, selection_for(2'000'000));
-  put({}, 1);
-  ASSERT_EQ(loop.tick(1), status::ok);
-  EXPECT_EQ(gaps_m, std::numeric_limits<double>::infinity()) << "of an unknown speed";
-  shared.poses.back() = {{}, 2, {}, {.linear_m_per_s = 0.1, .angular_rad_per_s = 2.0}};
-  shared.poses.publish();
-  ASSERT_EQ(loop.tick(2), status::ok);
-  EXPECT_NEAR(gaps_m, 3.0 * 0.002 * (0.1 + 2.0 * 0.05 + 0.4), 1e-15);
-  EXPECT_EQ(gaps_for(1e-4, 0.0), 5e-4);
 }
 
 TEST_F(contact_loop_test, a_renderer_that_fails_leaves_an_empty_contact_that_says_so) {
