@@ -2,9 +2,9 @@
 #pragma once
 
 #include "asperity/model/textured_model.hpp"
+#include "asperity/picture/model_picture.hpp"
 #include "cli.hpp"
 #include "output_file.hpp"
-#include "asperity/picture/model_picture.hpp"
 
 namespace asperity::command {
 
