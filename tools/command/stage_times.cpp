@@ -85,8 +85,9 @@ struct crowd {
     for (std::size_t i = 0; i < far_bodies; ++i) {
       bodies.fixed.push_back(alone.fixed.front());
       all.fixed.push_back(made.fixed.front());
+      const std::size_t row = 1 + i / 10, column = i % 10;
       T_wb.push_back({quat(1.0, 0.0, 0.0, 0.0),
-                      {apart_m * static_cast<double>(1 + i / 10), apart_m * static_cast<double>(i % 10), 0.0}});
+                      {apart_m * static_cast<double>(row), apart_m * static_cast<double>(column), 0.0}});
     }
     fields = std::make_shared<const field_scene>(std::move(all));
   }
