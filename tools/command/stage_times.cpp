@@ -86,8 +86,8 @@ struct crowd {
       bodies.fixed.push_back(alone.fixed.front());
       all.fixed.push_back(made.fixed.front());
       const std::size_t row = 1 + i / 10, column = i % 10;
-      T_wb.push_back({quat(1.0, 0.0, 0.0, 0.0),
-                      {apart_m * static_cast<double>(row), apart_m * static_cast<double>(column), 0.0}});
+      T_wb.push_back(
+          {quat(1.0, 0.0, 0.0, 0.0), {apart_m * static_cast<double>(row), apart_m * static_cast<double>(column), 0.0}});
     }
     fields = std::make_shared<const field_scene>(std::move(all));
   }
