@@ -80,6 +80,9 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
   double smaller_m = of.probe->box.diagonal();
   for (const model_ptr& b : of.fixed) smaller_m = std::min(smaller_m, b->box.diagonal());
   sinking_m_ = of_the_diagonal * smaller_m;
+  for (const field_sample& s : bodies_->probe->samples.samples()) {
+    farthest_m_ = std::max(farthest_m_, glm::distance(vec3(s.position_b), centre_of_mass_a_));
+  }
 }
 plane_depth::plane_depth(plane_depth&&) noexcept = default;
 plane_depth& plane_depth::operator=(plane_depth&&) noexcept = default;
@@ -113,6 +116,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   *asked_at_ = {};
   work_ = reading.work();
   work_.looked_at = found.looked_at();
+  known_motion_ = {-found.most_left_m(), -found.most_left_m() / farthest_m_};
   for (const near_leaf& leaf : found.leaves()) work_.listed += leaf.count;
   flags_ = watch_->look(*bodies_, at, reported_, c_a_w);
   return status::ok;

@@ -17,28 +17,38 @@
 namespace asperity {
 namespace {
 
+// How far a clearance is looked for while nothing is within reach, in reaches: three times as fast a hand is not held
+// back where it is so far away.
+constexpr double free_reaches = 3.0;
+
 // Samples of X in the field of Y; T_yx takes X's frame to Y's. What is known of X's balls spares looks at them.
 void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, const near_patch& whose, double reach_m,
           branch_bounds* known, near_samples& out) noexcept {
   using answer = sample_tree::branch_answer;
   near_patch patch = whose;
+  const auto leave = [&](double most_m) noexcept {
+    out.leave(most_m);
+    return answer::away;
+  };
   of_x.walk(
       [&](const sample_tree::branch& b) noexcept {
-        if (known != nullptr && !(known->most_m(b.number) > -reach_m)) return answer::away;
+        const double enough_m = out.size() == 0 ? free_reaches * reach_m : reach_m;
+        if (known != nullptr && !(known->most_m(b.number) > -enough_m)) return leave(known->most_m(b.number));
         out.look_at();
         const sample_ball ball = b.ball();
         const double near_m = in_y.most_near(T_yx * ball.centre_b, ball.radius_m);
         // Over a pitch the smooth part is nearly straight, and one reading serves all leaves of a ball.
         const bool whole = b.is_leaf() || !(ball.radius_m > in_y.smooth.pitch_m);
-        if (!(near_m > -reach_m) || !whole) {
+        if (!(near_m > -enough_m) || !whole || !(near_m > -reach_m)) {
           if (known != nullptr && near_m < known->most_m(b.number)) known->note(b.number, near_m);
-          if (!(near_m > -reach_m)) return answer::away;
+          if (!(near_m > -enough_m) || whole) return leave(near_m);
           if (known != nullptr) known->open(b);
           return answer::open;
         }
         patch.in_other = bound_of_ball(in_y, T_yx, ball);
         if (known != nullptr) known->note(b.number, patch.in_other.most_m);
-        if (!(patch.in_other.most_m > -reach_m)) return answer::away;
+        if (!(patch.in_other.most_m > -reach_m)) return leave(patch.in_other.most_m);
+        out.leave(-reach_m);
         patch.ball = ball;
         patch.branch = b.number;
         static_cast<void>(out.begin(patch));
@@ -50,17 +60,17 @@ void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, con
       });
 }
 
-// Whether any sample of X may be near Y.
-bool may_be_near(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, double reach_m) noexcept {
-  bool near = false;
+// No sample of X is deeper in Y.
+double most_near(const sample_tree& of_x, const body_field& in_y, const pose& T_yx) noexcept {
+  double most_m = -std::numeric_limits<double>::infinity();
   of_x.walk(
       [&](const sample_tree::branch& all) noexcept {
         const sample_ball ball = all.ball();
-        near = in_y.most_near(T_yx * ball.centre_b, ball.radius_m) > -reach_m;
+        most_m = in_y.most_near(T_yx * ball.centre_b, ball.radius_m);
         return sample_tree::branch_answer::away;
       },
       [](const sample_ball&, std::span<const field_sample>) noexcept {});
-  return near;
+  return most_m;
 }
 
 // Of the nodes that may be next to a point of the grid's border.
@@ -122,11 +132,19 @@ status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
   for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
     const sphere& body = fixed_[b];
     const vec3 body_w = at.T_wb[b] * body.centre_b;
-    if (!may_be_within(reach_m_, probe_w, probe_.radius_m, body_w, body.radius_m)) continue;
+    const double enough_m = out.size() == 0 ? free_reaches * reach_m_ : reach_m_;
+    if (!may_be_within(enough_m, probe_w, probe_.radius_m, body_w, body.radius_m)) {
+      out.leave(probe_.radius_m + body.radius_m - glm::distance(probe_w, body_w));
+      continue;
+    }
     ++near_bodies_;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[b];
     const pose T_ba = inverse(at.T_wb[b]) * at.T_wa, T_ab = inverse(T_ba);
-    if (!may_be_near(A.samples, B.field, T_ba, reach_m_) && !may_be_near(B.samples, A.field, T_ab, reach_m_)) continue;
+    const double most_m = std::max(most_near(A.samples, B.field, T_ba), most_near(B.samples, A.field, T_ab));
+    if (!(most_m > -enough_m)) {
+      out.leave(most_m);
+      continue;
+    }
     const auto known = known_ ? known_->of(b, at, *bodies_) : known_branches::pair_bounds{};
     list(A.samples, B.field, T_ba, {.body = b, .of_probe = true}, reach_m_, known.of_probe, out);
     list(B.samples, A.field, T_ab, {.body = b, .of_probe = false}, reach_m_, known.of_fixed, out);

@@ -10,6 +10,7 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/render/known_motion.hpp"
 #include "asperity/render/support_plane.hpp"
 
 namespace asperity {
@@ -40,6 +41,7 @@ struct linear_contact {
   std::uint32_t dropped = 0;          ///< contacts that did not fit
   status answer = status::not_ready;  ///< what the renderer answered at q0
   support_planes planes{};            ///< at q0; empty where the renderer knows none or nothing is near
+  known_motion known{};               ///< how far the probe may go from q0; unlimited where nobody says
   tick_flag flags = tick_flag::none;  ///< what the planes do not answer
 };
 

@@ -45,6 +45,7 @@ inline void linearise(const tick& found, status answer, const timed_pose& at, co
     out.planes.clear();
     return;
   }
+  out.known = found.known;
   out.flags = found.flags;
   if (!found.planes.empty() && found.dropped_contacts > 0) out.flags |= tick_flag::planes_left_out;
   if (selected == status::capacity_reached && lacks_a_wall(found.planes, out.planes, selection.same_direction)) {

@@ -1,6 +1,7 @@
 // The virtual tool: a small rigid body between the virtual coupling and the contact, stepped implicitly.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "asperity/control/contact_solver.hpp"
@@ -10,6 +11,7 @@
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/mass_properties.hpp"
+#include "asperity/render/known_motion.hpp"
 
 namespace asperity {
 
@@ -30,13 +32,20 @@ struct probe_state {
   twist velocity_w{};  ///< of c_A, world axes
 };
 
+/// Where the probe may go: as far as `known` from T_wc. Unlimited by default.
+struct known_region {
+  pose T_wc{};
+  known_motion known{};
+};
+
 /// Where the energy of the probe went since reset(), J. Work is of the wrench at the end of a step, as the step uses
-/// it. The three works minus numerical_j are the kinetic energy gained: to rounding where the inertia is a ball's,
+/// it. The four works minus numerical_j are the kinetic energy gained: to rounding where the inertia is a ball's,
 /// otherwise up to the gyroscopic torque that the step leaves out.
 struct probe_energy {
   double by_coupling_j = 0.0;  ///< work that the coupling did on the probe
   double by_contact_j = 0.0;   ///< work that the contact did on the probe
   double by_external_j = 0.0;  ///< work that the external wrench did on the probe
+  double by_border_j = 0.0;    ///< work that the border of the known region did on the probe: 0 or less
   double numerical_j = 0.0;  ///< energy that the implicit step took out: the work done minus the kinetic energy gained
 };
 
@@ -47,6 +56,11 @@ struct probe_energy {
 /// with K, B of the coupling and J of the contact. M, K, B are positive and J is negative semidefinite, so the matrix
 /// is positive definite and the step is stable for any stiffness. Against support planes J is zero and W_contact is
 /// the push of the planes at the end of the step (solve_contact), which is stable for any stiffness as well.
+///
+/// A step that leaves the known region ends at its border: on the way from where the probe is to the point of the border
+/// that lies between the step's end and the region's centre. Planes that hold at all three hold there. It goes that way
+/// as far as the border, which stands still, need not push the probe on; so the border takes energy and gives none. A
+/// probe that is outside, because a newer contact knows less of where it went, is not pulled back.
 /// The gyroscopic torque, which would break the symmetry, is left out: for a 10 g tool at a hand's 10 rad/s it is about
 /// 1 mN m.
 /// @source science, section 4
@@ -65,7 +79,7 @@ class probe {
   /// @rt safe: fixed cost
   [[nodiscard]] status step(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
                             const twist& target_velocity_w, const contact_evaluation& contact,
-                            const wrench& external_w = {}) noexcept {
+                            const wrench& external_w = {}, const known_region& within = {}) noexcept {
     const vec6 v = to_vec6(state_.velocity_w);
     const vec6 coupled = to_vec6(coupling.on_probe(target_T_wc, target_velocity_w, state_.T_wc, state_.velocity_w));
     const vec6 touched = to_vec6(contact.on_probe_w);
@@ -77,20 +91,20 @@ class probe {
 
     vec6 dv;
     if (!solve(a, load, dv) || !plausible(v + dv)) return stop();
-    const vec6 now = v + dv;
+    const vec6 now = keep_within(within, h_s, a, v + dv);
     book(h_s, coupling, inertia, v, now, coupled, touched + h_s * (contact.stiffness * now));
     energy_.by_external_j += h_s * dot(to_vec6(external_w), now);
     move(h_s, now);
     return status::ok;
   }
 
-  /// The same against support planes, as they were reported at T_wc0.
+  /// The same against support planes, as they were reported at within.T_wc.
   /// @param out which planes pushed, and how hard
   /// @return ok | not_finite (as above). A solver that ran out of passes is ok and tells its residual.
   /// @pre check(law)   @rt safe: at most law.most_passes passes
   [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
-                                      const twist& target_velocity_w, const support_planes& planes, const pose& T_wc0,
-                                      const contact_law& law, contact_solution& out,
+                                      const twist& target_velocity_w, const support_planes& planes,
+                                      const known_region& within, const contact_law& law, contact_solution& out,
                                       const wrench& external_w = {}) noexcept {
     const vec6 v = to_vec6(state_.velocity_w);
     const vec6 coupled = to_vec6(coupling.on_probe(target_T_wc, target_velocity_w, state_.T_wc, state_.velocity_w));
@@ -99,11 +113,12 @@ class probe {
     mat6 a = (1.0 / h_s) * inertia;
     const vec6 stretch_rate = add_coupling(h_s, coupling, v, a);
     const vec6 load = coupled + to_vec6(external_w) - stretch_rate;
-    out = solve_contact(a, load, v, h_s, planes, pose_difference(state_.T_wc, T_wc0), law);
+    out = solve_contact(a, load, v, h_s, planes, pose_difference(state_.T_wc, within.T_wc), law);
     if (!out.solved || !is_finite(out.on_probe_w) || !plausible(out.velocity)) {
       out = {};
       return stop();
     }
+    out.velocity = keep_within(within, h_s, a, out.velocity);
     book(h_s, coupling, inertia, v, out.velocity, coupled, to_vec6(out.on_probe_w));
     energy_.by_external_j += h_s * dot(to_vec6(external_w), out.velocity);
     move(h_s, out.velocity);
@@ -155,10 +170,29 @@ class probe {
     return status::not_finite;
   }
 
+  [[nodiscard]] static pose moved(const pose& T_wc, const vec6& by) noexcept {
+    return {glm::normalize(exp_rotation(by.angular) * T_wc.rotation), T_wc.position + by.linear};
+  }
+
   void move(double h_s, const vec6& now) noexcept {
     state_.velocity_w = to_twist(now);
-    state_.T_wc.position += h_s * now.linear;
-    state_.T_wc.rotation = glm::normalize(exp_rotation(h_s * now.angular) * state_.T_wc.rotation);
+    state_.T_wc = moved(state_.T_wc, h_s * now);
+  }
+
+  // The velocity that does not leave what is known; the step's own, to the bit, where that does not.
+  // The border's wrench is a (out - now). Its power is 0 or less as long as out is no further along the way to the border
+  // than the point that is nearest to the step's end in the metric of the step's matrix a.
+  [[nodiscard]] vec6 keep_within(const known_region& within, double h_s, const mat6& a, const vec6& now) noexcept {
+    if (!within.known.is_limited()) return now;
+    const vec6 far = pose_difference(moved(state_.T_wc, h_s * now), within.T_wc);
+    const double share = within.known.share(far);
+    if (!(share > 1.0)) return now;
+    const vec6 way = pose_difference(moved(within.T_wc, (1.0 / share) * far), state_.T_wc);
+    const double longest = dot(way, a * way);
+    const double part = longest > 0.0 ? std::clamp(h_s * dot(way, a * now) / longest, 0.0, 1.0) : 0.0;
+    const vec6 out = (part / h_s) * way;
+    energy_.by_border_j += h_s * dot(out, a * (out - now));
+    return out;
   }
 
   // The wrenches at the end of the step are the ones that the implicit equation balances: with them the book closes.

@@ -20,6 +20,8 @@ namespace asperity {
 /// A contact with support planes is solved for in every substep; one without is the linear wrench, evaluated at the
 /// probe's pose in every substep. A step of the target at the beginning of the period would be felt as a jerk by a
 /// probe that runs at several times the device's rate, so the target goes evenly from its last pose to the newest one.
+/// The probe goes no further than the contact knows (linear_contact::known), planes or not: there it waits for the next
+/// contact, and the coupling pulls at the hand by what it lags behind.
 /// @rt safe: no allocation, lock, throw, print or clock
 class probe_motion {
  public:
@@ -134,12 +136,13 @@ class probe_motion {
 
   [[nodiscard]] status substep(double h_s, const pose& target, const linear_contact& contact) noexcept {
     if (contact.planes.empty()) {
-      const status s = probe_.step(h_s, coupling_, target, target_velocity_w_, touched_);
+      const status s =
+          probe_.step(h_s, coupling_, target, target_velocity_w_, touched_, {}, {contact.T_wc, contact.known});
       touched_ = evaluate(contact, probe_.state().T_wc);
       return s;
     }
-    const status s =
-        probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, contact.planes, contact.T_wc, law_, pressed_);
+    const status s = probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, contact.planes,
+                                           {contact.T_wc, contact.known}, law_, pressed_);
     touched_ = {pressed_.on_probe_w, {}, false};
     return s;
   }

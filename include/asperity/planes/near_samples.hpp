@@ -1,6 +1,7 @@
 // What the plane finder hands on: which samples of one body may touch the other.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -85,7 +86,12 @@ class near_samples {
     patches_.clear();
     dropped_ = 0;
     looked_at_ = 0;
+    most_left_m_ = -std::numeric_limits<double>::infinity();
   }
+  /// Notes that samples which are no deeper than this are not listed, or are listed and may get no plane. @rt safe
+  void leave(double most_m) noexcept { most_left_m_ = std::max(most_left_m_, most_m); }
+  /// No sample that may get no plane is deeper, m; -infinity: there is none.
+  [[nodiscard]] double most_left_m() const noexcept { return most_left_m_; }
   /// Counts a ball of samples that a finder has looked at. @rt safe
   void look_at() noexcept { ++looked_at_; }
   [[nodiscard]] std::uint32_t looked_at() const noexcept { return looked_at_; }
@@ -129,6 +135,7 @@ class near_samples {
   std::vector<near_patch> patches_;
   std::size_t dropped_ = 0;
   std::uint32_t looked_at_ = 0;
+  double most_left_m_ = -std::numeric_limits<double>::infinity();
 };
 
 }  // namespace asperity

@@ -15,6 +15,7 @@
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/render/depth_work.hpp"
+#include "asperity/render/known_motion.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 #include "asperity/render/tick_flag.hpp"
@@ -72,6 +73,8 @@ class ASPERITY_API plane_depth {
 
   /// The planes of the last measure(), gaps included.
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return reported_; }
+  /// How far the probe may move from there: by the reach, or as far as nothing is near.
+  [[nodiscard]] known_motion known() const noexcept { return known_motion_; }
   /// What these planes do not answer.
   [[nodiscard]] tick_flag flags() const noexcept { return flags_; }
   /// What the last measure() cost.
@@ -107,12 +110,15 @@ class ASPERITY_API plane_depth {
   std::unique_ptr<known_depths> known_;
   std::shared_ptr<known_branches> branches_;
   std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
+  double farthest_m_ = 0.0;         // of the probe's samples from its centre of mass
+  known_motion known_motion_;
   depth_work work_;
   tick_flag flags_ = tick_flag::none;
 };
 
 static_assert(depth_backend<plane_depth>);
 static_assert(reports_planes_nearby<plane_depth>);
+static_assert(reports_known_motion<plane_depth>);
 static_assert(reports_work<plane_depth>);
 
 }  // namespace asperity

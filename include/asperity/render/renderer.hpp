@@ -13,6 +13,7 @@
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/render/depth_work.hpp"
 #include "asperity/render/force_model.hpp"
+#include "asperity/render/known_motion.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 
@@ -27,6 +28,7 @@ struct tick {
   std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
   std::span<const support_plane> planes;  ///< gaps included; empty where the depth backend knows none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
+  known_motion known{};                   ///< how far the probe may move on what the planes tell
   tick_flag flags = tick_flag::none;      ///< what the planes do not answer
   depth_work work{};                      ///< what it took
 };
@@ -89,6 +91,7 @@ class basic_renderer {
     out.depths = report.depths;
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
     out.dropped_contacts = found_.dropped();
+    if constexpr (reports_known_motion<Depth>) out.known = depth_.known();
     if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
     if constexpr (reports_work<Depth>) out.work = depth_.work();
     if constexpr (reports_planes_nearby<Depth>) {

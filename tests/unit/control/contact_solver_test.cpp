@@ -371,7 +371,7 @@ TEST(probe_on_planes, loses_what_its_law_says_in_a_blow) {
       ASSERT_EQ(tool.step(h_s, none, {}, {}, {}, {{0, 0, -0.01 * speed / h_s}, vec3(0.0)}), status::ok);
       const pose touch = tool.state().T_wc;
       do {
-        ASSERT_EQ(tool.step_on_planes(h_s, none, {}, {}, planes, touch, {.dissipation_s_per_m = alpha}, out),
+        ASSERT_EQ(tool.step_on_planes(h_s, none, {}, {}, planes, {touch, {}}, {.dissipation_s_per_m = alpha}, out),
                   status::ok);
       } while (out.lambda_n[0] > 0.0);
       const double lost = alpha * speed;  // to first order; the next is its square

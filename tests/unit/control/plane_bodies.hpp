@@ -46,6 +46,7 @@ struct plane_body {
   bool reports_planes = true;
   std::size_t most_reported = 1000;                                 ///< the deepest so many
   double reported_gap_m = std::numeric_limits<double>::infinity();  ///< gaps beyond this are not told
+  bool tells_known = true;                                          ///< how far the probe may go on the gaps told
   double linear_n_per_m = 5e4;                                      ///< of W0 and J
   bool linearised = true;                                           ///< false: J is dropped
 
@@ -71,6 +72,7 @@ struct plane_body {
       if (linearised) add_outer(out.force.stiffness, -linear_n_per_m, p.gradient);
     }
     out.centre_of_mass_w = c;
+    if (reports_planes && tells_known) out.known = known(at.T_wa);
     if (reports_planes) out.planes = reported();
     return status::ok;
   }
@@ -90,6 +92,14 @@ struct plane_body {
   }
 
  private:
+  // As far as gaps are told, or as far as nothing is near.
+  [[nodiscard]] known_motion known(const pose& T_wa) const noexcept {
+    double farthest_m = radius_m;
+    for (const vec3& point : points_c) farthest_m = std::max(farthest_m, glm::length(point) + radius_m);
+    const double way_m = std::max(reported_gap_m, -depth_m(T_wa));
+    return {way_m, way_m / farthest_m};
+  }
+
   void report(const wall& w, const vec3& centre, const vec3& c) noexcept {
     const double depth = w.depth_m(centre) + radius_m;
     const vec3 r = centre - radius_m * w.outward_w - c;

@@ -6,9 +6,13 @@
 
 #include <asperity/control/probe.hpp>
 
+#include "support/fresh_seed.hpp"
+#include "unit/control/drawn.hpp"
+
 namespace {
 
 using namespace asperity;
+using namespace asperity::test_support;
 
 constexpr double pi = 3.141592653589793;
 
@@ -242,6 +246,57 @@ TEST(virtual_coupling, pulls_the_probe_towards_the_device) {
   EXPECT_NEAR(w.torque.z, 0.3, 1e-12);
   const wrench drag = c.on_probe({}, {}, {}, {{1.0, 0, 0}, vec3(0.0)});
   EXPECT_DOUBLE_EQ(drag.force.x, -c.damping_n_s_per_m());
+}
+
+// Springs that want out of what is known: the probe stays in it, the border takes energy and gives none, whatever its
+// shape and the probe's inertia are.
+TEST(probe, the_border_of_what_is_known_only_takes_energy) {
+  drawn d(seed_of(fresh_seed("probe, border", "300 probes"), "border"));
+  double taken_j = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    const double arm_m = d.log_between(0.01, 0.1);
+    const double inertia = 0.01 * arm_m * arm_m * d.log_between(0.01, 1.0);
+    probe p({0.01, mat3(inertia)});
+    known_region within{{exp_rotation(d.inside(1.0)), d.inside(0.1)}, {d.log_between(1e-4, 2e-3), 0.0}};
+    within.known.turn_rad = within.known.way_m / arm_m;
+    const auto somewhere = [&](double share) {
+      const vec3 way = within.known.way_m * d.inside(share), turn = within.known.turn_rad * d.inside(share);
+      return pose{exp_rotation(turn) * within.T_wc.rotation, within.T_wc.position + way};
+    };
+    const bool outside = i % 4 == 0;  // a newer contact may know less of where the probe is
+    p.reset(somewhere(outside ? 2.0 : 0.5));
+    const virtual_coupling coupling({.stiffness_n_per_m = d.log_between(100, 5e3),
+                                     .stiffness_n_m_per_rad = d.log_between(0.1, 20),
+                                     .damping_n_s_per_m = d.log_between(1e-3, 5),
+                                     .damping_n_m_s_per_rad = d.log_between(1e-6, 0.05)},
+                                    0.01, inertia);
+    linear_contact wall;
+    wall.T_wc = within.T_wc;
+    wall.stiffness(2, 2) = -d.log_between(10, 1e4);
+    for (int hop = 0; hop < 10; ++hop) {
+      const pose target = somewhere(3.0);
+      double energy_j = std::numeric_limits<double>::infinity();
+      for (int k = 0; k < 40; ++k) {
+        const double share_before = within.known.share(pose_difference(p.state().T_wc, within.T_wc));
+        const double border_before_j = p.energy().by_border_j;
+        ASSERT_EQ(p.step(1.25e-4, coupling, target, {},
+                         hop % 2 == 0 ? contact_evaluation{} : evaluate(wall, p.state().T_wc), {}, within),
+                  status::ok);
+        const double share = within.known.share(pose_difference(p.state().T_wc, within.T_wc));
+        ASSERT_LE(share, std::max(1.0, share_before) + 1e-9) << i;
+        ASSERT_LE(p.energy().by_border_j, border_before_j + 1e-15) << i;
+        if (hop % 2 != 0) continue;
+        const double now_j = p.kinetic_j() + coupling.stored_j(target, p.state().T_wc);
+        ASSERT_LE(now_j, energy_j * (1.0 + 1e-9) + 1e-12) << i << ' ' << hop << ' ' << k;
+        energy_j = now_j;
+      }
+    }
+    const probe_energy& e = p.energy();
+    const double gained = e.by_coupling_j + e.by_contact_j + e.by_external_j + e.by_border_j - e.numerical_j;
+    EXPECT_NEAR(gained, p.kinetic_j(), 1e-9 * (1.0 + std::fabs(e.by_coupling_j))) << i;
+    taken_j -= e.by_border_j;
+  }
+  EXPECT_GT(taken_j, 1e-3);
 }
 
 }  // namespace
