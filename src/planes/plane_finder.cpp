@@ -17,9 +17,19 @@
 namespace asperity {
 namespace {
 
-// How far a clearance is looked for while nothing is within reach, in reaches: three times as fast a hand is not held
-// back where it is so far away.
-constexpr double free_reaches = 3.0;
+// Up to which gap balls are looked into. Within reach all are. Where nothing is, the walk goes on for the clearance: to
+// three reaches, so that three times as fast a hand is not held back, and no further than the nearest that it has left.
+double looks_to_m(const near_samples& found, double reach_m) noexcept {
+  constexpr double free_reaches = 3.0;
+  return std::clamp(-found.most_left_m(), reach_m, free_reaches * reach_m);
+}
+
+// None of these samples is deeper.
+double most_near(std::span<const field_sample> of_x, const body_field& in_y, const pose& T_yx) noexcept {
+  double most_m = -std::numeric_limits<double>::infinity();
+  for (const field_sample& s : of_x) most_m = std::max(most_m, in_y.most_near(T_yx * vec3(s.position_b), 0.0));
+  return most_m;
+}
 
 // Samples of X in the field of Y; T_yx takes X's frame to Y's. What is known of X's balls spares looks at them.
 void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, const near_patch& whose, double reach_m,
@@ -32,22 +42,27 @@ void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, con
   };
   of_x.walk(
       [&](const sample_tree::branch& b) noexcept {
-        const double enough_m = out.size() == 0 ? free_reaches * reach_m : reach_m;
+        const double enough_m = looks_to_m(out, reach_m);
         if (known != nullptr && !(known->most_m(b.number) > -enough_m)) return leave(known->most_m(b.number));
         out.look_at();
         const sample_ball ball = b.ball();
         const double near_m = in_y.most_near(T_yx * ball.centre_b, ball.radius_m);
         // Over a pitch the smooth part is nearly straight, and one reading serves all leaves of a ball.
         const bool whole = b.is_leaf() || !(ball.radius_m > in_y.smooth.pitch_m);
-        if (!(near_m > -enough_m) || !whole || !(near_m > -reach_m)) {
+        if (!(near_m > -enough_m) || !whole) {
           if (known != nullptr && near_m < known->most_m(b.number)) known->note(b.number, near_m);
-          if (!(near_m > -enough_m) || whole) return leave(near_m);
+          if (!(near_m > -enough_m)) return leave(near_m);
           if (known != nullptr) known->open(b);
           return answer::open;
         }
         patch.in_other = bound_of_ball(in_y, T_yx, ball);
-        if (known != nullptr) known->note(b.number, patch.in_other.most_m);
-        if (!(patch.in_other.most_m > -reach_m)) return leave(patch.in_other.most_m);
+        double most_m = patch.in_other.most_m;
+        // A leaf of a plain face may be a few samples far apart, and its ball reaches where none of them is.
+        if (most_m > -enough_m && ball.radius_m > in_y.smooth.pitch_m) {
+          most_m = std::min(most_m, most_near(b.samples(), in_y, T_yx));
+        }
+        if (known != nullptr) known->note(b.number, most_m);
+        if (!(most_m > -reach_m)) return leave(most_m);
         out.leave(-reach_m);
         patch.ball = ball;
         patch.branch = b.number;
@@ -132,7 +147,7 @@ status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
   for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
     const sphere& body = fixed_[b];
     const vec3 body_w = at.T_wb[b] * body.centre_b;
-    const double enough_m = out.size() == 0 ? free_reaches * reach_m_ : reach_m_;
+    const double enough_m = looks_to_m(out, reach_m_);
     if (!may_be_within(enough_m, probe_w, probe_.radius_m, body_w, body.radius_m)) {
       out.leave(probe_.radius_m + body.radius_m - glm::distance(probe_w, body_w));
       continue;

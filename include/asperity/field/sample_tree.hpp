@@ -72,6 +72,9 @@ class sample_tree {
 
     [[nodiscard]] bool is_leaf() const noexcept { return right == 0; }
     [[nodiscard]] sample_ball ball() const noexcept { return of->balls_[number].in_double(); }
+    [[nodiscard]] std::span<const field_sample> samples() const noexcept {
+      return std::span(of->samples_).subspan(of->balls_[number].first, of->balls_[number].count);
+    }
   };
 
   /// How many balls are numbered.
