@@ -10,7 +10,6 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
-#include "asperity/render/known_motion.hpp"
 #include "asperity/render/support_plane.hpp"
 
 namespace asperity {

@@ -11,7 +11,7 @@
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/mass_properties.hpp"
-#include "asperity/render/known_motion.hpp"
+#include "asperity/render/support_plane.hpp"
 
 namespace asperity {
 

@@ -13,7 +13,6 @@
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/render/depth_work.hpp"
 #include "asperity/render/force_model.hpp"
-#include "asperity/render/known_motion.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 

@@ -1,8 +1,10 @@
 // The surface near the probe as planes: what a renderer can tell of contacts and of gaps alike.
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "asperity/core/spatial.hpp"
@@ -29,15 +31,36 @@ struct support_plane {
          std::isfinite(p.spread_m);
 }
 
+/// How far the probe may move from the pose of a tick: while share() is at most 1, it meets no surface but that of the
+/// tick's planes. Infinite where a renderer does not say.
+struct known_motion {
+  double way_m = std::numeric_limits<double>::infinity();     ///< of c_A, where the probe does not turn; above 0
+  double turn_rad = std::numeric_limits<double>::infinity();  ///< about c_A, where it does not move; above 0
+
+  [[nodiscard]] bool is_limited() const noexcept { return std::isfinite(way_m) && std::isfinite(turn_rad); }
+  /// How much of it a motion takes, about c_A: 0 none, 1 all. @rt safe
+  [[nodiscard]] double share(const vec6& moved) const noexcept {
+    return std::sqrt(glm::dot(moved.linear, moved.linear)) / way_m +
+           std::sqrt(glm::dot(moved.angular, moved.angular)) / turn_rad;
+  }
+};
+
 /// A stage of a renderer that knows the support planes of its last tick, gaps included. Gaps should be reported up to
 /// 3 v T, v the fastest approach and T the contact loop's period: a contact is handed over a period after its pose and
-/// used for another, and the probe enters what is not reported by then. A gap behind others that every motion meets
+/// used for another, and the probe waits for what is not reported by then. A gap behind others that every motion meets
 /// before it need not be reported.
 /// The order of the planes must not depend on addresses or time. The span lives until the next tick.
 template <class P>
 concept reports_support_planes = requires(const P& stage) {
   { stage.support_planes() }
   noexcept->std::same_as<std::span<const support_plane>>;
+};
+
+/// A stage of a renderer that knows how far the probe may move from the pose of its last tick.
+template <class P>
+concept reports_known_motion = requires(const P& stage) {
+  { stage.known() }
+  noexcept->std::same_as<known_motion>;
 };
 
 /// A stage of a renderer that knows what the planes of its last tick do not answer.
