@@ -35,7 +35,8 @@ struct loop_periods {
 struct control_settings {
   probe_settings probe{};
   coupling_settings coupling{};
-  contact_law contact{};  ///< of support planes, see check(); a linear contact brings its own stiffness
+  contact_law contact{};         ///< of support planes, see check(); a linear contact brings its own stiffness
+  friction_settings friction{};  ///< on support planes, see check()
   guard_settings guard{};
   contact_ageing ageing{};  ///< how old a contact may be felt
   rate_limits rates{};      ///< how late the loops may be

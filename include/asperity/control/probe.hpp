@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "asperity/control/contact_solver.hpp"
+#include "asperity/control/friction.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/pose.hpp"
@@ -39,11 +40,12 @@ struct known_region {
 };
 
 /// Where the energy of the probe went since reset(), J. Work is of the wrench at the end of a step, as the step uses
-/// it. The four works minus numerical_j are the kinetic energy gained: to rounding where the inertia is a ball's,
+/// it. The five works minus numerical_j are the kinetic energy gained: to rounding where the inertia is a ball's,
 /// otherwise up to the gyroscopic torque that the step leaves out.
 struct probe_energy {
   double by_coupling_j = 0.0;  ///< work that the coupling did on the probe
   double by_contact_j = 0.0;   ///< work that the contact did on the probe
+  double by_friction_j = 0.0;  ///< work that friction did on the probe; minus what friction_energy stores and lost
   double by_external_j = 0.0;  ///< work that the external wrench did on the probe
   double by_border_j = 0.0;    ///< work that the border of the known region did on the probe: 0 or less
   double numerical_j = 0.0;  ///< energy that the implicit step took out: the work done minus the kinetic energy gained
@@ -99,12 +101,14 @@ class probe {
   }
 
   /// The same against support planes, as they were reported at within.T_wc.
+  /// @param rubbing of the probe on what the planes stand for, from step to step
   /// @param out which planes pushed, and how hard
   /// @return ok | not_finite (as above). A solver that ran out of passes is ok and tells its residual.
-  /// @pre check(law)   @rt safe: at most law.most_passes passes
+  /// @pre check(law)   @rt safe: at most law.most_passes passes of each solution that friction takes
   [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
                                       const twist& target_velocity_w, const support_planes& planes,
-                                      const known_region& within, const contact_law& law, contact_solution& out,
+                                      const known_region& within, const contact_law& law, friction& rubbing,
+                                      contact_solution& out,
                                       const wrench& external_w = {}) noexcept {
     const vec6 v = to_vec6(state_.velocity_w);
     const vec6 coupled = to_vec6(coupling.on_probe(target_T_wc, target_velocity_w, state_.T_wc, state_.velocity_w));
@@ -113,16 +117,28 @@ class probe {
     mat6 a = (1.0 / h_s) * inertia;
     const vec6 stretch_rate = add_coupling(h_s, coupling, v, a);
     const vec6 load = coupled + to_vec6(external_w) - stretch_rate;
-    out = solve_contact(a, load, v, h_s, planes, pose_difference(state_.T_wc, within.T_wc), law);
+    out = rubbing.solve(a, load, v, h_s, planes, pose_difference(state_.T_wc, within.T_wc), law);
     if (!out.solved || !is_finite(out.on_probe_w) || !plausible(out.velocity)) {
       out = {};
+      rubbing.forget();
       return stop();
     }
     out.velocity = keep_within(within, h_s, a, out.velocity);
+    rubbing.settle(h_s, out.velocity);
     book(h_s, coupling, inertia, v, out.velocity, coupled, to_vec6(out.on_probe_w));
+    energy_.by_friction_j += h_s * dot(to_vec6(rubbing.on_probe_w()), out.velocity);
     energy_.by_external_j += h_s * dot(to_vec6(external_w), out.velocity);
     move(h_s, out.velocity);
     return status::ok;
+  }
+
+  /// The same without friction.
+  [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
+                                      const twist& target_velocity_w, const support_planes& planes,
+                                      const known_region& within, const contact_law& law, contact_solution& out,
+                                      const wrench& external_w = {}) noexcept {
+    friction none;
+    return step_on_planes(h_s, coupling, target_T_wc, target_velocity_w, planes, within, law, none, out, external_w);
   }
 
   [[nodiscard]] const probe_state& state() const noexcept { return state_; }

@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "asperity/control/contact_solver.hpp"
+#include "asperity/control/friction.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/probe.hpp"
 #include "asperity/control/virtual_coupling.hpp"
@@ -26,13 +27,15 @@ namespace asperity {
 class probe_motion {
  public:
   /// @param substeps of the probe in one period; at least one is made
-  /// @pre check(law)
-  probe_motion(const probe_settings& body, const coupling_settings& coupling, const contact_law& law,
-               int substeps) noexcept
+  /// @param rubbing on support planes; a contact without planes has no friction
+  /// @pre check(law), check(rubbing)
+  probe_motion(const probe_settings& body, const coupling_settings& coupling, const contact_law& law, int substeps,
+               const friction_settings& rubbing = {}) noexcept
       : law_(law),
         substeps_(std::max(1, substeps)),
         coupling_(coupling, body.mass_kg, mean_inertia(body)),
-        probe_(body) {}
+        probe_(body),
+        friction_(rubbing) {}
 
   /// Puts probe and target there, at rest.
   void place(const pose& target_T_wc) noexcept {
@@ -40,6 +43,7 @@ class probe_motion {
     target_velocity_w_ = {};
     recent_.fill({});
     probe_.reset(target_T_wc);
+    friction_.reset();
     caught_up_ = true;
   }
 
@@ -47,6 +51,7 @@ class probe_motion {
   void forget_contact() noexcept {
     touched_ = {};
     pressed_ = {};
+    friction_.forget();
   }
 
   /// From the present target to another pose: translation (m) and rotation vector (rad), world axes.
@@ -99,8 +104,12 @@ class probe_motion {
     return -1.0 * coupling_.on_probe(target_T_wc_, target_velocity_w_, p.T_wc, p.velocity_w);
   }
 
-  /// What the coupling's springs do to the probe where it is.
-  [[nodiscard]] coupling_pull pull() const noexcept { return coupling_.pull(target_T_wc_, probe_.state().T_wc); }
+  /// What the coupling's springs do to the probe where it is, less what friction holds.
+  [[nodiscard]] coupling_pull pull() const noexcept {
+    coupling_pull out = coupling_.pull(target_T_wc_, probe_.state().T_wc);
+    out.on_probe_w += friction_.on_probe_w();
+    return out;
+  }
 
   /// Where the handle wants the probe's centre-of-mass frame, as far as the target has come.
   [[nodiscard]] const pose& target() const noexcept { return target_T_wc_; }
@@ -110,6 +119,8 @@ class probe_motion {
   [[nodiscard]] const contact_evaluation& touched() const noexcept { return touched_; }
   /// The solution of the last substep; empty where the last contact had no planes.
   [[nodiscard]] const contact_solution& pressed() const noexcept { return pressed_; }
+  /// What rubs, and its energy.
+  [[nodiscard]] const friction& rubbing() const noexcept { return friction_; }
   [[nodiscard]] const asperity::probe& probe() const noexcept { return probe_; }
   [[nodiscard]] const virtual_coupling& coupling() const noexcept { return coupling_; }
 
@@ -136,14 +147,15 @@ class probe_motion {
 
   [[nodiscard]] status substep(double h_s, const pose& target, const linear_contact& contact) noexcept {
     if (contact.planes.empty()) {
+      friction_.forget();
       const status s =
           probe_.step(h_s, coupling_, target, target_velocity_w_, touched_, {}, {contact.T_wc, contact.known});
       touched_ = evaluate(contact, probe_.state().T_wc);
       return s;
     }
     const status s = probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, contact.planes,
-                                           {contact.T_wc, contact.known}, law_, pressed_);
-    touched_ = {pressed_.on_probe_w, {}, false};
+                                           {contact.T_wc, contact.known}, law_, friction_, pressed_);
+    touched_ = {pressed_.on_probe_w + friction_.on_probe_w(), {}, false};
     return s;
   }
 
@@ -158,6 +170,7 @@ class probe_motion {
   int substeps_;
   virtual_coupling coupling_;
   asperity::probe probe_;
+  friction friction_;
   pose target_T_wc_{};
   twist target_velocity_w_{};
   std::array<stretch, most_recent> recent_{};  // the newest first

@@ -17,6 +17,7 @@ struct virtual_tool_settings {
   probe_settings probe{};
   coupling_settings coupling{};
   contact_law contact{};
+  friction_settings friction{};
   plane_selection selection{};   ///< selection_for() the period in which ticks are rendered
   pose T_ha{};                   ///< the probe's body frame on the handle
   vec3 centre_of_mass_a{0.0};    ///< c_A in the probe's body frame, m (textured_model::mass)
@@ -36,12 +37,12 @@ struct virtual_tool_settings {
 /// It limits no force and watches no clock: what leaves should pass an output_gate, as a device_loop's wrench does.
 class virtual_tool {
  public:
-  /// @pre check(settings.contact), check(settings.selection)
+  /// @pre check(settings.contact), check(settings.friction), check(settings.selection)
   explicit virtual_tool(const virtual_tool_settings& settings) noexcept
       : settings_(settings),
         T_hc_(settings.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), settings.centre_of_mass_a}),
         T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), settings.centre_of_mass_a})),
-        motion_(settings.probe, settings.coupling, settings.contact, settings.substeps) {}
+        motion_(settings.probe, settings.coupling, settings.contact, settings.substeps, settings.friction) {}
 
   /// Puts the probe where the handle is, at rest.
   /// @pre is_valid(T_wh)
@@ -72,8 +73,9 @@ class virtual_tool {
       return {};
     }
     const pose then_T_wc = T_wa_then * inverse(T_ca_);
-    linearise(found, answer, {then_T_wc, 0, motion_.coupling().pull(T_wh * T_hc_, then_T_wc)}, settings_.selection,
-              rest_, contact_);
+    coupling_pull pull = motion_.coupling().pull(T_wh * T_hc_, then_T_wc);
+    pull.on_probe_w += motion_.rubbing().on_probe_w();
+    linearise(found, answer, {then_T_wc, 0, pull}, settings_.selection, rest_, contact_);
     last_ = motion_.move(std::min(dt_s, settings_.longest_step_s), T_wh * T_hc_, 1.0, contact_);
     const wrench felt = transport(motion_.on_hand_w(), motion_.target().position, T_wh.position);
     if (last_ == status::ok && !is_finite(felt)) last_ = status::not_finite;

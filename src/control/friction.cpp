@@ -1,0 +1,154 @@
+#include "asperity/control/friction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/cholesky.hpp"
+
+namespace asperity {
+
+namespace {
+
+double squared(const mat6& metric, const vec6& z) noexcept { return std::max(0.0, dot(z, metric * z)); }
+
+// Adds a point that presses with a share of the force: how its way along the surface follows from the probe's motion.
+void add_point(mat6& to, double share, const support_plane& p) noexcept {
+  const vec3 u = any_orthogonal(p.n_ab_w), v = glm::cross(p.n_ab_w, u);
+  // (T x) . u = u . (x.linear + x.angular x r) = u . x.linear + (r x u) . x.angular
+  add_outer(to, share, {u, glm::cross(p.r_w, u)});
+  add_outer(to, share, {v, glm::cross(p.r_w, v)});
+  if (p.spread_m > 0.0) add_outer(to, share * p.spread_m * p.spread_m, {vec3(0.0), p.n_ab_w});
+}
+
+// The shortest motion that stretches the points as z does. What stretches none of them, as rolling, would count when
+// others press. The metric has no inverse; a billionth of its size makes one, and takes less than 0.1 nm/s off z.
+vec6 without_rest(const mat6& metric, const vec6& z) noexcept {
+  constexpr double of_its_size = 1e-9;
+  const double linear = (metric(0, 0) + metric(1, 1) + metric(2, 2)) / 3.0;
+  const double angular = (metric(3, 3) + metric(4, 4) + metric(5, 5)) / 3.0;
+  mat6 regular = metric;
+  for (std::size_t i = 0; i < 6; ++i) regular(i, i) += of_its_size * (i < 3 ? linear : angular + 1e-9 * linear);
+  const cholesky6 factors(regular);
+  return factors.positive() ? factors.solve(metric * z) : vec6{};
+}
+
+}  // namespace
+
+result<void> check(const friction_settings& s) {
+  const auto bad = [](std::string what) { return error{error_code::invalid_argument, "friction: " + what}; };
+  if (!(s.static_coefficient >= 0.0 && s.static_coefficient <= 10.0)) {
+    return bad("static_coefficient must be from 0 to 10");
+  }
+  if (!(s.dynamic_coefficient >= 0.0 && s.dynamic_coefficient <= s.static_coefficient)) {
+    return bad("dynamic_coefficient must be from 0 to static_coefficient");
+  }
+  if (!(std::isfinite(s.stribeck_m_per_s) && s.stribeck_m_per_s > 0.0)) {
+    return bad("stribeck_m_per_s must be a finite speed above 0");
+  }
+  if (!(std::isfinite(s.stiffness_n_per_m) && s.stiffness_n_per_m > 0.0 && s.stiffness_n_per_m <= 1e8)) {
+    return bad("stiffness_n_per_m must be above 0 and at most 1e8");
+  }
+  if (!(s.damping_s >= 0.0 && s.damping_s <= 0.1)) return bad("damping_s must be from 0 to 0.1");
+  return {};
+}
+
+void friction::forget() noexcept {
+  for (const bristle& b : bristles_) energy_.lost_j += b.stored_j;
+  bristles_.clear();
+  energy_.stored_j = 0.0;
+  on_probe_w_ = {};
+  slips_ = false;
+}
+
+double friction::coefficient(double slip_m_per_s) const noexcept {
+  const double ratio = slip_m_per_s / settings_.stribeck_m_per_s;
+  return settings_.dynamic_coefficient +
+         (settings_.static_coefficient - settings_.dynamic_coefficient) * std::exp(-ratio * ratio);
+}
+
+void friction::find_bodies(const support_planes& planes) noexcept {
+  for (const support_plane& p : planes) {
+    const bool known =
+        std::any_of(bristles_.begin(), bristles_.end(), [&](const bristle& b) { return b.body == p.body; });
+    if (!known) static_cast<void>(bristles_.push_back({.body = p.body}));
+  }
+}
+
+void friction::measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept {
+  const double k = settings_.stiffness_n_per_m;
+  for (bristle& b : bristles_) {
+    b.next_normal_n = 0.0;
+    b.next_metric = {};
+    const auto force_n = [&](std::size_t i) {
+      const vec3& slope = planes[i].gradient.linear;
+      return planes[i].body == b.body ? by.lambda_n[i] * std::sqrt(glm::dot(slope, slope)) : 0.0;
+    };
+    for (std::size_t i = 0; i < planes.size(); ++i) b.next_normal_n += force_n(i);
+    if (!(b.next_normal_n > 0.0)) continue;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      if (force_n(i) > 0.0) add_point(b.next_metric, force_n(i) / b.next_normal_n, planes[i]);
+    }
+    const double held_j = 0.5 * k * squared(b.next_metric, b.stretch);
+    b.held = held_j > b.stored_j ? std::sqrt(b.stored_j / held_j) * b.stretch : b.stretch;
+    // What the bristle gave up in the pass before, or the step before, has slipped; the rest is its own stretch.
+    const double slip_m_per_s = (1.0 - b.theta) * std::sqrt(squared(b.next_metric, b.held + h_s * v)) / h_s;
+    const double most_m = coefficient(slip_m_per_s) * b.next_normal_n / k;
+    const double stretch_m = std::sqrt(squared(b.next_metric, b.held + (h_s + settings_.damping_s) * v));
+    b.theta = stretch_m > most_m ? most_m / stretch_m : 1.0;
+  }
+}
+
+void friction::finish(const vec6& v, double h_s) noexcept {
+  const double k = settings_.stiffness_n_per_m;
+  on_probe_w_ = {};
+  slips_ = false;
+  double stored_j = 0.0;
+  std::size_t kept = 0;
+  for (bristle& b : bristles_) {
+    if (!(b.next_normal_n > 0.0)) {
+      energy_.lost_j += b.stored_j;
+      continue;
+    }
+    b.metric = b.next_metric;
+    b.normal_n = b.next_normal_n;
+    b.stretch = b.theta * (b.held + h_s * v);
+    const vec6 f = -k * (b.metric * (b.stretch + (b.theta * settings_.damping_s) * v));
+    on_probe_w_ += to_wrench(f);
+    slips_ = slips_ || b.theta < 1.0;
+    b.stretch = without_rest(b.metric, b.stretch);
+    const double now_j = 0.5 * k * squared(b.metric, b.stretch);
+    energy_.lost_j += b.stored_j - h_s * dot(f, v) - now_j;
+    b.stored_j = now_j;
+    stored_j += now_j;
+    bristles_[kept++] = b;
+  }
+  bristles_.truncate(kept);
+  energy_.stored_j = stored_j;
+}
+
+contact_solution friction::solve(const mat6& a, const vec6& load, const vec6& v0, double h_s,
+                                 const support_planes& planes, const vec6& moved, const contact_law& law) noexcept {
+  constexpr int most_passes = 4;
+  const double k = settings_.stiffness_n_per_m, horizon_s = h_s + settings_.damping_s;
+  contact_solution out = solve_contact(a, load, v0, h_s, planes, moved, law);
+  if (!settings_.any() || !out.solved) return out;
+  find_bodies(planes);
+  for (int pass = 0; pass < most_passes; ++pass) {
+    measure(planes, out, pass == 0 ? v0 : out.velocity, h_s);
+    mat6 with = a;
+    vec6 pulled = load;
+    for (const bristle& b : bristles_) {
+      if (!(b.next_normal_n > 0.0)) continue;
+      const mat6 spring = (b.theta * k) * b.next_metric;
+      with += horizon_s * spring;
+      pulled = pulled - spring * (b.held + horizon_s * v0);
+    }
+    out = solve_contact(with, pulled, v0, h_s, planes, moved, law);
+    if (!out.solved) return out;
+  }
+  finish(out.velocity, h_s);
+  return out;
+}
+
+}  // namespace asperity

@@ -1,0 +1,267 @@
+// Friction against closed forms, and its energy step by step.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <asperity/control/friction.hpp>
+#include <asperity/control/probe.hpp>
+
+#include "support/fresh_seed.hpp"
+
+namespace asperity {
+namespace {
+
+using test_support::fresh_seed;
+
+constexpr double mass_kg = 0.01, h_s = 1.25e-4;
+
+support_plane plane_at(const vec3& n_ab_w, const vec3& r_w, double depth_m, std::uint32_t body = 0) {
+  return {
+      .depth_m = depth_m, .gradient = {n_ab_w, glm::cross(r_w, n_ab_w)}, .n_ab_w = n_ab_w, .r_w = r_w, .body = body};
+}
+
+// A floor below the probe, which points at these places press on.
+support_planes floor_under(const std::vector<vec3>& points) {
+  support_planes out;
+  for (const vec3& r : points) static_cast<void>(out.push_back(plane_at({0, 0, -1}, r, 0.0)));
+  return out;
+}
+
+const std::vector<vec3> feet{
+    {0.01, 0.01, -0.002}, {-0.01, 0.01, -0.002}, {0.01, -0.01, -0.002}, {-0.01, -0.01, -0.002}};
+
+// A probe on a floor, pushed by a wrench; its coupling is too weak to feel.
+struct sledge {
+  explicit sledge(const friction_settings& s, const std::vector<vec3>& points = feet)
+      : planes(floor_under(points)), rubbing(s) {
+    body.reset({});
+  }
+  void push(const wrench& w) {
+    ASSERT_EQ(body.step_on_planes(h_s, coupling, {}, {}, planes, {}, law, rubbing, pressed, w), status::ok);
+  }
+  [[nodiscard]] double normal_n() const { return pressed.on_probe_w.force.z; }
+
+  probe body{{mass_kg, mat3(1e-6)}};
+  virtual_coupling coupling{{.stiffness_n_per_m = 1e-9,
+                             .stiffness_n_m_per_rad = 1e-9,
+                             .damping_n_s_per_m = 1e-9,
+                             .damping_n_m_s_per_rad = 1e-9},
+                            mass_kg,
+                            1e-6};
+  support_planes planes;
+  contact_law law{};
+  friction rubbing;
+  contact_solution pressed;
+};
+
+double length(const vec3& v) { return std::sqrt(glm::dot(v, v)); }
+
+TEST(Friction, HoldsBelowTheConeAndSlipsAboveIt) {
+  std::mt19937_64 bits(fresh_seed("Friction.HoldsBelowTheConeAndSlipsAboveIt", "60 pushes"));
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (int n = 0; n < 60; ++n) {
+    const double mu_s = 0.1 + 1.1 * any(bits), mu_d = mu_s * (0.3 + 0.7 * any(bits));
+    const double load_n = std::pow(10.0, -1.0 + 2.3 * any(bits)), angle = 2.0 * std::numbers::pi * any(bits);
+    const vec3 along{std::cos(angle), std::sin(angle), 0.0};
+    sledge holds({.static_coefficient = mu_s, .dynamic_coefficient = mu_d});
+    for (int i = 0; i < 4000; ++i)
+      holds.push({-load_n * vec3(0, 0, 1) + 0.97 * mu_s * load_n * std::min(1.0, i / 2000.0) * along, {}});
+    EXPECT_LT(length(holds.body.state().velocity_w.linear), 1e-5) << mu_s << ' ' << mu_d << ' ' << load_n;
+    sledge slips({.static_coefficient = mu_s, .dynamic_coefficient = mu_d});
+    for (int i = 0; i < 4000; ++i)
+      slips.push({-load_n * vec3(0, 0, 1) + 1.05 * mu_s * load_n * std::min(1.0, i / 2000.0) * along, {}});
+    EXPECT_GT(length(slips.body.state().velocity_w.linear), 0.2);
+    // Fast by now: the dynamic coefficient, against the motion.
+    const vec3 f = slips.rubbing.on_probe_w().force;
+    EXPECT_NEAR(-glm::dot(f, along), mu_d * load_n, 0.02 * mu_d * load_n);
+    EXPECT_LT(length(f + glm::dot(-f, along) * along), 0.01 * mu_d * load_n);
+  }
+}
+
+// Four feet on a circle of radius R resist a turn by mu N R.
+TEST(Friction, ResistsATurnByHowFarPointsAreApart) {
+  std::mt19937_64 bits(fresh_seed("Friction.ResistsATurnByHowFarPointsAreApart", "30 turns"));
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (int n = 0; n < 30; ++n) {
+    const double mu = 0.2 + 0.8 * any(bits), load_n = 0.5 + 10.0 * any(bits), radius_m = 0.003 + 0.03 * any(bits);
+    std::vector<vec3> points;
+    for (int k = 0; k < 4; ++k) {
+      const double at = std::numbers::pi * (0.5 * k + 0.1);
+      points.emplace_back(radius_m * std::cos(at), radius_m * std::sin(at), -0.002);
+    }
+    const double most_n_m = mu * load_n * radius_m;
+    for (const double share : {0.97, 1.2}) {
+      sledge turned({.static_coefficient = mu, .dynamic_coefficient = mu}, points);
+      // The floor's planes are those of a probe that has hardly turned.
+      for (int i = 0; i < 3000 && length(log_rotation(turned.body.state().T_wc.rotation)) < 0.3; ++i) {
+        turned.push({{0, 0, -load_n}, {0, 0, share * most_n_m * std::min(1.0, i / 1500.0)}});
+      }
+      const double turns = turned.body.state().velocity_w.angular.z;
+      if (share < 1.0) {
+        EXPECT_LT(std::fabs(turns), 1e-3);
+      } else {
+        EXPECT_GT(turns, 0.1);
+        EXPECT_NEAR(-turned.rubbing.on_probe_w().torque.z, most_n_m, 0.02 * most_n_m);
+      }
+    }
+  }
+}
+
+TEST(Friction, DoesNotCreep) {
+  sledge rests({.static_coefficient = 0.4, .dynamic_coefficient = 0.4});
+  const wrench slope{{0.35, 0.1, -1.0}, vec3(0.0)};
+  for (int i = 0; i < 4000; ++i) rests.push(slope);
+  const vec3 before = rests.body.state().T_wc.position;
+  for (int i = 0; i < 40'000; ++i) rests.push(slope);
+  EXPECT_LT(length(rests.body.state().T_wc.position - before), 1e-8) << "in 5 s";
+}
+
+// A point that rolls on a floor does not slip, however far it goes: what does not stretch it is not remembered.
+TEST(Friction, ForgetsWhatStretchesNothing) {
+  friction rubbing({.static_coefficient = 0.5, .dynamic_coefficient = 0.5});
+  mat6 heavy;
+  for (std::size_t i = 0; i < 6; ++i) heavy(i, i) = 1e9;  // goes as it is told
+  double lost_j = 0.0;
+  for (int i = 0; i < 20'000; ++i) {
+    // A ball of 10 mm that rolls along x: the lowest point of it does not move.
+    const vec6 rolls{{0.05, 0.0, 0.0}, {0.0, 5.0, 0.0}};
+    const support_planes floor = floor_under({{0.0, 0.0, -0.01}});
+    support_planes pressed = floor;
+    pressed[0].depth_m = 1e-5;
+    const contact_solution s = rubbing.solve(heavy, {}, rolls, h_s, pressed, {}, {});
+    ASSERT_TRUE(s.solved);
+    EXPECT_LT(length(rubbing.on_probe_w().force), 1e-3);
+    EXPECT_FALSE(rubbing.slips());
+    lost_j = rubbing.energy().lost_j;
+  }
+  // Then it is pushed along without turning: it holds from where it is, not from where it began.
+  const support_planes floor = floor_under({{0.0, 0.0, -0.01}});
+  support_planes pressed = floor;
+  pressed[0].depth_m = 1e-5;
+  ASSERT_TRUE(rubbing.solve(heavy, {}, {{1e-3, 0, 0}, vec3(0.0)}, h_s, pressed, {}, {}).solved);
+  const double expected_n = -5e4 * 1e-3 * (h_s + friction_settings{}.damping_s);
+  EXPECT_NEAR(rubbing.on_probe_w().force.x, expected_n, 1e-3 * -expected_n);
+  EXPECT_LT(lost_j, 1e-9);
+}
+
+// Whatever presses and moves: no step gives back more than it was given.
+TEST(Friction, MakesNoEnergy) {
+  std::mt19937_64 bits(fresh_seed("Friction.MakesNoEnergy", "1000 walks of 1000 steps"));
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  const auto vector = [&]() { return vec3(any(bits), any(bits), any(bits)); };
+  double least_j = 0.0, lost_j = 0.0, held_j = 0.0;
+  long steps = 0, slipped = 0;
+  for (int walk = 0; walk < 1000; ++walk) {
+    const double mu = 0.05 + std::fabs(any(bits));
+    friction rubbing({.static_coefficient = mu,
+                      .dynamic_coefficient = mu * std::fabs(any(bits)),
+                      .stiffness_n_per_m = std::pow(10.0, 4.5 + any(bits))});
+    vec6 v;
+    support_planes planes;
+    for (int i = 0; i < 1000; ++i) {
+      if (planes.empty() || any(bits) > 0.8) {
+        planes.clear();
+        const int count = 1 + static_cast<int>(6.0 * std::fabs(any(bits)));
+        for (int k = 0; k < count; ++k) {
+          static_cast<void>(planes.push_back(plane_at(glm::normalize(vector()), 0.05 * vector(), 3e-5 * any(bits),
+                                                      static_cast<std::uint32_t>(k % 3))));
+          planes[planes.size() - 1].spread_m = any(bits) > 0.5 ? 1e-3 : 0.0;
+        }
+      }
+      mat6 a;
+      for (std::size_t k = 0; k < 6; ++k) a(k, k) = k < 3 ? mass_kg / h_s : 1e-6 / h_s;
+      const friction_energy before = rubbing.energy();
+      const vec6 load{3.0 * vector(), 0.05 * vector()};
+      const contact_solution s = rubbing.solve(a, load, v, h_s, planes, {}, {});
+      ASSERT_TRUE(s.solved);
+      v = s.velocity;
+      const double given_j = -h_s * dot(to_vec6(rubbing.on_probe_w()), v);
+      const double kept_j = rubbing.energy().stored_j - before.stored_j;
+      least_j = std::min(least_j, given_j - kept_j);
+      EXPECT_NEAR(given_j - kept_j, rubbing.energy().lost_j - before.lost_j, 1e-15 + 1e-12 * rubbing.energy().lost_j);
+      held_j = std::max(held_j, rubbing.energy().stored_j);
+      slipped += rubbing.slips() ? 1 : 0;
+      ++steps;
+    }
+    lost_j += rubbing.energy().lost_j;
+  }
+  std::printf("  least loss of a step %.3g J, of %.3g J lost; up to %.3g J held; %ld of %ld steps slipped\n", least_j,
+              lost_j, held_j, slipped, steps);
+  EXPECT_GE(least_j, -1e-18);
+  EXPECT_GT(slipped, steps / 20);
+  EXPECT_LT(slipped, steps * 19 / 20);
+}
+
+// A mass on a belt, held by a spring: it sticks until the spring is stretched by mu_s N / k, and slips back. With a slip
+// that is far slower to build up than it lasts, the period is that of the closed form.
+TEST(Friction, SticksAndSlipsAtTheRateOfTheClosedForm) {
+  std::mt19937_64 bits(fresh_seed("Friction.SticksAndSlipsAtTheRateOfTheClosedForm", "8 belts"));
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  for (int n = 0; n < 8; ++n) {
+    const double mu_s = 0.5 + 0.4 * any(bits), mu_d = mu_s * (0.4 + 0.3 * any(bits)), load_n = 1.0 + 2.0 * any(bits);
+    const double k = 400.0 + 500.0 * any(bits), belt_m_per_s = 0.01 + 0.02 * any(bits);
+    // The belt stands, and the spring's other end goes.
+    const friction_settings s{.static_coefficient = mu_s, .dynamic_coefficient = mu_d, .stribeck_m_per_s = 2e-4};
+    sledge mass(s);
+    const double step_s = 2e-5;
+    const virtual_coupling spring({.stiffness_n_per_m = k,
+                                   .stiffness_n_m_per_rad = 100.0,
+                                   .damping_n_s_per_m = 1e-6,
+                                   .damping_n_m_s_per_rad = 0.1},
+                                  mass_kg, 1e-6);
+    std::vector<double> starts;
+    bool slipping = false;
+    for (int i = 0; i < 75'000; ++i) {
+      const pose target{quat(1, 0, 0, 0), {belt_m_per_s * i * step_s, 0, 0}};
+      const wrench down{{0, 0, -load_n}, vec3(0.0)};
+      ASSERT_EQ(mass.body.step_on_planes(step_s, spring, target, {}, mass.planes, {}, mass.law, mass.rubbing,
+                                         mass.pressed, down),
+                status::ok);
+      const bool fast = mass.body.state().velocity_w.linear.x > 5.0 * belt_m_per_s;
+      if (fast && !slipping) starts.push_back(i * step_s);
+      slipping = fast;
+    }
+    ASSERT_GT(starts.size(), 5U);
+    const double period_s = (starts.back() - starts[1]) / static_cast<double>(starts.size() - 2);
+    // Slip: half a swing about the pull of dynamic friction. Stick: the belt stretches the spring again by what the slip
+    // took, less what passes meanwhile.
+    const double swing_m = (mu_s - mu_d) * load_n / k, w = std::sqrt(k / mass_kg);
+    const double slip_s = 2.0 * (std::numbers::pi - std::atan(w * swing_m / belt_m_per_s)) / w;
+    const double expected_s = slip_s + 2.0 * swing_m / belt_m_per_s;
+    EXPECT_NEAR(period_s, expected_s, 0.05 * expected_s) << mu_s << ' ' << mu_d << ' ' << load_n << ' ' << k;
+  }
+}
+
+TEST(Friction, WithoutACoefficientIsTheContactAlone) {
+  std::mt19937_64 bits(fresh_seed("Friction.WithoutACoefficientIsTheContactAlone", "200 steps"));
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int n = 0; n < 200; ++n) {
+    mat6 a;
+    for (std::size_t k = 0; k < 6; ++k) a(k, k) = 1.0 + std::fabs(any(bits));
+    const vec6 load{{any(bits), any(bits), any(bits)}, {any(bits), any(bits), any(bits)}};
+    support_planes planes = floor_under({{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}});
+    planes[0].depth_m = 1e-5 * any(bits);
+    friction none;
+    const contact_solution alone = solve_contact(a, load, {}, h_s, planes, {}, {});
+    const contact_solution with = none.solve(a, load, {}, h_s, planes, {}, {});
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(alone.velocity[k], with.velocity[k]);
+    EXPECT_TRUE(is_zero(none.on_probe_w()));
+  }
+}
+
+TEST(Friction, SaysWhatIsOutOfRange) {
+  EXPECT_TRUE(check(friction_settings{}));
+  EXPECT_TRUE(check(friction_settings{.static_coefficient = 1.2, .dynamic_coefficient = 1.2}));
+  EXPECT_FALSE(check(friction_settings{.static_coefficient = -0.1}));
+  EXPECT_FALSE(check(friction_settings{.static_coefficient = 0.3, .dynamic_coefficient = 0.4}));
+  EXPECT_FALSE(check(friction_settings{.static_coefficient = std::nan("")}));
+  EXPECT_FALSE(check(friction_settings{.stribeck_m_per_s = 0.0}));
+  EXPECT_FALSE(check(friction_settings{.stiffness_n_per_m = 1e9}));
+}
+
+}  // namespace
+}  // namespace asperity
