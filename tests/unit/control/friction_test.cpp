@@ -11,11 +11,12 @@
 #include <asperity/control/probe.hpp>
 
 #include "support/fresh_seed.hpp"
+#include "unit/control/drawn.hpp"
 
 namespace asperity {
 namespace {
 
-using test_support::fresh_seed;
+using test_support::drawn, test_support::fresh_seed;
 
 constexpr double mass_kg = 0.01, h_s = 1.25e-4;
 
@@ -61,11 +62,11 @@ struct sledge {
 double length(const vec3& v) { return std::sqrt(glm::dot(v, v)); }
 
 TEST(Friction, HoldsBelowTheConeAndSlipsAboveIt) {
-  std::mt19937_64 bits(fresh_seed("Friction.HoldsBelowTheConeAndSlipsAboveIt", "60 pushes"));
-  std::uniform_real_distribution<double> any(0.0, 1.0);
+  drawn d(fresh_seed("Friction.HoldsBelowTheConeAndSlipsAboveIt", "60 pushes"));
+  const auto any = [&]() { return d.between(0.0, 1.0); };
   for (int n = 0; n < 60; ++n) {
-    const double mu_s = 0.1 + 1.1 * any(bits), mu_d = mu_s * (0.3 + 0.7 * any(bits));
-    const double load_n = std::pow(10.0, -1.0 + 2.3 * any(bits)), angle = 2.0 * std::numbers::pi * any(bits);
+    const double mu_s = 0.1 + 1.1 * any(), mu_d = mu_s * (0.3 + 0.7 * any());
+    const double load_n = std::pow(10.0, -1.0 + 2.3 * any()), angle = 2.0 * std::numbers::pi * any();
     const vec3 along{std::cos(angle), std::sin(angle), 0.0};
     sledge holds({.static_coefficient = mu_s, .dynamic_coefficient = mu_d});
     for (int i = 0; i < 4000; ++i)
@@ -84,10 +85,10 @@ TEST(Friction, HoldsBelowTheConeAndSlipsAboveIt) {
 
 // Four feet on a circle of radius R resist a turn by mu N R.
 TEST(Friction, ResistsATurnByHowFarPointsAreApart) {
-  std::mt19937_64 bits(fresh_seed("Friction.ResistsATurnByHowFarPointsAreApart", "30 turns"));
-  std::uniform_real_distribution<double> any(0.0, 1.0);
+  drawn d(fresh_seed("Friction.ResistsATurnByHowFarPointsAreApart", "30 turns"));
+  const auto any = [&]() { return d.between(0.0, 1.0); };
   for (int n = 0; n < 30; ++n) {
-    const double mu = 0.2 + 0.8 * any(bits), load_n = 0.5 + 10.0 * any(bits), radius_m = 0.003 + 0.03 * any(bits);
+    const double mu = 0.2 + 0.8 * any(), load_n = 0.5 + 10.0 * any(), radius_m = 0.003 + 0.03 * any();
     std::vector<vec3> points;
     for (int k = 0; k < 4; ++k) {
       const double at = std::numbers::pi * (0.5 * k + 0.1);
@@ -150,26 +151,26 @@ TEST(Friction, ForgetsWhatStretchesNothing) {
 
 // Whatever presses and moves: no step gives back more than it was given.
 TEST(Friction, MakesNoEnergy) {
-  std::mt19937_64 bits(fresh_seed("Friction.MakesNoEnergy", "1000 walks of 1000 steps"));
-  std::uniform_real_distribution<double> any(-1.0, 1.0);
-  const auto vector = [&]() { return vec3(any(bits), any(bits), any(bits)); };
+  drawn d(fresh_seed("Friction.MakesNoEnergy", "1000 walks of 1000 steps"));
+  const auto any = [&]() { return d.between(-1.0, 1.0); };
+  const auto vector = [&]() { return vec3(any(), any(), any()); };
   double least_j = 0.0, lost_j = 0.0, held_j = 0.0;
   long steps = 0, slipped = 0;
   for (int walk = 0; walk < 1000; ++walk) {
-    const double mu = 0.05 + std::fabs(any(bits));
+    const double mu = 0.05 + std::fabs(any());
     friction rubbing({.static_coefficient = mu,
-                      .dynamic_coefficient = mu * std::fabs(any(bits)),
-                      .stiffness_n_per_m = std::pow(10.0, 4.5 + any(bits))});
+                      .dynamic_coefficient = mu * std::fabs(any()),
+                      .stiffness_n_per_m = std::pow(10.0, 4.5 + any())});
     vec6 v;
     support_planes planes;
     for (int i = 0; i < 1000; ++i) {
-      if (planes.empty() || any(bits) > 0.8) {
+      if (planes.empty() || any() > 0.8) {
         planes.clear();
-        const int count = 1 + static_cast<int>(6.0 * std::fabs(any(bits)));
+        const int count = 1 + static_cast<int>(6.0 * std::fabs(any()));
         for (int k = 0; k < count; ++k) {
-          static_cast<void>(planes.push_back(plane_at(glm::normalize(vector()), 0.05 * vector(), 3e-5 * any(bits),
-                                                      static_cast<std::uint32_t>(k % 3))));
-          planes[planes.size() - 1].spread_m = any(bits) > 0.5 ? 1e-3 : 0.0;
+          static_cast<void>(planes.push_back(
+              plane_at(glm::normalize(vector()), 0.05 * vector(), 3e-5 * any(), static_cast<std::uint32_t>(k % 3))));
+          planes[planes.size() - 1].spread_m = any() > 0.5 ? 1e-3 : 0.0;
         }
       }
       mat6 a;
@@ -199,11 +200,11 @@ TEST(Friction, MakesNoEnergy) {
 // A mass on a belt, held by a spring: it sticks until the spring is stretched by mu_s N / k, and slips back. With a slip
 // that is far slower to build up than it lasts, the period is that of the closed form.
 TEST(Friction, SticksAndSlipsAtTheRateOfTheClosedForm) {
-  std::mt19937_64 bits(fresh_seed("Friction.SticksAndSlipsAtTheRateOfTheClosedForm", "8 belts"));
-  std::uniform_real_distribution<double> any(0.0, 1.0);
+  drawn d(fresh_seed("Friction.SticksAndSlipsAtTheRateOfTheClosedForm", "8 belts"));
+  const auto any = [&]() { return d.between(0.0, 1.0); };
   for (int n = 0; n < 8; ++n) {
-    const double mu_s = 0.5 + 0.4 * any(bits), mu_d = mu_s * (0.4 + 0.3 * any(bits)), load_n = 1.0 + 2.0 * any(bits);
-    const double k = 400.0 + 500.0 * any(bits), belt_m_per_s = 0.01 + 0.02 * any(bits);
+    const double mu_s = 0.5 + 0.4 * any(), mu_d = mu_s * (0.4 + 0.3 * any()), load_n = 1.0 + 2.0 * any();
+    const double k = 400.0 + 500.0 * any(), belt_m_per_s = 0.01 + 0.02 * any();
     // The belt stands, and the spring's other end goes.
     const friction_settings s{.static_coefficient = mu_s, .dynamic_coefficient = mu_d, .stribeck_m_per_s = 2e-4};
     sledge mass(s);
@@ -237,14 +238,14 @@ TEST(Friction, SticksAndSlipsAtTheRateOfTheClosedForm) {
 }
 
 TEST(Friction, WithoutACoefficientIsTheContactAlone) {
-  std::mt19937_64 bits(fresh_seed("Friction.WithoutACoefficientIsTheContactAlone", "200 steps"));
-  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  drawn d(fresh_seed("Friction.WithoutACoefficientIsTheContactAlone", "200 steps"));
+  const auto any = [&]() { return d.between(-1.0, 1.0); };
   for (int n = 0; n < 200; ++n) {
     mat6 a;
-    for (std::size_t k = 0; k < 6; ++k) a(k, k) = 1.0 + std::fabs(any(bits));
-    const vec6 load{{any(bits), any(bits), any(bits)}, {any(bits), any(bits), any(bits)}};
+    for (std::size_t k = 0; k < 6; ++k) a(k, k) = 1.0 + std::fabs(any());
+    const vec6 load{{any(), any(), any()}, {any(), any(), any()}};
     support_planes planes = floor_under({{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}});
-    planes[0].depth_m = 1e-5 * any(bits);
+    planes[0].depth_m = 1e-5 * any();
     friction none;
     const contact_solution alone = solve_contact(a, load, {}, h_s, planes, {}, {});
     const contact_solution with = none.solve(a, load, {}, h_s, planes, {}, {});
