@@ -337,7 +337,7 @@ TEST_F(documents, run) {
                   "fault_record", "interrupted",      "recording",    "plot",
                   "units",        "device_recording", "replay",       "real_time",
                   "signal",       "driver_fault",     "rates",        "vibration",
-                  "wall",         "coupling",         "rate_check"});
+                  "wall",         "coupling",         "rate_check",   "friction"});
   for (const char* loop : {"contact_loop", "device_loop"}) {
     expect_keys(d[loop], {"rate", "ticks", "idle", "late", "skipped", "over_period", "kept", "tick_time"});
   }
@@ -390,6 +390,14 @@ TEST_F(documents, run_with_support_planes) {
   EXPECT_EQ(deep["coupling"]["translation"]["stiffness"], 700.0);
   EXPECT_EQ(deep["coupling"]["translation"]["from"], "option");
   EXPECT_EQ(deep["coupling"]["rotation"]["from"], "device");
+  // Friction, where it was asked for.
+  EXPECT_TRUE(d["friction"].is_null());
+  arguments rough = above;
+  rough.insert(rough.end(), {"--friction", "0.6,0.4"});
+  const json rubbed = expect_document(rough, "asperity.run/1");
+  EXPECT_EQ(rubbed["friction"]["static"], 0.6);
+  EXPECT_EQ(rubbed["friction"]["dynamic"], 0.4);
+  EXPECT_LE(rubbed["energy"]["largest_surplus"], 1e-5);
 }
 
 TEST_F(documents, devices) {

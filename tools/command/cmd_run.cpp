@@ -51,6 +51,10 @@ result<void> check_options(const run_command& options) {
     return error{error_code::invalid_argument,
                  "--backend exact takes as long as its search does, no contact would be in time: use --clock virtual"};
   }
+  if (!options.friction.empty() && formulation_name(options.render) != "planes") {
+    return error{error_code::invalid_argument,
+                 "--friction is of support planes: leave it out, or use --contacts planes"};
+  }
   const double longest_recorded_s = most_recorded_ticks / options.device_rate_hz;
   if (!options.record_device.empty() && options.seconds.value_or(usual_seconds) > longest_recorded_s) {
     return error{error_code::invalid_argument, "--record-device holds " + brief(longest_recorded_s) +
@@ -215,6 +219,7 @@ result<answer> run_session(const run_command& options, const common_options& com
   control.probe = found.probe = solid_probe(shape);
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
   control.coupling = found.coupling.settings;
+  if (!options.friction.empty()) control.friction = friction_of(options.friction).value_or(friction_settings{});
   found.rate = look_at_rate(chosen, *feel, {poses->T_wb, shape.centre_of_mass}, touch_T_wa, control);
   if (found.rate && !common.quiet && !common.json) complain("note: " + to_text(*found.rate));
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
@@ -304,6 +309,9 @@ void add_run(command_line& line) {
                  "The same of the rotation (N m/rad); by default what the device can show, and 3 with other contacts")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1e-3, 1e3));
+  sub.add_option("--friction", o->friction,
+                 "Coefficients of friction on support planes, STATIC or STATIC,DYNAMIC: 0.6,0.4; none by default")
+      ->check(friction_error, "MU[,MU]");
   sub.add_option(
          "--clock", o->clock,
          "virtual: reproducible, as fast as it goes, the default of the simulated device and of a replay; real: two "

@@ -6,8 +6,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "asperity/control/friction.hpp"
 
 namespace asperity::command {
 
@@ -28,6 +31,27 @@ namespace asperity::command {
   const bool whole = failed == std::errc() && end == text.data() + text.size();
   if (whole && value >= least_hz && value <= most_hz) return {};
   return "'" + text + "' is not a rate from 100 to 10000 Hz";
+}
+
+/// Coefficients of friction, static and dynamic, with a comma between; of one alone both are.
+[[nodiscard]] inline std::optional<friction_settings> friction_of(const std::string& text) {
+  const auto number = [](std::string_view part, double& to) {
+    const auto [end, failed] = std::from_chars(part.data(), part.data() + part.size(), to);
+    return failed == std::errc() && end == part.data() + part.size();
+  };
+  friction_settings out;
+  const std::size_t comma = text.find(',');
+  if (!number(std::string_view(text).substr(0, comma), out.static_coefficient)) return std::nullopt;
+  out.dynamic_coefficient = out.static_coefficient;
+  if (comma != std::string::npos && !number(std::string_view(text).substr(comma + 1), out.dynamic_coefficient)) {
+    return std::nullopt;
+  }
+  if (!asperity::check(out)) return std::nullopt;
+  return out;
+}
+[[nodiscard]] inline std::string friction_error(const std::string& text) {
+  if (friction_of(text)) return {};
+  return "'" + text + "' is not STATIC or STATIC,DYNAMIC with 10 >= STATIC >= DYNAMIC >= 0";
 }
 
 /// A whole number, zero or larger, that fits 64 bits.

@@ -28,6 +28,7 @@ struct run_command {
   double device_rate_hz = 1000.0;
   double contact_rate_hz = 1000.0;
   std::optional<double> coupling_n_per_m, coupling_n_m_per_rad;  // what fits device and contacts
+  std::string friction;                                          // see friction_of(); empty: none
   std::string clock;                                             // empty: what fits the device
   std::string firmware;
   driver_choice drivers;

@@ -133,6 +133,12 @@ std::string thread_text(const thread_grants& t) {
   return out;
 }
 
+json friction_json(const run_command& options) {
+  const std::optional<friction_settings> mu = friction_of(options.friction);
+  if (!mu) return {};
+  return {{"static", mu->static_coefficient}, {"dynamic", mu->dynamic_coefficient}};
+}
+
 std::string replay_text(const replay_outcome& replay) {
   const std::string what = replay.device + ", " + std::to_string(replay.ticks) + " ticks on record" +
                            (replay.cut ? ", cut off before its end; " : "; ");
@@ -171,7 +177,8 @@ answer report(const run_command& options, const session_findings& found) {
                   {"gradient_scheme", gradient_name(options.render)},
                   {"grid", grid_json(options.render)},
                   {"lookup", lookup_json(options.render)},
-                  {"coupling", command::to_json(coupling, probe)}};
+                  {"coupling", command::to_json(coupling, probe)},
+                  {"friction", friction_json(options)}};
   out.document.update(summary.to_json());
   out.document["contact_loop"] = loop_json(options.contact_rate_hz, ended.contact, contact);
   out.document["rate_check"] = rate ? command::to_json(*rate) : json();
@@ -198,6 +205,10 @@ answer report(const run_command& options, const session_findings& found) {
              brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
              clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("coupling", to_text(coupling, probe));
+  if (const auto mu = friction_of(options.friction); mu && mu->any()) {
+    out.text +=
+        row("friction", brief(mu->static_coefficient) + " at rest, " + brief(mu->dynamic_coefficient) + " slipping");
+  }
   out.text += row("contact loop", loop_text(options.contact_rate_hz, ended.contact, contact, real_time));
   out.text += row("device loop", loop_text(options.device_rate_hz, ended.device, device, real_time));
   out.text += row("rates", rates_text(ended.rates));

@@ -17,7 +17,7 @@ namespace {
 using namespace asperity;
 using namespace asperity::test_support;
 
-constexpr double no_energy_j = 1e-5;  // the guard's tolerance: rounding and the encoder's steps
+constexpr double most_surplus_j = 1e-5;  // the guard's tolerance: rounding and the encoder's steps
 
 /// A block or ball on a body of planes, in loops of these rates with contacts one period late and no guard.
 plane_case rubbed(plane_body body, double mu_static, double mu_dynamic, double device_hz, double contact_hz) {
@@ -38,10 +38,10 @@ TEST(friction_session, holds_and_makes_no_energy) {
   struct rates {
     double device_hz, contact_hz;
   };
-  constexpr std::array<rates, 4> all_rates{{{10'000, 10'000}, {4000, 1000}, {1000, 1000}, {200, 200}}};
+  constexpr std::array<rates, 4> rubbed_rates{{{10'000, 10'000}, {4000, 1000}, {1000, 1000}, {200, 200}}};
   double deepest_fast = 0.0, deepest_slow = 0.0, surplus = 0.0;
   const int each = extent(4, 24);
-  for (const rates& r : all_rates) {
+  for (const rates& r : rubbed_rates) {
     for (const double mu : {0.0, 0.4, 1.0}) {
       for (int kind = 0; kind < 3; ++kind) {
         for (int i = 0; i < each; ++i) {
@@ -73,7 +73,7 @@ TEST(friction_session, holds_and_makes_no_energy) {
           };
           EXPECT_EQ(o.not_ok, 0U) << which();
           EXPECT_LE(o.unbalanced_n, 1e-7) << which();
-          EXPECT_LE(o.surplus_j, no_energy_j) << which();
+          EXPECT_LE(o.surplus_j, most_surplus_j) << which();
           double& deepest = r.contact_hz < 500.0 ? deepest_slow : deepest_fast;
           deepest = std::max(deepest, o.deepest_m);
           surplus = std::max(surplus, o.surplus_j);

@@ -38,7 +38,7 @@ const std::vector<vec3> feet{
 // A probe on a floor, pushed by a wrench; its coupling is too weak to feel.
 struct sledge {
   explicit sledge(const friction_settings& s, const std::vector<vec3>& points = feet)
-      : planes(floor_under(points)), rubbing(s) {
+      : body(probe_settings{mass_kg, mat3(1e-6)}), planes(floor_under(points)), rubbing(s) {
     body.reset({});
   }
   void push(const wrench& w) {
@@ -46,7 +46,7 @@ struct sledge {
   }
   [[nodiscard]] double normal_n() const { return pressed.on_probe_w.force.z; }
 
-  probe body{{mass_kg, mat3(1e-6)}};
+  probe body;
   virtual_coupling coupling{{.stiffness_n_per_m = 1e-9,
                              .stiffness_n_m_per_rad = 1e-9,
                              .damping_n_s_per_m = 1e-9,
