@@ -149,6 +149,26 @@ TEST(Friction, ForgetsWhatStretchesNothing) {
   EXPECT_LT(lost_j, 1e-9);
 }
 
+// A tongue between two jaws that press from above and below: each rubs by its own force.
+TEST(Friction, EachBodyRubsByWhatItPresses) {
+  friction rubbing({.static_coefficient = 0.5, .dynamic_coefficient = 0.5});
+  support_planes jaws = floor_under({{0.0, 0.0, -0.002}});
+  static_cast<void>(jaws.push_back(plane_at({0, 0, 1}, {0.0, 0.0, 0.002}, 2e-5, 1)));
+  jaws[0].depth_m = 1e-5;
+  mat6 heavy;
+  for (std::size_t i = 0; i < 6; ++i) heavy(i, i) = 1e9;
+  contact_solution s;
+  for (int i = 0; i < 2000; ++i) s = rubbing.solve(heavy, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, h_s, jaws, {}, {});
+  ASSERT_TRUE(s.solved);
+  EXPECT_NEAR(s.lambda_n[0], 2.0, 1e-3);
+  EXPECT_NEAR(s.lambda_n[1], 4.0, 1e-3);
+  EXPECT_NEAR(rubbing.on_probe_w().force.x, -0.5 * 6.0, 0.02 * 3.0);
+  // Let go of one: the other goes on.
+  jaws[1].depth_m = -1.0;
+  s = rubbing.solve(heavy, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, h_s, jaws, {}, {});
+  EXPECT_NEAR(rubbing.on_probe_w().force.x, -0.5 * 2.0, 0.02);
+}
+
 // Whatever presses and moves: no step gives back more than it was given.
 TEST(Friction, MakesNoEnergy) {
   drawn d(fresh_seed("Friction.MakesNoEnergy", "1000 walks of 1000 steps"));
