@@ -99,7 +99,7 @@ void friction::measure(const support_planes& planes, const contact_solution& by,
   }
 }
 
-void friction::finish(const vec6& v, double h_s) noexcept {
+void friction::settle(double h_s, const vec6& v) noexcept {
   const double k = settings_.stiffness_n_per_m;
   on_probe_w_ = {};
   slips_ = false;
@@ -127,16 +127,17 @@ void friction::finish(const vec6& v, double h_s) noexcept {
   energy_.stored_j = stored_j;
 }
 
-contact_solution friction::solve(const mat6& a, const vec6& load, const vec6& v0, double h_s,
-                                 const support_planes& planes, const vec6& moved, const contact_law& law) noexcept {
+contact_solution friction::solve(mat6& a, const vec6& load, const vec6& v0, double h_s, const support_planes& planes,
+                                 const vec6& moved, const contact_law& law) noexcept {
   constexpr int most_passes = 4;
   const double k = settings_.stiffness_n_per_m, horizon_s = h_s + settings_.damping_s;
   contact_solution out = solve_contact(a, load, v0, h_s, planes, moved, law);
   if (!settings_.any() || !out.solved) return out;
   find_bodies(planes);
+  mat6 with;
   for (int pass = 0; pass < most_passes; ++pass) {
     measure(planes, out, pass == 0 ? v0 : out.velocity, h_s);
-    mat6 with = a;
+    with = a;
     vec6 pulled = load;
     for (const bristle& b : bristles_) {
       if (!(b.next_normal_n > 0.0)) continue;
@@ -147,7 +148,7 @@ contact_solution friction::solve(const mat6& a, const vec6& load, const vec6& v0
     out = solve_contact(with, pulled, v0, h_s, planes, moved, law);
     if (!out.solved) return out;
   }
-  finish(out.velocity, h_s);
+  a = with;
   return out;
 }
 

@@ -72,11 +72,16 @@ class ASPERITY_API friction {
   }
 
   /// solve_contact() with friction: velocity and forces at the end of a step of length h_s. Its on_probe_w is of the
-  /// planes alone; on_probe_w() here is of friction.
-  /// @pre as solve_contact   @rt safe: at most four solutions
-  [[nodiscard]] contact_solution solve(const mat6& a, const vec6& load, const vec6& v0, double h_s,
+  /// planes alone. The step is not over before settle().
+  /// @param a friction's part is added to it, so that A (v - v0) goes on being what acts
+  /// @pre as solve_contact   @rt safe: at most five solutions
+  [[nodiscard]] contact_solution solve(mat6& a, const vec6& load, const vec6& v0, double h_s,
                                        const support_planes& planes, const vec6& moved,
                                        const contact_law& law) noexcept;
+
+  /// Ends the step that was solved, with the velocity that it really had: what else stops a probe may have made it
+  /// another one than the solution's. Friction makes no energy with any. @rt safe
+  void settle(double h_s, const vec6& v) noexcept;
 
   /// Of the last step, about c_A, world axes.
   [[nodiscard]] const wrench& on_probe_w() const noexcept { return on_probe_w_; }
@@ -103,8 +108,6 @@ class ASPERITY_API friction {
   void find_bodies(const support_planes& planes) noexcept;
   // Metric, force and share of a bristle for these forces and this velocity.
   void measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept;
-  // What the step made of the bristles.
-  void finish(const vec6& v, double h_s) noexcept;
 
   friction_settings settings_;
   fixed_vector<bristle, most_bodies> bristles_;

@@ -108,8 +108,7 @@ class probe {
   [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
                                       const twist& target_velocity_w, const support_planes& planes,
                                       const known_region& within, const contact_law& law, friction& rubbing,
-                                      contact_solution& out,
-                                      const wrench& external_w = {}) noexcept {
+                                      contact_solution& out, const wrench& external_w = {}) noexcept {
     const vec6 v = to_vec6(state_.velocity_w);
     const vec6 coupled = to_vec6(coupling.on_probe(target_T_wc, target_velocity_w, state_.T_wc, state_.velocity_w));
     const mat6 inertia = inertia_w();
