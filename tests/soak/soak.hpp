@@ -182,7 +182,8 @@ template <class Device, class Progress>
   out.port = {dev.delivered_j() - loop.guard().delivered_j() - seen.measurement_j(), seen.turnover_j};
   out.plant = {p.by_device_j + p.by_hand_j - p.damped_j - p.numerical_j - dev.kinetic_j(),
                std::fabs(p.by_device_j) + std::fabs(p.by_hand_j)};
-  out.probe = {q.by_coupling_j + q.by_contact_j + q.by_external_j + q.by_border_j - q.numerical_j - loop.probe().kinetic_j(),
+  out.probe = {q.by_coupling_j + q.by_contact_j + q.by_friction_j + q.by_external_j + q.by_border_j - q.numerical_j -
+                   loop.probe().kinetic_j(),
                std::fabs(q.by_coupling_j) + std::fabs(q.by_contact_j)};
   out.between_j = -p.by_device_j - q.by_coupling_j;
   return out;
