@@ -1,4 +1,9 @@
+#include <array>
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <random>
+#include <span>
+#include <vector>
 
 #include <asperity/drivers/hid/report_descriptor.hpp>
 

@@ -49,19 +49,7 @@ plane_case drawn_case(const loop_periods& p, int kind, int i, drawn& d) {
   c.control.coupling.stiffness_n_m_per_rad *= part;
   c.schedule = late(p);
   c.length_s = 0.7;
-  c.hand.seed = d.bits();
-  c.hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_settings{});
-  motion_settings& m = c.hand.motion;
-  const double heading = d.between(0.0, 6.283);
-  const double tilt = d.between(0.0, 0.5);
-  m.kind = kind == 2 ? motion_kind::tap : (d.between(0.0, 1.0) < 0.5 ? motion_kind::press : motion_kind::scrub);
-  m.direction_d = {std::sin(tilt) * std::cos(heading), std::sin(tilt) * std::sin(heading), -std::cos(tilt)};
-  m.sideways_d = glm::normalize(glm::cross(m.direction_d, any_orthogonal(m.direction_d)));
-  m.T_dh = {exp_rotation(d.inside(0.1)), {0, 0, 0.01 + d.between(0.002, 0.004)}};
-  m.depth_m = d.between(0.005, 0.02);
-  m.approach_s = d.between(0.1, 0.25);
-  m.amplitude_m = kind == 2 ? m.depth_m + d.between(0.0, 0.01) : d.between(0.002, 0.01);
-  m.frequency_hz = kind == 2 ? d.between(3.0, 6.0) : d.between(0.5, 4.0);
+  draw_hand(c.hand, kind, d);
   return c;
 }
 
@@ -71,7 +59,7 @@ TEST(loop_rates, hold_the_probe_and_make_no_energy) {
   std::printf("| device | contact, late | deepest | most energy |\n|---|---|---|---|\n");
   for_each_pair([&](const loop_periods& p) {
     double deepest_m = 0.0, surplus_j = 0.0;
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < hand_kinds; ++kind) {
       for (int i = 0; i < each; ++i) {
         const plane_outcome o = run(drawn_case(p, kind, kind + i, d));
         EXPECT_EQ(o.not_ok, 0U);

@@ -10,6 +10,7 @@
 
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
+#include "unit/control/drawn.hpp"
 #include "unit/control/plane_bodies.hpp"
 
 namespace asperity::test_support {
@@ -67,6 +68,26 @@ inline simulated_settings hand_that_presses(double newtons, const vec3& touch_d,
   c.motion.depth_m = 0.002 + newtons / 600.0 + newtons / coupling_n_per_m;
   c.motion.approach_s = 0.3;
   return c;
+}
+
+constexpr int hand_kinds = 3;
+
+/// Draws a hand that comes down on what its handle touches at a height of 10 mm, and how it moves. The device stays.
+/// @param kind 0: soft, 1: firm, each presses or scrubs; 2: of ordinary stiffness, taps
+inline void draw_hand(simulated_settings& hand, int kind, drawn& d) {
+  hand.seed = d.bits();
+  hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_settings{});
+  motion_settings& m = hand.motion;
+  const double heading = d.between(0.0, 6.283);
+  const double tilt = d.between(0.0, 0.5);
+  m.kind = kind == 2 ? motion_kind::tap : (d.between(0.0, 1.0) < 0.5 ? motion_kind::press : motion_kind::scrub);
+  m.direction_d = {std::sin(tilt) * std::cos(heading), std::sin(tilt) * std::sin(heading), -std::cos(tilt)};
+  m.sideways_d = glm::normalize(glm::cross(m.direction_d, any_orthogonal(m.direction_d)));
+  m.T_dh = {exp_rotation(d.inside(0.1)), {0, 0, 0.01 + d.between(0.002, 0.005)}};
+  m.depth_m = d.between(0.005, 0.02);
+  m.approach_s = d.between(0.1, 0.25);
+  m.amplitude_m = kind == 2 ? m.depth_m + d.between(0.0, 0.01) : d.between(0.002, 0.01);
+  m.frequency_hz = kind == 2 ? d.between(3.0, 6.0) : d.between(0.5, 4.0);
 }
 
 inline plane_outcome run(const plane_case& c) {

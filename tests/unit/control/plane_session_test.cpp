@@ -107,24 +107,12 @@ TEST(plane_session, never_goes_through_a_thin_plate) {
   int through = 0;
   const int each = extent(4, 40);
   for (const loop_rates& r : all_rates) {
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < hand_kinds; ++kind) {
       for (int i = 0; i < each; ++i) {
         plane_case c = block(10.0, r);
         c.body = block_on_plate(i % 2 == 0 ? 0.001 : 0.02);
         c.control.coupling = coupling_at(r);
-        c.hand.seed = d.bits();
-        c.hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_settings{});
-        motion_settings& m = c.hand.motion;
-        const double heading = d.between(0.0, 6.283);
-        const double tilt = d.between(0.0, 0.5);
-        m.kind = kind == 2 ? motion_kind::tap : (i % 4 < 2 ? motion_kind::press : motion_kind::scrub);
-        m.direction_d = {std::sin(tilt) * std::cos(heading), std::sin(tilt) * std::sin(heading), -std::cos(tilt)};
-        m.sideways_d = glm::normalize(glm::cross(m.direction_d, any_orthogonal(m.direction_d)));
-        m.T_dh = {exp_rotation(d.inside(0.1)), {0, 0, 0.01 + d.between(0.002, 0.005)}};
-        m.depth_m = d.between(0.005, 0.02);
-        m.approach_s = d.between(0.1, 0.25);
-        m.amplitude_m = kind == 2 ? m.depth_m + d.between(0.0, 0.01) : d.between(0.002, 0.01);
-        m.frequency_hz = kind == 2 ? d.between(3.0, 6.0) : d.between(0.5, 4.0);
+        draw_hand(c.hand, kind, d);
         const plane_outcome o = run(c);
         expect_calm(o, "plate");
         EXPECT_LT(o.deepest_m, 4e-4) << r.device_hz << ' ' << r.contact_hz << ' ' << kind << ' ' << i;
@@ -207,31 +195,21 @@ TEST(plane_session, makes_no_energy) {
   double held_j = 0.0;
   double surplus = 0.0;
   for (const loop_rates& r : all_rates) {
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < hand_kinds; ++kind) {
       for (int body = 0; body < 4 * each; ++body) {
         plane_case c = block(10.0, r);
         double touch = 0.01;
         if (body % 4 == 1) c.body = ball_in_corner(0.005), touch = 0.005;
         if (body % 4 == 2) c.body = ball_in_groove(0.005, 0.7), touch = 0.0062;
         if (body % 4 == 3) c.body = block_on_plate(0.001);
-        c.hand.seed = d.bits();
-        c.hand.hand = kind == 0 ? soft_hand() : (kind == 1 ? firm_hand() : hand_settings{});
         // As stiff as the device holds at this rate: up to 1.5 N/mm.
         const double part = d.log_between(0.2, 1.0);
         c.control.coupling = coupling_for(simulated_capabilities(), r.device_hz);
         c.control.coupling.stiffness_n_per_m *= part;
         c.control.coupling.stiffness_n_m_per_rad *= part;
-        motion_settings& m = c.hand.motion;
-        const double heading = d.between(0.0, 6.283);
-        const double tilt = d.between(0.0, 0.5);
-        m.kind = kind == 2 ? motion_kind::tap : (d.between(0.0, 1.0) < 0.5 ? motion_kind::press : motion_kind::scrub);
-        m.direction_d = {std::sin(tilt) * std::cos(heading), std::sin(tilt) * std::sin(heading), -std::cos(tilt)};
-        m.sideways_d = glm::normalize(glm::cross(m.direction_d, any_orthogonal(m.direction_d)));
-        m.T_dh.position = body % 4 == 1 ? vec3(0.012, 0.012, 0.009) : vec3(0, 0, touch + d.between(0.002, 0.004));
-        m.depth_m = d.between(0.005, 0.02);
-        m.approach_s = d.between(0.1, 0.25);
-        m.amplitude_m = kind == 2 ? m.depth_m + d.between(0.0, 0.01) : d.between(0.002, 0.01);
-        m.frequency_hz = kind == 2 ? d.between(3.0, 6.0) : d.between(0.5, 4.0);
+        draw_hand(c.hand, kind, d);
+        c.hand.motion.T_dh = {pose{}.rotation, {0, 0, touch + d.between(0.002, 0.004)}};
+        if (body % 4 == 1) c.hand.motion.T_dh.position = {0.012, 0.012, 0.009};
         const plane_outcome o = run(c);
         expect_calm(o, "energy");
         EXPECT_LE(o.surplus_j, no_energy_j)
