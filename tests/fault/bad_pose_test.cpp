@@ -7,8 +7,8 @@ namespace {
 class bad_pose : public command_test {
  protected:
   [[nodiscard]] static arguments query(const std::string& probe_pose, const std::string& fixed_pose) {
-    const std::string block = (small_models() / "block.glb").string();
-    return {"query", "--probe", block, "--fixed", block, "--probe-pose", probe_pose, "--fixed-pose", fixed_pose};
+    const std::string pin = (small_models() / "pin.glb").string();
+    return {"query", "--probe", pin, "--fixed", pin, "--probe-pose", probe_pose, "--fixed-pose", fixed_pose};
   }
 };
 

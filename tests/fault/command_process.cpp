@@ -212,6 +212,12 @@ const fs::path& small_models() {
     const outcome baked =
         run({"bake", at("block.ply"), "--coarse", at("block_coarse.ply"), "--texture", "128", "-o", at("block.glb")});
     EXPECT_EQ(baked.exit_status, 0) << baked.err;
+    std::ofstream(folder.path / "pin.obj")
+        << "v -.0015 -.0015 -.01\nv -.0015 -.0015 .01\nv -.0015 .0015 -.01\nv -.0015 .0015 .01\n"
+           "v .0015 -.0015 -.01\nv .0015 -.0015 .01\nv .0015 .0015 -.01\nv .0015 .0015 .01\n"
+           "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+    const outcome pin = run({"bake", at("pin.obj"), "--coarse", at("pin.obj"), "--texture", "32", "-o", at("pin.glb")});
+    EXPECT_EQ(pin.exit_status, 0) << pin.err;
     return true;
   }();
   static_cast<void>(made);

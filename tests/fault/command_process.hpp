@@ -85,8 +85,8 @@ class command_test : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// Folder with block.ply, block_coarse.ply and block.glb (a small texture), made by the command itself once per test
-/// program.
+/// Folder with block.ply, block_coarse.ply and block.glb (a small texture), and pin.glb, of 3 mm x 3 mm x 20 mm, with
+/// which a session begins six times as soon: made by the command itself once per test program.
 [[nodiscard]] const std::filesystem::path& small_models();
 
 }  // namespace fault

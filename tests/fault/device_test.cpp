@@ -12,8 +12,8 @@ namespace {
 
 using devices_command = command_test;
 
-const std::string& block() {
-  static const std::string file = (small_models() / "block.glb").string();
+const std::string& pin() {
+  static const std::string file = (small_models() / "pin.glb").string();
   return file;
 }
 
@@ -117,7 +117,7 @@ TEST_F(devices_command, says_which_driver_cannot_be_loaded_and_lists_the_rest) {
 TEST_F(devices_command, runs_a_session_with_a_device_behind_the_c_interface) {
   NEEDS_TRUSTED_DRIVERS();
   const auto session = [&](const char* how, const std::string& recording) {
-    return run({"run", "--probe", block(), "--fixed", block(), "--device", "spring_handle", how, "spring_handle",
+    return run({"run", "--probe", pin(), "--fixed", pin(), "--device", "spring_handle", how, "spring_handle",
                 "--seconds", "0.3", "--record", recording, "--json"},
                with_path(ASPERITY_SAMPLE_DRIVER_DIR));
   };
@@ -151,8 +151,8 @@ TEST_F(devices_command, a_driver_that_breaks_in_a_session_ends_the_session_and_n
     SCOPED_TRACE(way);
     outcome o;
     const double taken_s = seconds_of([&] {
-      o = run({"run", "--probe", block(), "--fixed", block(), "--device", "broken_driver", "--seconds", "30",
-               "--record", path("felt.csv"), "--json"},
+      o = run({"run", "--probe", pin(), "--fixed", pin(), "--device", "broken_driver", "--seconds", "30", "--record",
+               path("felt.csv"), "--json"},
               with_broken(way));
     });
     EXPECT_LT(taken_s, 20.0);
@@ -171,7 +171,7 @@ TEST_F(devices_command, a_driver_that_does_not_come_back_from_open_is_interrupte
   options.interrupt_after_s = 0.3;
   outcome o;
   EXPECT_LT(seconds_of([&] {
-              o = run({"run", "--probe", block(), "--fixed", block(), "--device", "broken_driver"}, options);
+              o = run({"run", "--probe", pin(), "--fixed", pin(), "--device", "broken_driver"}, options);
             }),
             10.0);
   EXPECT_EQ(o.exit_status, 130) << o.err;
@@ -179,16 +179,15 @@ TEST_F(devices_command, a_driver_that_does_not_come_back_from_open_is_interrupte
 
 TEST_F(devices_command, names_the_choices_where_no_device_fits) {
   const outcome o =
-      run({"run", "--probe", block(), "--fixed", block(), "--device", "warp"}, with_path(ASPERITY_SAMPLE_DRIVER_DIR));
+      run({"run", "--probe", pin(), "--fixed", pin(), "--device", "warp"}, with_path(ASPERITY_SAMPLE_DRIVER_DIR));
   EXPECT_EQ(o.exit_status, 1);
   EXPECT_NE(o.err.find("no device 'warp'"), std::string::npos) << o.err;
   EXPECT_NE(o.err.find("spring"), std::string::npos) << o.err;
 }
 
 TEST_F(devices_command, keeps_the_virtual_clock_for_the_simulated_device) {
-  const outcome o =
-      run({"run", "--probe", block(), "--fixed", block(), "--device", "spring_handle", "--clock", "virtual"},
-          with_path(ASPERITY_SAMPLE_DRIVER_DIR));
+  const outcome o = run({"run", "--probe", pin(), "--fixed", pin(), "--device", "spring_handle", "--clock", "virtual"},
+                        with_path(ASPERITY_SAMPLE_DRIVER_DIR));
   EXPECT_EQ(o.exit_status, 1);
   EXPECT_NE(o.err.find("--clock virtual is for the simulated device"), std::string::npos) << o.err;
 }

@@ -13,6 +13,7 @@ namespace {
 class documents : public command_test {
  protected:
   [[nodiscard]] static std::string block(const char* file = "block.glb") { return (small_models() / file).string(); }
+  [[nodiscard]] static std::string pin() { return (small_models() / "pin.glb").string(); }
 };
 
 void expect_keys(const json& object, std::initializer_list<const char*> keys) {
@@ -230,18 +231,18 @@ TEST_F(documents, what_belongs_to_the_paper_is_refused_without_it) {
 }
 
 TEST_F(documents, former_names_of_contacts_are_accepted) {
-  arguments query{"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1", "--contacts"};
+  arguments query{"query", "--probe", pin(), "--fixed", pin(), "--probe-pose", "0 0 1 0 0 0 1", "--contacts"};
   for (const auto& [former, name] : {std::pair{"shared", "least-motion"}, std::pair{"paper", "window"}}) {
     query.push_back(former);
     EXPECT_EQ(expect_document(query, "asperity.query/1")["formulation"], name) << former;
     query.pop_back();
   }
-  const arguments session{"run", "--probe", block(), "--fixed", block(), "--seconds", "0.01", "--contacts", "field"};
+  const arguments session{"run", "--probe", pin(), "--fixed", pin(), "--seconds", "0.01", "--contacts", "field"};
   EXPECT_EQ(expect_document(session, "asperity.run/1")["formulation"], "planes");
 }
 
 TEST_F(documents, query_far_away_has_no_contact_and_no_force) {
-  const json d = expect_document({"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 1 0 0 0 1"},
+  const json d = expect_document({"query", "--probe", pin(), "--fixed", pin(), "--probe-pose", "0 0 1 0 0 0 1"},
                                  "asperity.query/1");
   EXPECT_EQ(d["contacts"], json::array());
   EXPECT_EQ(d["force"], json::array({0.0, 0.0, 0.0}));
@@ -359,7 +360,7 @@ TEST_F(documents, run) {
 TEST_F(documents, run_without_support_planes) {
   for (const char* contacts : {"least-motion", "window"}) {
     const json d = expect_document(
-        {"run", "--probe", block(), "--fixed", block(), "--seconds", "0.1", "--contacts", contacts}, "asperity.run/1");
+        {"run", "--probe", pin(), "--fixed", pin(), "--seconds", "0.1", "--contacts", contacts}, "asperity.run/1");
     EXPECT_EQ(d["formulation"], contacts);
     EXPECT_TRUE(d["wall"].is_null());
     EXPECT_EQ(d["coupling"]["translation"]["stiffness"], 500.0);
@@ -409,8 +410,7 @@ TEST_F(documents, devices) {
 }
 
 TEST_F(documents, bench) {
-  const json d =
-      expect_document({"bench", "--probe", block(), "--fixed", block(), "--poses", "50"}, "asperity.bench/1");
+  const json d = expect_document({"bench", "--probe", pin(), "--fixed", pin(), "--poses", "50"}, "asperity.bench/1");
   expect_keys(d["seconds"], {"collision_query", "contact_soft", "contact_central", "tick_planes", "every_sample",
                              "tick_least_motion", "tick_soft", "tick_central"});
   expect_keys(d["samples"], {"balls_looked_at", "near", "leaves_bounded", "read_quickly", "read_exactly"});

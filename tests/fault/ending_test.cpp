@@ -18,13 +18,13 @@ class ending : public command_test {
   // In contact from the first tick: the handle is taken up with the probe a millimetre in the other body.
   // What belongs to one session lies in a folder of its own, so that several can run at a time.
   [[nodiscard]] arguments session(const std::string& seconds = "600", const std::string& in = ".") const {
-    static const std::string block = (small_models() / "block.glb").string();
+    static const std::string pin = (small_models() / "pin.glb").string();
     std::filesystem::create_directories(path(in));
     return {"run",
             "--probe",
-            block,
+            pin,
             "--fixed",
-            block,
+            pin,
             "--device",
             "noting",
             "--in-process",
@@ -46,8 +46,8 @@ class ending : public command_test {
     return options;
   }
   [[nodiscard]] static arguments replay(const std::string& file) {
-    const std::string block = (small_models() / "block.glb").string();
-    return {"run", "--probe", block, "--fixed", block, "--device", "replay:" + file};
+    const std::string pin = (small_models() / "pin.glb").string();
+    return {"run", "--probe", pin, "--fixed", pin, "--device", "replay:" + file};
   }
   [[nodiscard]] static arguments with(arguments args, const std::string& old, const std::string& replacement) {
     std::replace(args.begin(), args.end(), old, replacement);

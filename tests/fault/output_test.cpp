@@ -14,15 +14,15 @@ class output : public command_test {
  protected:
   output() { write("file", "not a folder"); }
 
-  [[nodiscard]] static std::string block(const char* file) { return (small_models() / file).string(); }
+  [[nodiscard]] static std::string made(const char* file) { return (small_models() / file).string(); }
   [[nodiscard]] static arguments bake_to(const std::string& out) {
-    return {"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture", "64", "-o", out};
+    return {"bake", made("block.ply"), "--coarse", made("block_coarse.ply"), "--texture", "64", "-o", out};
   }
   [[nodiscard]] static arguments run_with(const char* option, const std::string& out) {
-    return {"run", "--probe", block("block.glb"), "--fixed", block("block.glb"), "--seconds", "0.05", option, out};
+    return {"run", "--probe", made("pin.glb"), "--fixed", made("pin.glb"), "--seconds", "0.05", option, out};
   }
   [[nodiscard]] static arguments draw_to(const std::string& out) {
-    return {"inspect", block("block.glb"), "--original", block("block.ply"), "--picture", out};
+    return {"inspect", made("block.glb"), "--original", made("block.ply"), "--picture", out};
   }
 };
 
@@ -79,8 +79,8 @@ TEST_F(output, names_of_any_letters) {
       {"two\nlines", "two\nlines"},
   };
   for (const auto& [name, kept] : names) {
-    std::filesystem::copy_file(block("block.ply"), path(name + ".ply"));
-    const arguments bake{"bake", path(name + ".ply"), "--coarse", block("block_coarse.ply"), "--texture", "64",
+    std::filesystem::copy_file(made("block.ply"), path(name + ".ply"));
+    const arguments bake{"bake", path(name + ".ply"), "--coarse", made("block_coarse.ply"), "--texture", "64",
                          "-o",   path(name + ".glb")};
     static_cast<void>(expect_document(bake, "asperity.bake/1"));
     const json inspected = expect_document({"inspect", path(name + ".glb")}, "asperity.inspect/1");
@@ -123,18 +123,18 @@ TEST_F(output, stdout_that_takes_nothing) {
 }
 
 TEST_F(output, mesh_that_would_replace_itself) {
-  std::filesystem::copy_file(block("block.glb"), path("mesh.glb"));
+  std::filesystem::copy_file(made("block.glb"), path("mesh.glb"));
   const std::string before = read("mesh.glb");
   expect_failure({"bake", path("mesh.glb"), "-o", path("mesh.glb")}, 1, "invalid_argument");
   EXPECT_EQ(read("mesh.glb"), before);
 }
 
 TEST_F(output, picture_that_would_replace_what_is_read) {
-  std::filesystem::copy_file(block("block.glb"), path("model.glb"));
+  std::filesystem::copy_file(made("block.glb"), path("model.glb"));
   std::filesystem::create_symlink(path("model.glb"), path("model.png"));
   const std::string before = read("model.glb");
   expect_failure({"inspect", path("model.glb"), "--picture", path("model.png")}, 1, "invalid_argument");
-  std::filesystem::copy_file(block("block.ply"), path("mesh.ply"));
+  std::filesystem::copy_file(made("block.ply"), path("mesh.ply"));
   std::filesystem::create_symlink(path("mesh.ply"), path("mesh.png"));
   expect_failure({"inspect", path("model.glb"), "--original", path("mesh.ply"), "--picture", path("mesh.png")}, 1,
                  "invalid_argument");
@@ -148,14 +148,14 @@ TEST_F(output, picture_that_would_replace_what_is_read) {
 }
 
 TEST_F(output, of_a_session_that_would_replace_what_it_reads) {
-  std::filesystem::copy_file(block("block.glb"), path("model.glb"));
+  std::filesystem::copy_file(made("block.glb"), path("model.glb"));
   std::filesystem::create_symlink(path("model.glb"), path("link"));
   std::filesystem::create_symlink(path("link"), path("link-to-a-link"));
   std::filesystem::create_hard_link(path("model.glb"), path("second-name"));
   std::filesystem::create_symlink("link", path("plot.svg"));
   const std::string before = read("model.glb");
   const auto felt = [&](const std::string& option, const std::string& out) {
-    return arguments{"run",  "--probe", path("model.glb"), "--fixed", block("block.glb"), "--seconds", "0.05",
+    return arguments{"run",  "--probe", path("model.glb"), "--fixed", made("block.glb"), "--seconds", "0.05",
                      option, out};
   };
   for (const char* name : {"model.glb", "./model.glb", "link", "link-to-a-link", "second-name"}) {
@@ -178,15 +178,14 @@ TEST_F(output, two_that_are_one_file) {
   std::filesystem::create_symlink("not-there-yet", path("new.svg"));
   std::filesystem::create_directory(path("folder"));
   const auto felt = [&](const std::string& record, const std::string& more, const std::string& to) {
-    return arguments{"run",       "--probe", block("block.glb"), "--fixed",    block("block.glb"),
-                     "--seconds", "0.05",    "--record",         path(record), more,
-                     path(to)};
+    return arguments{"run",  "--probe",  made("pin.glb"), "--fixed", made("pin.glb"), "--seconds",
+                     "0.05", "--record", path(record),    more,      path(to)};
   };
   expect_failure(felt("old.csv", "--plot", "old.svg"), 1, "invalid_argument");
   expect_failure(felt("not-there-yet", "--plot", "new.svg"), 1, "invalid_argument");
   expect_failure(felt("new.csv", "--record-device", "folder/../new.csv"), 1, "invalid_argument");
   EXPECT_EQ(read("old.csv"), "an older table");
-  EXPECT_EQ(run({"run", "--probe", block("block.glb"), "--fixed", block("block.glb"), "--seconds", "0.05", "--record",
+  EXPECT_EQ(run({"run", "--probe", made("pin.glb"), "--fixed", made("pin.glb"), "--seconds", "0.05", "--record",
                  "/dev/null", "--record-device", "/dev/null"})
                 .exit_status,
             0);
@@ -198,7 +197,7 @@ TEST_F(output, image_of_a_gltf_asset_is_not_painted_over) {
   const std::string message = expect_failure(
       {"bake", path("wall.gltf"), "-o", path("wall.glb"), "--picture", path("wall map.png")}, 1, "invalid_argument");
   EXPECT_NE(message.find("wall map.png"), std::string::npos) << message;
-  expect_failure({"inspect", block("block.glb"), "--original", path("wall.gltf"), "--picture", path("wall map.png")}, 1,
+  expect_failure({"inspect", made("block.glb"), "--original", path("wall.gltf"), "--picture", path("wall map.png")}, 1,
                  "invalid_argument");
   EXPECT_EQ(read("wall map.png"), "an image");
 }
@@ -229,7 +228,7 @@ TEST_F(output, keeps_mode_owner_and_links) {
   const bool root = geteuid() == 0;
   ASSERT_TRUE(!root || chown(path("felt.csv").c_str(), 12345, 23456) == 0);
   for (const std::string through : {"link-", ""}) {
-    EXPECT_EQ(run({"run", "--probe", block("block.glb"), "--fixed", block("block.glb"), "--seconds", "0.05", "--record",
+    EXPECT_EQ(run({"run", "--probe", made("pin.glb"), "--fixed", made("pin.glb"), "--seconds", "0.05", "--record",
                    path(through + "felt.csv"), "--record-device", path(through + "felt.dev"), "--plot",
                    path(through + "plot.svg")})
                   .exit_status,
@@ -262,7 +261,7 @@ TEST_F(output, leftovers_of_dead_runs_are_in_nobodys_way) {
   EXPECT_EQ(baked.exit_status, 0) << baked.err;
   // As in a container, where every run has the same process number: in a new namespace of its own, where permitted.
   const std::string again = std::string("exec unshare --pid --fork --mount-proc ") + ASPERITY_COMMAND +
-                            " run --probe " + block("block.glb") + " --fixed " + block("block.glb") +
+                            " run --probe " + made("pin.glb") + " --fixed " + made("pin.glb") +
                             " --seconds 0.05 --record " + path("felt.csv") + " > " + path("report") + " 2>&1";
   if (std::system("unshare --pid --fork --mount-proc true > /dev/null 2>&1") == 0) {
     EXPECT_EQ(std::system(again.c_str()), 0) << read("report");
@@ -276,16 +275,16 @@ TEST_F(output, failed_picture_keeps_the_old_one) {
   write("model.png", "an older picture");
   write("broken.ply", "ply\n");
   const auto compare_to = [&](const std::string& original) {
-    return arguments{"inspect", block("block.glb"), "--picture", path("model.png"), "--original", original};
+    return arguments{"inspect", made("block.glb"), "--picture", path("model.png"), "--original", original};
   };
   EXPECT_NE(expect_failure(compare_to(path("absent.ply")), 1, "io_failed").find("absent.ply"), std::string::npos);
   EXPECT_NE(expect_failure(compare_to(path("broken.ply")), 1, "bad_format").find("broken.ply"), std::string::npos);
-  arguments in_millimetres = compare_to(block("block.ply"));
+  arguments in_millimetres = compare_to(made("block.ply"));
   in_millimetres.insert(in_millimetres.end(), {"--scale", "0.001"});
   const std::string message = expect_failure(in_millimetres, 1, "invalid_argument");
   EXPECT_NE(message.find("--scale"), std::string::npos) << message;
   EXPECT_EQ(read("model.png"), "an older picture");
-  EXPECT_EQ(run(compare_to(block("block.ply"))).exit_status, 0);
+  EXPECT_EQ(run(compare_to(made("block.ply"))).exit_status, 0);
   EXPECT_EQ(read("model.png").substr(1, 3), "PNG");
 }
 
@@ -299,7 +298,7 @@ TEST_F(output, failed_bake_keeps_the_old_model) {
 TEST_F(output, interrupted_bake_leaves_nothing) {
   process_options options;
   options.interrupt_after_s = 0.05;
-  const outcome stopped = run({"bake", block("block.ply"), "-o", path("model.glb"), "--texture", "4096"}, options);
+  const outcome stopped = run({"bake", made("block.ply"), "-o", path("model.glb"), "--texture", "4096"}, options);
   EXPECT_EQ(stopped.exit_status, 130);
   EXPECT_EQ(stopped.err.rfind("asperity: ", 0), 0U) << stopped.err;
   EXPECT_EQ(files(), std::set<std::string>{"file"});

@@ -18,8 +18,8 @@ using asperity::recorded_end;
 class replay : public command_test {
  protected:
   [[nodiscard]] static arguments felt_with(const std::string& device, const arguments& more) {
-    static const std::string block = (small_models() / "block.glb").string();
-    arguments args{"run", "--probe", block, "--fixed", block, "--device", device, "--contact-rate", "500"};
+    static const std::string pin = (small_models() / "pin.glb").string();
+    arguments args{"run", "--probe", pin, "--fixed", pin, "--device", device, "--contact-rate", "500"};
     args.insert(args.end(), more.begin(), more.end());
     return args;
   }

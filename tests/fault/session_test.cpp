@@ -10,8 +10,8 @@ namespace {
 class session : public command_test {
  protected:
   [[nodiscard]] arguments session_to(const std::string& recording, const arguments& more = {}) const {
-    const std::string block = (small_models() / "block.glb").string();
-    arguments args{"run", "--probe", block, "--fixed", block, "--record", path(recording)};
+    const std::string pin = (small_models() / "pin.glb").string();
+    arguments args{"run", "--probe", pin, "--fixed", pin, "--record", path(recording)};
     args.insert(args.end(), more.begin(), more.end());
     return args;
   }

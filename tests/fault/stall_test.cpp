@@ -82,8 +82,8 @@ void expect_no_steps(const std::vector<sent_tick>& ticks) {
 class stalled_session : public command_test {
  protected:
   [[nodiscard]] static arguments session(const char* seconds) {
-    const std::string block = (small_models() / "block.glb").string();
-    return {"run", "--probe", block, "--fixed", block, "--seconds", seconds};
+    const std::string pin = (small_models() / "pin.glb").string();
+    return {"run", "--probe", pin, "--fixed", pin, "--seconds", seconds};
   }
 
   /// What the same hand feels where nothing is late.

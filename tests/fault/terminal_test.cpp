@@ -42,7 +42,7 @@ class terminal : public command_test {
   terminal() {
     fs::create_directory(path(hostile_name));
     model_ = in_it("m.glb");
-    fs::copy_file(small_models() / "block.glb", model_);
+    fs::copy_file(small_models() / "pin.glb", model_);
   }
 
   [[nodiscard]] std::string in_it(const std::string& name) const { return path(hostile_name + "/" + name); }
@@ -74,10 +74,11 @@ TEST_F(terminal, names_of_models_and_files_in_reports) {
   EXPECT_NE(seen.out.find("name                    " + escaped_name), std::string::npos) << seen.out;
   EXPECT_NE(seen.out.find(escaped_name + R"(\xff\xc0\xaf/named.glb)"), std::string::npos) << seen.out;
   // As many lines as for the same model under a name without harm.
-  const outcome plain = run({"inspect", (small_models() / "block.glb").string()});
+  const outcome plain = run({"inspect", (small_models() / "pin.glb").string()});
   const outcome named = expect_harmless({"inspect", model_}, 0);
   EXPECT_EQ(std::count(named.out.begin(), named.out.end(), '\n'), std::count(plain.out.begin(), plain.out.end(), '\n'));
-  expect_harmless({"inspect", model_, "--picture", in_it("p.png"), "--original", block}, 0);
+  expect_harmless({"inspect", model_, "--picture", in_it("p.png"), "--original", (small_models() / "pin.obj").string()},
+                  0);
 }
 
 TEST_F(terminal, names_in_a_query_and_a_session) {
@@ -92,16 +93,15 @@ TEST_F(terminal, names_in_a_query_and_a_session) {
 }
 
 TEST_F(terminal, name_of_the_device_on_a_recording) {
-  const std::string block = (small_models() / "block.glb").string();
-  ASSERT_EQ(run({"run", "--probe", block, "--fixed", block, "--seconds", "0.03", "--record-device", path("s.dev")})
-                .exit_status,
-            0);
+  const std::string pin = (small_models() / "pin.glb").string();
+  ASSERT_EQ(
+      run({"run", "--probe", pin, "--fixed", pin, "--seconds", "0.03", "--record-device", path("s.dev")}).exit_status,
+      0);
   auto session = asperity::load_device_recording(path("s.dev"));
   ASSERT_TRUE(session);
   session->name = hostile_name;
   write("h.dev", asperity::encode(*session));
-  const outcome o =
-      expect_harmless({"run", "--probe", block, "--fixed", block, "--device", "replay:" + path("h.dev")}, 0);
+  const outcome o = expect_harmless({"run", "--probe", pin, "--fixed", pin, "--device", "replay:" + path("h.dev")}, 0);
   EXPECT_NE(o.out.find(escaped_name), std::string::npos) << o.out;
 }
 
