@@ -84,6 +84,12 @@ class Attack : public ::testing::TestWithParam<attack> {
 TEST_P(Attack, OnTheMeshReader) { expect("mesh", GetParam().mesh_says); }
 TEST_P(Attack, OnTheModelReader) { expect("model", GetParam().model_says); }
 
+std::vector<attack> all_attacks() {
+  std::vector<attack> out = container_attacks();
+  for (auto& more : {path_attacks(), geometry_attacks()}) out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+
 std::string test_name(const ::testing::TestParamInfo<attack>& named) {
   std::string name = named.param.name;
   for (char& c : name) {

@@ -66,10 +66,4 @@ std::string glb(const std::string& json_text, const std::string& bin) {
 
 std::string glb(const json& document, const std::string& bin) { return glb(document.dump(), bin); }
 
-std::vector<attack> all_attacks() {
-  std::vector<attack> out = container_attacks();
-  for (auto& more : {path_attacks(), geometry_attacks()}) out.insert(out.end(), more.begin(), more.end());
-  return out;
-}
-
 }  // namespace asperity::hostile

@@ -25,8 +25,6 @@ struct attack {
 [[nodiscard]] std::vector<attack> path_attacks();
 /// Those that lie about buffers, geometry, scenes and the extension.
 [[nodiscard]] std::vector<attack> geometry_attacks();
-/// All of them.
-[[nodiscard]] std::vector<attack> all_attacks();
 
 /// A file of the system that no reader has any business with, and that nothing else opens while the tests run: a
 /// graphics driver in a neighbouring test looks its user up in /etc/passwd.
