@@ -265,6 +265,26 @@ TEST(Friction, SticksAndSlipsAtTheRateOfTheClosedForm) {
   }
 }
 
+// The works on a probe that is pushed about on its floor, friction's among them, are its kinetic energy; and what
+// friction took from it, the bristles hold or have lost.
+TEST(Friction, IsInTheBooksOfTheProbe) {
+  drawn d(fresh_seed("Friction.IsInTheBooksOfTheProbe", "20 sledges"));
+  for (int n = 0; n < 20; ++n) {
+    sledge rubs({.static_coefficient = 0.6, .dynamic_coefficient = 0.4});
+    double kept_within_j = 0.0;
+    for (int i = 0; i < 2000; ++i) {
+      rubs.push({{d.between(-1.0, 1.0), d.between(-1.0, 1.0), -1.0}, 0.002 * d.direction()});
+      const probe_energy& e = rubs.body.energy();
+      kept_within_j = std::max(kept_within_j, std::fabs(e.by_friction_j));
+      const double gained_j = e.by_coupling_j + e.by_contact_j + e.by_friction_j + e.by_external_j - e.numerical_j;
+      ASSERT_NEAR(gained_j, rubs.body.kinetic_j(), 1e-12 + 1e-9 * kept_within_j);
+      const friction_energy& f = rubs.rubbing.energy();
+      ASSERT_NEAR(-e.by_friction_j, f.stored_j + f.lost_j, 1e-12 + 1e-9 * kept_within_j);
+    }
+    EXPECT_GT(kept_within_j, 1e-5);
+  }
+}
+
 TEST(Friction, WithoutACoefficientIsTheContactAlone) {
   drawn d(fresh_seed("Friction.WithoutACoefficientIsTheContactAlone", "200 steps"));
   const auto any = [&]() { return d.between(-1.0, 1.0); };
