@@ -68,6 +68,7 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
     : bodies_(std::move(bodies)),
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
+      told_m_(reach_m),
       ways_(of.fixed.size()),
       watch_(std::make_unique<plane_watch>(*bodies_, of)),
       met_(std::make_unique<first_met>(trials_within(reach_m))),
@@ -93,6 +94,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   readers reading(*bodies_, at, c_a_w, sinking_m_);
   reported_.clear();
   met_->clear();
+  told_m_ = std::min(reach_m_, at.gaps_m);
   learn_ways(at);
   known_->begin(found, [&](const near_patch& patch) noexcept {
     const vec3 r_w = reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
@@ -107,7 +109,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
     read(patch, found.leaves_of(patch), reading.of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
   for (const near_plane& p : out) {
-    if (p.plane.depth_m > -reach_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
+    if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
   teach(found);
   known_->ask(found, [&](const near_patch& patch) noexcept {
@@ -167,8 +169,8 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
   };
   move();
   const auto least_that_matters_m = [&]() noexcept {
-    if (group == nullptr) return -reach_m_;
-    return std::max(-reach_m_, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
+    if (group == nullptr) return -told_m_;
+    return std::max(-told_m_, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
   };
   double above_m = least_that_matters_m();
   const auto most_of_patch_m = leaf_reader::rounded_up(patch.in_other.most_m);
@@ -213,7 +215,7 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
     known_depths::grow(asked, steepest_depth * way_m);
     const vec3 come_w = moved.linear + glm::cross(moved.angular, asked.r_w);
     const double come_m = std::sqrt(glm::dot(come_w, come_w)) + moved_rad * asked.radius_m;
-    const double least_m = std::max(above_m, steepest_depth * come_m - reach_m_);
+    const double least_m = std::max(above_m, steepest_depth * come_m - told_m_);
     if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     const near_patch& patch = found.patches()[p];
     const leaf_reader& reader = reading.of(patch);

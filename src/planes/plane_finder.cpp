@@ -141,13 +141,14 @@ plane_finder::sphere plane_finder::around(const field_body& body) noexcept {
 status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
   out.clear();
   near_bodies_ = 0;
+  const double reach_m = std::min(reach_m_, at.gaps_m);
   if (known_) known_->begin(at);
   // Most bodies of a large scene are left out by this alone.
   const vec3 probe_w = at.T_wa * probe_.centre_b;
   for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
     const sphere& body = fixed_[b];
     const vec3 body_w = at.T_wb[b] * body.centre_b;
-    const double enough_m = looks_to_m(out, reach_m_);
+    const double enough_m = looks_to_m(out, reach_m);
     if (!may_be_within(enough_m, probe_w, probe_.radius_m, body_w, body.radius_m)) {
       out.leave(probe_.radius_m + body.radius_m - glm::distance(probe_w, body_w));
       continue;
@@ -161,8 +162,8 @@ status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
       continue;
     }
     const auto known = known_ ? known_->of(b, at, *bodies_) : known_branches::pair_bounds{};
-    list(A.samples, B.field, T_ba, {.body = b, .of_probe = true}, reach_m_, known.of_probe, out);
-    list(B.samples, A.field, T_ab, {.body = b, .of_probe = false}, reach_m_, known.of_fixed, out);
+    list(A.samples, B.field, T_ba, {.body = b, .of_probe = true}, reach_m, known.of_probe, out);
+    list(B.samples, A.field, T_ab, {.body = b, .of_probe = false}, reach_m, known.of_fixed, out);
   }
   return out.dropped() > 0 ? status::capacity_reached : status::ok;
 }

@@ -55,7 +55,7 @@ class contact_loop {
     if (!shared_->poses.refresh()) return status::ok;
     const timed_pose& at = shared_->poses.front();
     const pose T_wa = at.T_wc * inverse(placement_.T_ac());
-    const status answer = renderer_.step({T_wa, placement_.T_wb}, last_);
+    const status answer = renderer_.step({T_wa, placement_.T_wb, at.gaps_m}, last_);
     linearise(last_, answer, at, selection_, rest_, shared_->contacts.back());
     shared_->contacts.back().flags = flags_.held(shared_->contacts.back().flags, at.time_ns);
     pending_ = true;

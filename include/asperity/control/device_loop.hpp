@@ -122,7 +122,8 @@ class device_loop {
       static_cast<void>(device_->disarm());
     }
     if (placed_) {
-      shared_->poses.back() = {motion_.probe().state().T_wc, now_ns, motion_.pull()};
+      const pose& T_wc = motion_.probe().state().T_wc;
+      shared_->poses.back() = {T_wc, now_ns, motion_.pull(), gaps_for(shared_->contacts.front(), T_wc)};
       shared_->poses.publish();
     }
     report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);

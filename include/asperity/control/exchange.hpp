@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/virtual_coupling.hpp"
@@ -16,6 +17,7 @@ struct timed_pose {
   pose T_wc{};  ///< the probe's centre-of-mass frame
   std::int64_t time_ns = 0;
   coupling_pull pull{};
+  double gaps_m = std::numeric_limits<double>::infinity();  ///< gaps that are wanted; see gaps_for()
 };
 
 /// How an application shows that it is alive: any of its threads beats, the device thread counts. It carries no time,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,8 @@ struct scene {
 struct scene_pose {
   pose T_wa;
   std::span<const pose> T_wb;
+  /// Gaps are wanted up to this, m; a renderer may tell larger ones, and tells none beyond its own reach.
+  double gaps_m = std::numeric_limits<double>::infinity();
 };
 
 /// Centre of mass of the probe in the world: the point c_A that torques and gradients are about.

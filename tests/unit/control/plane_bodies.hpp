@@ -72,8 +72,9 @@ struct plane_body {
       if (linearised) add_outer(out.force.stiffness, -linear_n_per_m, p.gradient);
     }
     out.centre_of_mass_w = c;
-    if (reports_planes && tells_known) out.known = known(at.T_wa);
-    if (reports_planes) out.planes = reported();
+    const double gaps_m = tells_known ? std::min(reported_gap_m, at.gaps_m) : reported_gap_m;
+    if (reports_planes && tells_known) out.known = known(at.T_wa, gaps_m);
+    if (reports_planes) out.planes = reported(gaps_m);
     return status::ok;
   }
 
@@ -93,10 +94,10 @@ struct plane_body {
 
  private:
   // As far as gaps are told, or as far as nothing is near.
-  [[nodiscard]] known_motion known(const pose& T_wa) const noexcept {
+  [[nodiscard]] known_motion known(const pose& T_wa, double gaps_m) const noexcept {
     double farthest_m = radius_m;
     for (const vec3& point : points_c) farthest_m = std::max(farthest_m, glm::length(point) + radius_m);
-    const double way_m = std::max(reported_gap_m, -depth_m(T_wa));
+    const double way_m = std::max(gaps_m, -depth_m(T_wa));
     return {way_m, way_m / farthest_m};
   }
 
@@ -112,8 +113,8 @@ struct plane_body {
                       .body = 0});
   }
 
-  [[nodiscard]] std::span<const support_plane> reported() noexcept {
-    std::erase_if(planes, [&](const support_plane& p) { return p.depth_m < -reported_gap_m; });
+  [[nodiscard]] std::span<const support_plane> reported(double gaps_m) noexcept {
+    std::erase_if(planes, [&](const support_plane& p) { return p.depth_m < -gaps_m; });
     if (most_reported < planes.size()) {
       std::stable_sort(planes.begin(), planes.end(),
                        [](const support_plane& a, const support_plane& b) { return a.depth_m > b.depth_m; });

@@ -108,6 +108,30 @@ TEST(known_motion, meets_nothing_that_no_plane_stands_for) {
   EXPECT_GT(further_m, 4.0 * relief_m) << "the control: motions that go three times as far meet nothing either";
 }
 
+// A loop asks for less than the whole reach: what is told, and how far the probe may go, end there.
+TEST(known_motion, ends_with_the_gaps_that_are_wanted) {
+  drawn d(seed_of(fresh_seed("known_motion, gaps", "60 poses"), "gaps"));
+  const std::vector<pose> T_wb{pose{}};
+  plane_renderer feel = make_ridged(1.8e-3);
+  std::size_t planes = 0;
+  tick t;
+  for (int i = 0; i < 60; ++i) {
+    const double gaps_m = d.between(0.4e-3, 3e-3), told_m = std::min(gaps_m, 1.8e-3);
+    const double height_m = fixed_half.z + probe_half.z + d.between(0.0, 0.5) * told_m;
+    ASSERT_EQ(feel.step({{quat(1.0, 0.0, 0.0, 0.0), {d.between(-0.01, 0.01), 0.0, height_m}}, T_wb, gaps_m}, t),
+              status::ok);
+    EXPECT_EQ(t.known.way_m, told_m);
+    for (const support_plane& p : t.planes) EXPECT_GT(p.depth_m, -told_m);
+    planes += t.planes.size();
+    // The next contact is asked for what this one was used for, and half as much again.
+    linear_contact used;
+    used.known = t.known;
+    EXPECT_NEAR(gaps_for(used, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, told_m)}), 1e-3 + 1.5 * told_m, 1e-12);
+  }
+  EXPECT_GT(planes, 60U);
+  EXPECT_TRUE(std::isinf(gaps_for({}, {})));
+}
+
 struct without_border {
   plane_renderer feel;
   bool free = false;
