@@ -13,7 +13,7 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/field/field_body.hpp"
 #include "asperity/planes/near_samples.hpp"
-#include "asperity/render/depth_work.hpp"
+#include "asperity/render/depth_backend.hpp"
 #include "field/quick_read.hpp"
 #include "field/quick_relief.hpp"
 #include "planes/ball_bound.hpp"

@@ -7,7 +7,7 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
-#include "asperity/render/depth_work.hpp"
+#include "asperity/render/depth_backend.hpp"
 #include "progress.hpp"
 
 namespace asperity::command {

@@ -16,8 +16,9 @@
 //   which moves continuously where witness points of parallel faces jump. State between ticks (cached simplices,
 //   contact ids, window axes) may change the cost and the frame {u, v}, never whether two pieces touch; the direction
 //   of a contact that has grown too deep to have one may be kept, and is marked (contact::held).
-// - Fields (found_type near_samples, plane_finder): leaves of samples, a superset of those within reach. It keeps
-//   nothing between ticks, so that the same poses give the same bits whatever was before.
+// - Fields (found_type near_samples, plane_finder): leaves of samples, a superset of those within reach. What it keeps
+//   between ticks, bounds of branches, decides which leaves beyond the reach it lists and how sharp its clearance is;
+//   no plane depends on it.
 #pragma once
 
 #include <concepts>

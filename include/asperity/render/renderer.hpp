@@ -11,7 +11,6 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/render/collision_finder.hpp"
 #include "asperity/render/depth_backend.hpp"
-#include "asperity/render/depth_work.hpp"
 #include "asperity/render/force_model.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
