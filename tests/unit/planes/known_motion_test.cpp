@@ -16,6 +16,7 @@
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/drawn.hpp"
+#include "unit/planes/scene_with_fields.hpp"
 
 namespace asperity {
 namespace {
@@ -25,20 +26,13 @@ using namespace test_support;
 constexpr double relief_m = 60e-6;
 const vec3 probe_half(0.012, 0.01, 0.008), fixed_half(0.03, 0.03, 0.01);
 
-struct bodies {
-  scene of;
-  std::shared_ptr<const field_scene> fields;
-};
-
-const bodies& ridged() {
-  static const bodies made = [] {
+const scene_with_fields& ridged() {
+  static const scene_with_fields made = [] {
     const auto probe =
         std::make_shared<const textured_model>(make_textured_box(probe_half, 256, ridges(relief_m, 2e-3)));
     const auto fixed =
         std::make_shared<const textured_model>(make_textured_box(fixed_half, 384, ridges(relief_m, 3e-3)));
-    bodies out{{probe, {fixed}}, nullptr};
-    out.fields = std::make_shared<const field_scene>(make_field_scene(out.of).value());
-    return out;
+    return with_fields({probe, {fixed}});
   }();
   return made;
 }

@@ -13,27 +13,21 @@
 #include "planes/ball_bound.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
+#include "unit/planes/scene_with_fields.hpp"
 
 namespace asperity {
 namespace {
 
 using namespace test_support;
 
-struct bodies {
-  scene of;
-  std::shared_ptr<const field_scene> fields;
-};
-
-const bodies& ridged() {
-  static const bodies made = [] {
+const scene_with_fields& ridged() {
+  static const scene_with_fields made = [] {
     const auto probe =
         std::make_shared<const textured_model>(make_textured_box({0.012, 0.01, 0.008}, 256, ridges(60e-6, 1.7e-3)));
     const auto fixed =
         std::make_shared<const textured_model>(make_textured_box({0.03, 0.03, 0.01}, 384, ridges(90e-6, 2.3e-3)));
     const auto small = std::make_shared<const textured_model>(make_flat_box({0.006, 0.009, 0.007}, 128));
-    bodies out{{probe, {fixed, small}}, nullptr};
-    out.fields = std::make_shared<const field_scene>(make_field_scene(out.of).value());
-    return out;
+    return with_fields({probe, {fixed, small}});
   }();
   return made;
 }
@@ -114,7 +108,7 @@ TEST(ToldPlanes, DoNotDependOnTheTicksBefore) {
 TEST(ToldPlanes, DoNotDependOnWhichBodiesWereNearBefore) {
   draws draw{std::mt19937_64(fresh_seed("ToldPlanes.DoNotDependOnWhichBodiesWereNearBefore", "3 tours of 12 bodies"))};
   const auto many = [] {
-    bodies out;
+    scene_with_fields out;
     out.of.probe = ridged().of.probe;
     out.fields = nullptr;
     field_scene fields{ridged().fields->probe, {}};
