@@ -1,8 +1,10 @@
 #include "asperity/control/friction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 #include "core/cholesky.hpp"
 
@@ -58,7 +60,7 @@ void friction::forget() noexcept {
   bristles_.clear();
   energy_.stored_j = 0.0;
   on_probe_w_ = {};
-  slips_ = false;
+  slips_ = leaves_out_ = false;
 }
 
 double friction::coefficient(double slip_m_per_s) const noexcept {
@@ -67,34 +69,37 @@ double friction::coefficient(double slip_m_per_s) const noexcept {
          (settings_.static_coefficient - settings_.dynamic_coefficient) * std::exp(-ratio * ratio);
 }
 
-void friction::find_bodies(const support_planes& planes) noexcept {
-  for (const support_plane& p : planes) {
+void friction::find_bodies(const support_planes& planes, const contact_solution& by) noexcept {
+  leaves_out_ = false;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (!(by.lambda_n[i] > 0.0)) continue;
     const bool known =
-        std::any_of(bristles_.begin(), bristles_.end(), [&](const bristle& b) { return b.body == p.body; });
-    if (!known) static_cast<void>(bristles_.push_back({.body = p.body}));
+        std::any_of(bristles_.begin(), bristles_.end(), [&](const bristle& b) { return b.body == planes[i].body; });
+    if (!known && !bristles_.push_back({.body = planes[i].body})) leaves_out_ = true;
   }
 }
 
 void friction::measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept {
   const double k = settings_.stiffness_n_per_m;
+  std::array<double, most_support_planes> force_n;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const vec3& slope = planes[i].gradient.linear;
+    force_n[i] = by.lambda_n[i] * std::sqrt(glm::dot(slope, slope));
+  }
   for (bristle& b : bristles_) {
-    b.next_normal_n = 0.0;
-    b.next_metric = {};
-    const auto force_n = [&](std::size_t i) {
-      const vec3& slope = planes[i].gradient.linear;
-      return planes[i].body == b.body ? by.lambda_n[i] * std::sqrt(glm::dot(slope, slope)) : 0.0;
-    };
-    for (std::size_t i = 0; i < planes.size(); ++i) b.next_normal_n += force_n(i);
-    if (!(b.next_normal_n > 0.0)) continue;
+    b.normal_n = 0.0;
+    b.metric = {};
+    for (std::size_t i = 0; i < planes.size(); ++i) b.normal_n += planes[i].body == b.body ? force_n[i] : 0.0;
+    if (!(b.normal_n > 0.0)) continue;
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      if (force_n(i) > 0.0) add_point(b.next_metric, force_n(i) / b.next_normal_n, planes[i]);
+      if (planes[i].body == b.body && force_n[i] > 0.0) add_point(b.metric, force_n[i] / b.normal_n, planes[i]);
     }
-    const double held_j = 0.5 * k * squared(b.next_metric, b.stretch);
+    const double held_j = 0.5 * k * squared(b.metric, b.stretch);
     b.held = held_j > b.stored_j ? std::sqrt(b.stored_j / held_j) * b.stretch : b.stretch;
     // What the bristle gave up in the pass before, or the step before, has slipped; the rest is its own stretch.
-    const double slip_m_per_s = (1.0 - b.theta) * std::sqrt(squared(b.next_metric, b.held + h_s * v)) / h_s;
-    const double most_m = coefficient(slip_m_per_s) * b.next_normal_n / k;
-    const double stretch_m = std::sqrt(squared(b.next_metric, b.held + (h_s + settings_.damping_s) * v));
+    const double slip_m_per_s = (1.0 - b.theta) * std::sqrt(squared(b.metric, b.held + h_s * v)) / h_s;
+    const double most_m = coefficient(slip_m_per_s) * b.normal_n / k;
+    const double stretch_m = std::sqrt(squared(b.metric, b.held + (h_s + settings_.damping_s) * v));
     b.theta = stretch_m > most_m ? most_m / stretch_m : 1.0;
   }
 }
@@ -106,12 +111,10 @@ void friction::settle(double h_s, const vec6& v) noexcept {
   double stored_j = 0.0;
   std::size_t kept = 0;
   for (bristle& b : bristles_) {
-    if (!(b.next_normal_n > 0.0)) {
+    if (!(b.normal_n > 0.0)) {
       energy_.lost_j += b.stored_j;
       continue;
     }
-    b.metric = b.next_metric;
-    b.normal_n = b.next_normal_n;
     b.stretch = b.theta * (b.held + h_s * v);
     const vec6 f = -k * (b.metric * (b.stretch + (b.theta * settings_.damping_s) * v));
     on_probe_w_ += to_wrench(f);
@@ -133,15 +136,15 @@ contact_solution friction::solve(mat6& a, const vec6& load, const vec6& v0, doub
   const double k = settings_.stiffness_n_per_m, horizon_s = h_s + settings_.damping_s;
   contact_solution out = solve_contact(a, load, v0, h_s, planes, moved, law);
   if (!settings_.any() || !out.solved) return out;
-  find_bodies(planes);
   mat6 with;
   for (int pass = 0; pass < most_passes; ++pass) {
+    find_bodies(planes, out);
     measure(planes, out, pass == 0 ? v0 : out.velocity, h_s);
     with = a;
     vec6 pulled = load;
     for (const bristle& b : bristles_) {
-      if (!(b.next_normal_n > 0.0)) continue;
-      const mat6 spring = (b.theta * k) * b.next_metric;
+      if (!(b.normal_n > 0.0)) continue;
+      const mat6 spring = (b.theta * k) * b.metric;
       with += horizon_s * spring;
       pulled = pulled - spring * (b.held + horizon_s * v0);
     }

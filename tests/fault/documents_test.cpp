@@ -375,8 +375,10 @@ TEST_F(documents, run_with_support_planes) {
   inside.insert(inside.end(), {"--seconds", "0.05", "--probe-pose", "0.001 0.002 0.003 0 0 0 1", "--coupling", "700"});
   const json d = expect_document(above, "asperity.run/1");
   EXPECT_EQ(d["formulation"], "planes");
-  expect_keys(d["wall"], {"largest_overlap", "beyond_field", "passed", "not_held", "planes_left_out", "unbalanced"});
-  for (const char* flag : {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced"}) {
+  expect_keys(d["wall"], {"largest_overlap", "beyond_field", "passed", "not_held", "planes_left_out", "unbalanced",
+                          "friction_left_out"});
+  for (const char* flag :
+       {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out"}) {
     EXPECT_EQ(d["wall"][flag]["ticks"], 0) << flag;
     EXPECT_TRUE(d["wall"][flag]["first"].is_null()) << flag;
   }

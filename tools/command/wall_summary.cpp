@@ -15,7 +15,7 @@ struct flag_words {
   const char* change;
 };
 
-constexpr std::array<flag_words, 5> words{{
+constexpr std::array<flag_words, 6> words{{
     {tick_flag::beyond_field, "beyond_field", "the probe was deeper than the depth fields can answer",
      "press less, or raise the contact rate"},
     {tick_flag::passed, "passed", "the probe went half way through a body or out on its far side",
@@ -26,6 +26,8 @@ constexpr std::array<flag_words, 5> words{{
      "touch fewer bodies at once, or raise the contact rate, which shortens the reach"},
     {tick_flag::unbalanced, "unbalanced", "the contact solver left over 1 mN, or found no solution",
      "lower the coupling's stiffness"},
+    {tick_flag::friction_left_out, "friction_left_out", "more bodies were pressed than can have friction at once",
+     "touch fewer bodies at once"},
 }};
 
 std::string first_text(std::int64_t first_ns) { return brief(1e-9 * static_cast<double>(first_ns)) + " s"; }

@@ -27,7 +27,7 @@ class wall_summary {
     std::int64_t first_ns = 0;
   };
 
-  std::array<count, 5> counts_{};
+  std::array<count, 6> counts_{};
   bool has_planes_ = false;
   double overlap_max_m_ = 0.0;
 };

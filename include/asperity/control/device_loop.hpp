@@ -265,8 +265,7 @@ class device_loop {
     r.planes = static_cast<std::uint32_t>(contact.planes.size());
     r.unbalanced_n = motion_.pressed().residual_n;
     r.overlap_m = motion_.pressed().deepest_m;
-    r.flags =
-        contact.flags | flags_of(motion_.pressed(), !contact.planes.empty() && probe_status == status::not_finite);
+    r.flags = contact.flags | flags_of(motion_, !contact.planes.empty() && probe_status == status::not_finite);
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
@@ -282,11 +281,12 @@ class device_loop {
     observer_(r);
   }
 
-  // The flags that the contact solver's result gives.
-  [[nodiscard]] static tick_flag flags_of(const contact_solution& s, bool failed) noexcept {
+  // The flags that the probe's last substep gives.
+  [[nodiscard]] static tick_flag flags_of(const probe_motion& moved, bool failed) noexcept {
     tick_flag out = tick_flag::none;
-    if (s.deepest_m > deepest_held_m) out |= tick_flag::not_held;
-    if (failed || s.residual_n > most_unbalanced_n) out |= tick_flag::unbalanced;
+    if (moved.pressed().deepest_m > deepest_held_m) out |= tick_flag::not_held;
+    if (failed || moved.pressed().residual_n > most_unbalanced_n) out |= tick_flag::unbalanced;
+    if (moved.rubbing().leaves_out()) out |= tick_flag::friction_left_out;
     return out;
   }
 

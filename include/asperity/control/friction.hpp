@@ -1,11 +1,8 @@
 // Dry friction between the probe and what it presses on: one bristle for each body.
 #pragma once
 
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <string>
 
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
@@ -50,14 +47,16 @@ struct friction_energy {
 /// N being their sum. Several points resist a turn about their normal by how far apart they are; one alone does not.
 /// A step of length h with the velocity v at its end makes of it
 ///   y = z + h v,   f = -k theta D (y + t v),   z' = theta y,   theta = min(1, mu N / (k |y + t v|)),
-/// t being the damping and |x|^2 = x^T D x. It loses k (|z - theta y|^2 / 2 + theta (1 - theta) |y|^2 + theta t h |v|^2),
-/// which is not negative for any theta from 0 to 1: friction makes no energy, however well the passes that find theta and D have converged. Where other points
-/// press than before and the new metric would raise what is stored, z is made shorter.
+/// t being the damping and |x|^2 = x^T D x. It loses
+///   k (|z - theta y|^2 / 2 + theta (1 - theta) |y|^2 + theta t h |v|^2),
+/// which is not negative for any theta from 0 to 1: friction makes no energy, however well the passes that find theta
+/// and D have converged. Where other points press than before and the new metric would raise what is stored, z is made
+/// shorter.
 /// @source bristles: Canudas de Wit et al., A new model for control of systems with friction, 1995; one cone for all
 /// points of a body by the root of a mean square is ours
 class ASPERITY_API friction {
  public:
-  /// Bodies that can be rubbed on at the same time; further ones are pressed without friction.
+  /// Bodies that can be rubbed on at the same time; further ones are pressed without friction, and leaves_out() tells.
   static constexpr std::size_t most_bodies = 8;
 
   /// @pre check(settings)
@@ -87,25 +86,26 @@ class ASPERITY_API friction {
   [[nodiscard]] const wrench& on_probe_w() const noexcept { return on_probe_w_; }
   /// Whether a body was slipped on in the last step.
   [[nodiscard]] bool slips() const noexcept { return slips_; }
+  /// Whether a body was pressed without friction in the last step, because most_bodies others were rubbed on.
+  [[nodiscard]] bool leaves_out() const noexcept { return leaves_out_; }
   [[nodiscard]] const friction_energy& energy() const noexcept { return energy_; }
   [[nodiscard]] const friction_settings& settings() const noexcept { return settings_; }
 
  private:
   struct bristle {
     std::uint32_t body = 0;
-    vec6 stretch{};         // z
-    mat6 metric{};          // D of the last step
-    double normal_n = 0.0;  // N
+    vec6 stretch{};  // z
     double stored_j = 0.0;
     // Of the step that is being solved.
-    mat6 next_metric{};
-    vec6 held{};  // z in the next metric
-    double next_normal_n = 0.0, theta = 1.0;
+    mat6 metric{};          // D
+    vec6 held{};            // z in this metric
+    double normal_n = 0.0;  // N
+    double theta = 1.0;
   };
 
   [[nodiscard]] double coefficient(double slip_m_per_s) const noexcept;
-  // The bristles of the planes' bodies; new ones are at rest.
-  void find_bodies(const support_planes& planes) noexcept;
+  // The bristles of the bodies that are pressed; new ones are at rest.
+  void find_bodies(const support_planes& planes, const contact_solution& by) noexcept;
   // Metric, force and share of a bristle for these forces and this velocity.
   void measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept;
 
@@ -113,7 +113,7 @@ class ASPERITY_API friction {
   fixed_vector<bristle, most_bodies> bristles_;
   wrench on_probe_w_{};
   friction_energy energy_{};
-  bool slips_ = false;
+  bool slips_ = false, leaves_out_ = false;
 };
 
 }  // namespace asperity

@@ -59,8 +59,8 @@ struct probe_energy {
 /// is positive definite and the step is stable for any stiffness. Against support planes J is zero and W_contact is
 /// the push of the planes at the end of the step (solve_contact), which is stable for any stiffness as well.
 ///
-/// A step that leaves the known region ends at its border: on the way from where the probe is to the point of the border
-/// that lies between the step's end and the region's centre. Planes that hold at all three hold there. It goes that way
+/// A step that leaves the known region ends at its border: on the way from where the probe is to that point of the
+/// border which lies between the step's end and the region's centre. Planes that hold at all three hold there. It goes that way
 /// as far as the border, which stands still, need not push the probe on; so the border takes energy and gives none. A
 /// probe that is outside, because a newer contact knows less of where it went, is not pulled back.
 /// The gyroscopic torque, which would break the symmetry, is left out: for a 10 g tool at a hand's 10 rad/s it is about
@@ -131,15 +131,6 @@ class probe {
     return status::ok;
   }
 
-  /// The same without friction.
-  [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
-                                      const twist& target_velocity_w, const support_planes& planes,
-                                      const known_region& within, const contact_law& law, contact_solution& out,
-                                      const wrench& external_w = {}) noexcept {
-    friction none;
-    return step_on_planes(h_s, coupling, target_T_wc, target_velocity_w, planes, within, law, none, out, external_w);
-  }
-
   [[nodiscard]] const probe_state& state() const noexcept { return state_; }
   [[nodiscard]] const probe_energy& energy() const noexcept { return energy_; }
   [[nodiscard]] const probe_settings& settings() const noexcept { return settings_; }
@@ -195,8 +186,8 @@ class probe {
   }
 
   // The velocity that does not leave what is known; the step's own, to the bit, where that does not.
-  // The border's wrench is a (out - now). Its power is 0 or less as long as out is no further along the way to the border
-  // than the point that is nearest to the step's end in the metric of the step's matrix a.
+  // The border's wrench is a (out - now). Its power is 0 or less as long as out is no further along the way to the
+  // border than the point that is nearest to the step's end in the metric of the step's matrix a.
   [[nodiscard]] vec6 keep_within(const known_region& within, double h_s, const mat6& a, const vec6& now) noexcept {
     if (!within.known.is_limited()) return now;
     const vec6 far = pose_difference(moved(state_.T_wc, h_s * now), within.T_wc);

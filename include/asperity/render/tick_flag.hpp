@@ -19,6 +19,8 @@ enum class tick_flag : std::uint8_t {
   not_held = 4,         ///< the overlap is beyond deepest_held_m
   planes_left_out = 8,  ///< near samples, or the support planes of a whole direction, did not fit
   unbalanced = 16,  ///< the contact solver left more than most_unbalanced_n, or found no solution; device ticks only
+  /// A body was pressed without friction, because as many as can be rubbed on at once were; device ticks only.
+  friction_left_out = 32,
 };
 
 /// Overlap beyond which planes do not hold the probe, m: the load of one plane of the usual 200 N/mm is 200 N there.

@@ -189,6 +189,14 @@ TEST(contact_law, says_what_is_out_of_range) {
   EXPECT_FALSE(check(contact_law{.most_passes = 0}).has_value());
 }
 
+/// A step without friction.
+status step_on(probe& tool, double h_s, const virtual_coupling& coupling, const pose& target,
+               const support_planes& planes, const contact_law& law, contact_solution& out,
+               const known_region& within = {}, const wrench& external_w = {}) {
+  friction none;
+  return tool.step_on_planes(h_s, coupling, target, {}, planes, within, law, none, out, external_w);
+}
+
 /// A probe that flies about between walls from everywhere, all of whose planes stay as they are.
 struct cage {
   probe tool;
@@ -206,7 +214,7 @@ struct cage {
     tool.reset({turns ? exp_rotation(d.inside(0.01)) : quat(1, 0, 0, 0), d.inside(0.004)});
   }
   [[nodiscard]] status step(double h_s, const pose& target = {}) {
-    return tool.step_on_planes(h_s, coupling, target, {}, planes, {}, law, last);
+    return step_on(tool, h_s, coupling, target, planes, law, last);
   }
   [[nodiscard]] double energy_j() const {
     const vec6 q = pose_difference(tool.state().T_wc, {});
@@ -273,9 +281,8 @@ TEST(probe_on_planes, closes_its_energy_book) {
       const double t = i * 1e-4;
       const pose target{exp_rotation({0.1 * std::sin(30 * t), 0.05 * std::sin(50 * t), 0}),
                         {0.01 * std::sin(20 * t), 0, -0.008 * std::sin(40 * t)}};
-      ASSERT_EQ(
-          c.tool.step_on_planes(1e-4, c.coupling, target, {}, c.planes, {}, c.law, c.last, {{0.1, 0, 0}, vec3(0.0)}),
-          status::ok);
+      ASSERT_EQ(step_on(c.tool, 1e-4, c.coupling, target, c.planes, c.law, c.last, {}, {{0.1, 0, 0}, vec3(0.0)}),
+                status::ok);
     }
     const probe_energy& e = c.tool.energy();
     const double work = std::fabs(e.by_coupling_j) + std::fabs(e.by_contact_j) + std::fabs(e.by_external_j);
@@ -296,7 +303,7 @@ TEST(probe_on_planes, stops_where_a_plane_is_not_finite) {
     ASSERT_TRUE(planes.push_back(plane({0, 0, 1}, vec3(0.0), 1e-3)));
     planes[0].gradient.linear.z = bad;
     contact_solution out;
-    EXPECT_EQ(tool.step_on_planes(1e-4, coupling, {}, {}, planes, {}, {}, out), status::not_finite);
+    EXPECT_EQ(step_on(tool, 1e-4, coupling, {}, planes, {}, out), status::not_finite);
     EXPECT_TRUE(is_zero(out.on_probe_w));
     EXPECT_EQ(tool.state().T_wc.position, vec3(0, 0, 0.001));
     EXPECT_EQ(tool.state().velocity_w.linear, vec3(0.0));
@@ -322,7 +329,7 @@ TEST(probe_on_planes, stays_finite_whatever_finite_planes_are_reported) {
     tool.reset({exp_rotation(d.inside(3.0)), d.inside(0.1)});
     contact_solution out;
     for (int i = 0; i < 3; ++i) {
-      const status s = tool.step_on_planes(1.25e-4, coupling, {}, {}, planes, {}, {}, out);
+      const status s = step_on(tool, 1.25e-4, coupling, {}, planes, {}, out);
       stopped += s == status::ok ? 0 : 1;
       ASSERT_TRUE(s == status::ok || s == status::not_finite);
       ASSERT_TRUE(is_valid(tool.state().T_wc)) << trial;
@@ -344,7 +351,7 @@ TEST(probe_on_planes, flies_as_without_where_every_plane_is_far) {
   contact_solution out;
   for (int i = 0; i < 500; ++i) {
     const pose target{exp_rotation({0, 0.3 * std::sin(0.01 * i), 0}), {0.01 * std::sin(0.02 * i), 0.002, 0}};
-    ASSERT_EQ(with.step_on_planes(1e-4, coupling, target, {}, planes, {}, {}, out), status::ok);
+    ASSERT_EQ(step_on(with, 1e-4, coupling, target, planes, {}, out), status::ok);
     ASSERT_EQ(without.step(1e-4, coupling, target, {}, {}), status::ok);
   }
   EXPECT_LT(glm::length(with.state().T_wc.position - without.state().T_wc.position), 1e-14);
@@ -371,8 +378,7 @@ TEST(probe_on_planes, loses_what_its_law_says_in_a_blow) {
       ASSERT_EQ(tool.step(h_s, none, {}, {}, {}, {{0, 0, -0.01 * speed / h_s}, vec3(0.0)}), status::ok);
       const pose touch = tool.state().T_wc;
       do {
-        ASSERT_EQ(tool.step_on_planes(h_s, none, {}, {}, planes, {touch, {}}, {.dissipation_s_per_m = alpha}, out),
-                  status::ok);
+        ASSERT_EQ(step_on(tool, h_s, none, {}, planes, {.dissipation_s_per_m = alpha}, out, {touch, {}}), status::ok);
       } while (out.lambda_n[0] > 0.0);
       const double lost = alpha * speed;  // to first order; the next is its square
       EXPECT_NEAR(tool.state().velocity_w.linear.z, speed * (1.0 - lost), (0.01 + lost * lost) * speed)

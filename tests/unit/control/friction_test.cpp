@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <asperity/control/friction.hpp>
@@ -173,6 +174,29 @@ TEST(Friction, EachBodyRubsByWhatItPresses) {
   jaws[1].depth_m = -1.0;
   s = step(rubbing, heavy, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, jaws);
   EXPECT_NEAR(rubbing.on_probe_w().force.x, -0.5 * 2.0, 0.02);
+}
+
+// Bodies that are near and not pressed take no bristle from those that are; one too many that presses is told.
+TEST(Friction, IsOfTheBodiesThatPress) {
+  const auto among = [](std::size_t near, std::size_t pressed) {
+    friction rubbing({.static_coefficient = 0.5, .dynamic_coefficient = 0.5});
+    support_planes planes;
+    for (std::size_t i = 0; i < near + pressed; ++i) {
+      EXPECT_TRUE(planes.push_back(
+          plane_at({0, 0, -1}, {0.0, 0.0, -0.002}, i < near ? -1e-3 : 1e-5, static_cast<std::uint32_t>(i))));
+    }
+    mat6 heavy;
+    for (std::size_t i = 0; i < 6; ++i) heavy(i, i) = 1e9;
+    for (int i = 0; i < 100; ++i) step(rubbing, heavy, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, planes);
+    return std::pair(rubbing.leaves_out(), -rubbing.on_probe_w().force.x);
+  };
+  constexpr std::size_t most = friction::most_bodies;
+  const auto [left_out, all_n] = among(20, most);
+  EXPECT_FALSE(left_out);
+  EXPECT_NEAR(all_n, 0.5 * 2.0 * static_cast<double>(most), 0.02 * all_n);
+  const auto [one_left_out, most_n] = among(0, most + 1);
+  EXPECT_TRUE(one_left_out);
+  EXPECT_NEAR(most_n, all_n, 1e-9);
 }
 
 // Whatever presses and moves: no step gives back more than it was given.

@@ -22,13 +22,15 @@ using namespace asperity::test_support;
 /// Flags of all device ticks of a hand that presses with up to `newtons`. @param touch where the probe touches first
 template <class Body>
 tick_flag flags_reported_by(const Body& body, double newtons, const contact_law& law, const virtual_schedule& schedule,
-                            const vec3& touch = vec3(0.0), const vec3& direction = {0, 0, -1}) {
+                            const vec3& touch = vec3(0.0), const vec3& direction = {0, 0, -1},
+                            const friction_settings& rubbing = {}) {
   struct watch {
     tick_flag reported = tick_flag::none;
     void operator()(const session_record& r) noexcept { reported |= r.flags; }
   };
   control_settings control;
   control.contact = law;
+  control.friction = rubbing;
   control.coupling = coupling_for(simulated_capabilities(), 1e9 / static_cast<double>(schedule.device_period_ns));
   simulated_device dev(hand_that_presses(newtons, touch, direction, control.coupling.stiffness_n_per_m));
   EXPECT_TRUE(dev.open() && dev.arm());
@@ -98,6 +100,36 @@ tick_flag flags_of(urchin body, std::size_t dropped, tick_flag reported = tick_f
   rest_prediction rest;
   linearise(found, status::ok, {}, {}, rest, contact);
   return contact.flags;
+}
+
+/// Floors of as many bodies as are asked for, all in one plane.
+struct floors {
+  std::uint32_t bodies = 1;
+  std::vector<support_plane> planes{};
+
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
+    out = {};
+    planes.clear();
+    for (std::uint32_t i = 0; i < bodies; ++i) {
+      planes.push_back({.depth_m = -at.T_wa.position.z, .gradient = {{0, 0, -1}, vec3(0.0)}, .n_ab_w = {0, 0, -1}});
+      planes.back().body = i;
+    }
+    out.centre_of_mass_w = at.T_wa.position;
+    out.planes = planes;
+    return status::ok;
+  }
+};
+
+TEST(tick_flags, report_a_body_without_friction) {
+  for (const std::uint32_t bodies : {8U, 9U}) {
+    for (const double mu : {0.0, 0.4}) {
+      const bool told = bodies > friction::most_bodies && mu > 0.0;
+      EXPECT_EQ(flags_reported_by(floors{bodies}, 2.0, {}, {}, vec3(0.0), {0, 0, -1},
+                                  {.static_coefficient = mu, .dynamic_coefficient = mu}),
+                told ? tick_flag::friction_left_out : tick_flag::none)
+          << bodies << ' ' << mu;
+    }
+  }
 }
 
 TEST(tick_flags, report_planes_that_did_not_fit) {
