@@ -283,9 +283,10 @@ class device_loop {
 
   // The flags that the probe's last substep gives.
   [[nodiscard]] static tick_flag flags_of(const probe_motion& moved, bool failed) noexcept {
+    const contact_solution& s = moved.pressed();
     tick_flag out = tick_flag::none;
-    if (moved.pressed().deepest_m > deepest_held_m) out |= tick_flag::not_held;
-    if (failed || moved.pressed().residual_n > most_unbalanced_n) out |= tick_flag::unbalanced;
+    if (s.deepest_m > deepest_held_m) out |= tick_flag::not_held;
+    if (failed || s.residual_n > most_unbalanced_n) out |= tick_flag::unbalanced;
     if (moved.rubbing().leaves_out()) out |= tick_flag::friction_left_out;
     return out;
   }
