@@ -68,9 +68,9 @@ check_consumers() {
     for compiler in g++ clang++; do
       for standard in c++20 c++2b; do
         printf '%s\n' "$compiler -std=$standard ${flags[*]} -fsyntax-only build/check/headers.cpp"
-        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/install/core_consumer.cpp $core \
+        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/system/install/core_consumer.cpp $core \
           -o build/check/consumer-$compiler-$standard && build/check/consumer-$compiler-$standard"
-        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/install/hal/drivers.cpp $drivers $links $core \
+        printf '%s\n' "$compiler -std=$standard ${flags[*]} tests/system/install/hal/drivers.cpp $drivers $links $core \
           -o build/check/drivers-$compiler-$standard && build/check/drivers-$compiler-$standard"
       done
     done
@@ -198,8 +198,8 @@ check_determinism() {
   for build in debug release clang; do
     rm -rf "build/check/$build"
     mkdir -p "build/check/$build"
-    printf '%s\n' "build/$build/tests/simulation/simulation_digest > build/check/$build/simulation.txt"
-    printf '%s\n' "tests/golden/session.sh build/$build/bin/asperity build/check/$build"
+    printf '%s\n' "build/$build/tests/session/simulation/simulation_digest > build/check/$build/simulation.txt"
+    printf '%s\n' "tests/session/golden/session.sh build/$build/bin/asperity build/check/$build"
   done | at_once
   for build in "${builds[@]}"; do
     mv "build/check/$build/simulation.txt" "build/check/$build/golden/"

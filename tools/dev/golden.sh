@@ -1,8 +1,8 @@
 # shellcheck shell=bash
 # The golden recording's digest and the changelog: what a user feels does not change without a word. Sourced by ./dev and
-# by tests/golden.
+# by tests/session/golden.
 #
-# tests/golden/recording.digests has one line per form that the recording had, the newest last: digest, seal, and words
+# tests/session/golden/recording.digests has one line per form that the recording had, the newest last: digest, seal, and words
 # that one entry of CHANGELOG.md has, marked [force]. The seal binds the words to the digest, so that a digest replaced by
 # hand is seen. A line with - for a digest takes an entry that was there before the first digest was kept. Nothing here asks git: it holds in a shallow clone and in an unpacked archive alike.
 
@@ -87,11 +87,11 @@ add_golden() {
 
 # ./dev golden WORDS: runs the golden session and adds its digest. ./dev golden --show: prints the digest only.
 run_golden() {
-  local digests=tests/golden/recording.digests digest
+  local digests=tests/session/golden/recording.digests digest
   [[ $# -eq 1 ]] || die "golden needs words of the new entry, marked [force], in CHANGELOG.md; or --show"
   setup
   configure_and_build release bin/asperity
-  tests/golden/session.sh build/release/bin/asperity build/golden
+  tests/session/golden/session.sh build/release/bin/asperity build/golden
   digest=$(recording_digest build/golden/golden/recording.csv)
   say "$digest"
   [[ $1 != --show ]] || return 0

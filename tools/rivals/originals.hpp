@@ -8,7 +8,7 @@
 
 #include "asperity/core/pose.hpp"
 #include "asperity/model/triangle_mesh.hpp"
-#include "oracle/placed_mesh.hpp"
+#include "law/oracle/placed_mesh.hpp"
 
 namespace asperity::rivals {
 

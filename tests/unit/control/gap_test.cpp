@@ -8,7 +8,7 @@
 #include <asperity/control/contact_loop.hpp>
 #include <asperity/control/device_loop.hpp>
 
-#include "simulation/stall/scripted_device.hpp"
+#include "session/simulation/stall/scripted_device.hpp"
 #include "unit/control/wall_session.hpp"
 
 namespace gap_test {

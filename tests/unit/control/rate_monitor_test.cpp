@@ -5,7 +5,7 @@
 
 #include <asperity/control/rate_monitor.hpp>
 
-#include "simulation/dice.hpp"
+#include "session/simulation/dice.hpp"
 
 namespace rate_monitor_test {
 

@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "rt/tick_trap.hpp"
+#include "session/rt/tick_trap.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace asperity {

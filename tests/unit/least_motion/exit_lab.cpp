@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "contacts/polyhedra.hpp"
+#include "law/contacts/polyhedra.hpp"
 #include "support/small_models.hpp"
 
 namespace asperity::test_support {

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "rt/tick_trap.hpp"
+#include "session/rt/tick_trap.hpp"
 #include "support/piece_models.hpp"
 #include "window/clustering.hpp"
 #include "window/contact_builder.hpp"

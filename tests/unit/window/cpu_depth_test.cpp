@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 
-#include "rt/tick_trap.hpp"
+#include "session/rt/tick_trap.hpp"
 #include "support/height_models.hpp"
 
 namespace asperity {

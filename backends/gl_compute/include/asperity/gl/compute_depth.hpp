@@ -59,8 +59,8 @@ struct compute_counters {
 
 /// Directional penetration depth as cpu_depth defines it, flags, gradients and curvature included.
 ///
-/// Agreement with cpu_depth, asserted and printed over 2080 seeded contacts (tests/gl); angular components count at
-/// the lever arm of the contact:
+/// Agreement with cpu_depth, asserted and printed over 2080 seeded contacts (tests/hardware/gl); angular components
+/// count at the lever arm of the contact:
 /// - double precision: hard depth to 1e-11 of the window's width, soft depth to 1e-7, each component of the gradient
 ///   and of tau times the curvature to 1e-5, a central difference to 1e-10. The soft maximum is less exact, because
 ///   shaders have the exponential in single precision only.

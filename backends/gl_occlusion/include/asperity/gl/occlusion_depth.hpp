@@ -81,11 +81,11 @@ struct occlusion_tiles {
 
 /// Directional penetration depth and its eleven-pose gradient, as cpu_depth with the same settings has them.
 ///
-/// Agreement with cpu_depth, measured over 2000 contacts (tests/gl): the same flags and samples; depth_m within one
-/// quantum of the contact's depth buffer (found: 0.50). The gradient is a difference of two depths: within 2 quantum_m
-/// / step_m across n (found: 1.03) and 2 quantum_m / step_rad about the point of rotation (found: 0.83). With 24 bits
-/// single precision is what limits: 3e-7 of the window's half size and the depth range together stand for the quantum
-/// where that is more.
+/// Agreement with cpu_depth, measured over 2000 contacts (tests/hardware/gl): the same flags and samples; depth_m
+/// within one quantum of the contact's depth buffer (found: 0.50). The gradient is a difference of two depths: within 2
+/// quantum_m / step_m across n (found: 1.03) and 2 quantum_m / step_rad about the point of rotation (found: 0.83). With
+/// 24 bits single precision is what limits: 3e-7 of the window's half size and the depth range together stand for the
+/// quantum where that is more.
 /// With moved_heights::reused turns about n differ from the CPU backend's.
 ///
 /// Values that the paper's backend cannot compute are set as follows: soft_depth_m is depth_m and there is no

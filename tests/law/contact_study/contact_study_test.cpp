@@ -1,0 +1,72 @@
+// A share of the study on the benchmark models, with the same limits, and what must break them.
+#include <gtest/gtest.h>
+#include <string>
+
+#include "law/contact_study/report.hpp"
+#include "law/contact_study/study.hpp"
+#include "law/contact_study/study_models.hpp"
+
+namespace asperity::contact_study {
+namespace {
+
+/// One of the first three pairs of all_pairs.
+class BakedPair : public testing::TestWithParam<pair_name> {
+ protected:
+  void SetUp() override {
+    const std::filesystem::path folder = ASPERITY_TEST_MODELS_DIR;
+    result<model_ptr> probe = study_model(GetParam().probe, folder, folder);
+    ASSERT_TRUE(probe) << probe.error().message;
+    result<model_ptr> fixed = study_model(GetParam().fixed, folder, folder);
+    ASSERT_TRUE(fixed) << fixed.error().message;
+    result<pair_of_renderers> made = pair_of_renderers::make({std::move(probe).value(), {std::move(fixed).value()}});
+    ASSERT_TRUE(made) << made.error().message;
+    renderers_.emplace(std::move(made).value());
+  }
+
+  std::optional<pair_of_renderers> renderers_;
+};
+
+// No motion jumps: at 100 kHz none has more than twice the changes of 10 kHz. Where ways out compete, or the body rocks
+// on its relief, some change faster than a loop of 1 kHz sees.
+TEST_P(BakedPair, TheDefaultNeitherJumpsNorMakesWork) {
+  constexpr std::size_t too_fast = 4;  // of twelve motions; measured: 3, 2 and 1
+  study_options options;
+  options.poses = 4;
+  options.with_window = false;
+  const pair_result found = study_pair(std::string(GetParam().probe), *renderers_, options);
+  ASSERT_EQ(found.least_motion.size(), options.poses);
+  std::size_t over = 0;
+  for (const pose_result& p : found.least_motion) {
+    for (const motion m : all_motions) {
+      const jumps& j = p.moved[static_cast<std::size_t>(m)];
+      EXPECT_TRUE(j.at_1khz.ok && j.at_10khz.ok);
+      EXPECT_FALSE(j.discontinuous()) << broken_limits({found});
+      over += j.over_limit() ? 1U : 0U;
+    }
+    EXPECT_LE(p.loop, loop_limit) << "pose " << p.index;
+  }
+  EXPECT_LE(over, too_fast) << broken_limits({found});
+}
+
+// Without this the test above could pass because nothing was touched, or because the measure cannot tell.
+TEST_P(BakedPair, ThePapersClustersDoBoth) {
+  const double k = renderers_->least_motion().force().settings().stiffness_n_per_m;
+  const feel_function feel = feel_with(renderers_->window());
+  bool jumped = false, worked = false;
+  for (std::uint64_t index = 0; index < 8 && !(jumped && worked); ++index) {
+    const std::optional<touching_pose> start = find_touching_pose(renderers_->least_motion(), 1, index);
+    if (!start) continue;
+    for (const motion m : all_motions) {
+      jumped = jumped || measure_jumps(feel, *start, m, k, false).force_ratio() > 2.0 * ratio_limit;
+    }
+    worked = worked || loop_work(feel, *start, 250) > 10.0 * loop_limit;
+  }
+  EXPECT_TRUE(jumped);
+  EXPECT_TRUE(worked);
+}
+
+INSTANTIATE_TEST_SUITE_P(Benchmark, BakedPair, testing::Values(all_pairs[0], all_pairs[1], all_pairs[2]),
+                         [](const testing::TestParamInfo<pair_name>& pair) { return std::string(pair.param.probe); });
+
+}  // namespace
+}  // namespace asperity::contact_study

@@ -1,0 +1,138 @@
+// How far a force jumps beyond what the motion explains, and how much work a closed loop makes.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+
+#include "law/contact_study/touching_pose.hpp"
+
+namespace asperity::contact_study {
+
+/// What the default keeps to, and the paper's does not.
+inline constexpr double ratio_limit = 2.0;
+inline constexpr double loop_limit = 3e-5;
+
+/// What a probe feels somewhere.
+struct felt {
+  vec3 centre_of_mass_w{0.0};
+  wrench on_probe_w{};  ///< about the centre of mass
+  status answer = status::ok;
+
+  [[nodiscard]] vec3 torque_about(const vec3& p_w) const noexcept {
+    return on_probe_w.torque + glm::cross(centre_of_mass_w - p_w, on_probe_w.force);
+  }
+};
+
+/// Feels the probe at a pose; the fixed body is the world.
+using feel_function = std::function<felt(const pose& T_wa)>;
+
+template <class Renderer>
+[[nodiscard]] feel_function feel_with(Renderer& renderer) {
+  return [&renderer](const pose& T_wa) {
+    const pose T_wb;
+    tick out;
+    felt here;
+    here.answer = renderer.step({T_wa, {&T_wb, 1}}, out);
+    here.centre_of_mass_w = out.centre_of_mass_w;
+    here.on_probe_w = out.force.on_probe_w;
+    return here;
+  };
+}
+
+/// Largest change of the wrench from tick to tick, in units of what one spring explains.
+struct jump {
+  double force = 0.0;   ///< max |dF| / (k dx), dx = |translation of the contact point| + L |rotation|
+  double torque = 0.0;  ///< max |dT| / (k dx L), about the point of the contact
+  double at_m = 0.0;    ///< where on the way the force changed most
+  bool ok = true;       ///< false: a tick had another status than ok
+};
+
+/// One motion at 50 mm/s.
+[[nodiscard]] inline jump measure_jump(const feel_function& feel, const touching_pose& start, motion m, double rate_hz,
+                                       double stiffness_n_per_m) {
+  constexpr double speed_m_per_s = 0.05;
+  const auto ticks = static_cast<std::size_t>(std::lround(length_m(m) / speed_m_per_s * rate_hz));
+  const vec3 point_a = inverse(start.T_wa) * start.point_w;
+  jump worst;
+  pose T_before;
+  felt before;
+  for (std::size_t i = 0; i <= ticks; ++i) {
+    const double way_m = speed_m_per_s / rate_hz * static_cast<double>(i);
+    const pose T = along(start, m, way_m);
+    const felt now = feel(T);
+    worst.ok = worst.ok && now.answer == status::ok;
+    if (i > 0) {
+      const vec3 point_w = T * point_a;
+      const double turned_rad = glm::length(log_rotation(T.rotation * glm::conjugate(T_before.rotation)));
+      const double dx = glm::length(point_w - T_before * point_a) + lever_m * turned_rad;
+      const double force = glm::length(now.on_probe_w.force - before.on_probe_w.force) / (stiffness_n_per_m * dx);
+      const double torque = glm::length(now.torque_about(point_w) - before.torque_about(T_before * point_a)) /
+                            (stiffness_n_per_m * dx * lever_m);
+      if (force > worst.force) worst.force = force, worst.at_m = way_m;
+      worst.torque = std::max(worst.torque, torque);
+    }
+    T_before = T;
+    before = now;
+  }
+  return worst;
+}
+
+/// The same motion at 1 kHz and at 10 kHz. Where a force is a continuous function of the pose, ticks that are ten times
+/// shorter have jumps that are ten times smaller, and both measures are alike; where it jumps, the second is ten times
+/// the first.
+struct jumps {
+  jump at_1khz, at_10khz;
+  /// Measured where the two above differ by more than ratio_limit: was it a jump, or a change too quick for 1 kHz?
+  std::optional<jump> at_100khz;
+
+  [[nodiscard]] double force_ratio() const noexcept { return ratio(at_10khz.force, at_1khz.force, 1e4); }
+  [[nodiscard]] double torque_ratio() const noexcept { return ratio(at_10khz.torque, at_1khz.torque, 1e4); }
+  [[nodiscard]] bool over_limit() const noexcept { return std::max(force_ratio(), torque_ratio()) > ratio_limit; }
+  /// Over the limit, and ten times shorter ticks still do not resolve the change. A true jump grows tenfold again.
+  [[nodiscard]] bool discontinuous() const noexcept {
+    return over_limit() && (!at_100khz || ratio(at_100khz->force, at_10khz.force, 1e5) > ratio_limit ||
+                            ratio(at_100khz->torque, at_10khz.torque, 1e5) > ratio_limit);
+  }
+
+ private:
+  // A step of 0.1 mN, a thousandth of what a spring of 2 N/mm explains at 1 kHz, counts as none at every rate: no hand
+  // feels it, and a search that ends within its tolerance makes steps of that size.
+  [[nodiscard]] static double ratio(double quicker, double slower, double quicker_hz) noexcept {
+    const double none = 1e-3 * quicker_hz / 1e3;
+    return std::max(quicker, none) / std::max(slower, none);
+  }
+};
+
+/// @param look_closer at 100 kHz too, where the two rates differ by more than the limit
+[[nodiscard]] inline jumps measure_jumps(const feel_function& feel, const touching_pose& start, motion m,
+                                         double stiffness_n_per_m, bool look_closer) {
+  const auto at = [&](double rate_hz) { return measure_jump(feel, start, m, rate_hz, stiffness_n_per_m); };
+  jumps out{at(1e3), at(1e4), std::nullopt};
+  if (look_closer && out.over_limit()) out.at_100khz = at(1e5);
+  return out;
+}
+
+/// Work once around the loop over the work of all its steps, both without sign: 0 for a force that has a potential, up
+/// to the error of the trapezoidal rule.
+[[nodiscard]] inline double loop_work(const feel_function& feel, const touching_pose& start, std::size_t steps = 1000) {
+  double work = 0.0, turnover = 0.0;
+  pose T_before = around(start, 0.0);
+  felt before = feel(T_before);
+  for (std::size_t i = 1; i <= steps; ++i) {
+    const pose T = around(start, static_cast<double>(i) / static_cast<double>(steps));
+    const felt now = feel(T);
+    const vec3 moved_m = now.centre_of_mass_w - before.centre_of_mass_w;
+    const vec3 turned_rad = log_rotation(T.rotation * glm::conjugate(T_before.rotation));
+    const double step_work = 0.5 * (glm::dot(before.on_probe_w.force + now.on_probe_w.force, moved_m) +
+                                    glm::dot(before.on_probe_w.torque + now.on_probe_w.torque, turned_rad));
+    work += step_work;
+    turnover += std::fabs(step_work);
+    T_before = T;
+    before = now;
+  }
+  return turnover > 0.0 ? std::fabs(work) / turnover : 0.0;
+}
+
+}  // namespace asperity::contact_study

@@ -1,0 +1,155 @@
+// Hands that rest on textured bodies by support planes: what they are given hardly trembles.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <string>
+#include <utility>
+
+#include "asperity/control/virtual_coupling.hpp"
+#include "asperity/device/simulated/simulated_settings.hpp"
+#include "law/presses/press_law.hpp"
+#include "law/presses/rest_session.hpp"
+#include "support/extent.hpp"
+#include "support/fresh_seed.hpp"
+
+namespace asperity::presses {
+namespace {
+
+using test_support::extent;
+using test_support::fresh_seed;
+
+/// Hands at rest on one pair of benchmark models.
+template <class Change>
+rest_row rest_on(const std::string& name, const press_choice& which, Change&& change,
+                 double plane_stiffness_n_per_m = contact_law{}.stiffness_n_per_m) {
+  press_shelf shelf(press_bake::simplified);
+  for (const press_pair& pair : benchmark_pairs()) {
+    if (pair.name() != name) continue;
+    const auto probe = shelf.get(pair.probe), fixed = shelf.get(pair.fixed);
+    if (!probe || !fixed) {
+      ADD_FAILURE() << (probe ? fixed.error() : probe.error()).message;
+      return {};
+    }
+    const auto render = plane_renderer_law().render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+    if (!render) {
+      ADD_FAILURE() << render.error().message;
+      return {};
+    }
+    rest_row row = rest_sessions(pair, **probe, **fixed, change(*render), which, plane_stiffness_n_per_m);
+    print_row(stdout, row);
+    return row;
+  }
+  ADD_FAILURE() << name << " is no pair of benchmark models";
+  return {};
+}
+
+render_function as_it_is(const render_function& whole) { return whole; }
+
+// A hundredth of the force, or 5 mN and 0.5 mN m, is what is wanted, and nearly all rests keep to it: of 60 of a day,
+// three had up to two and a half times as much. A day draws others: one in ten may have more than a hundredth, and one
+// in thirty more than that.
+TEST(rests, hardly_tremble) {
+  const int touches = 1;
+  const std::uint64_t seed = fresh_seed("rests", "a hand on each of 3 pairs, 30 at length");
+  print_rest_heading(stdout);
+  int rests = 0, trembling = 0, far_over = 0;
+  for (const press_pair& pair : benchmark_pairs()) {
+    const bool trembled =
+        pair.name() == "gear on torus" || pair.name() == "file on block" || pair.name() == "cad_part on gear";
+    if (!test_support::at_length() && !trembled) continue;
+    const rest_row row = rest_on(pair.name(), {seed, touches, 0, 1e-4}, as_it_is);
+    for (const rest_result& r : row.rests) {
+      EXPECT_FALSE(r.ended_early) << pair.name();
+      if (r.restless()) continue;
+      ++rests;
+      trembling += r.trembles() ? 1 : 0;
+      const vibration_level &force = r.heard.force, &torque = r.heard.torque;
+      const bool far = force.worst_rms > std::max(0.02 * force.worst_mean, 0.01) ||
+                       torque.worst_rms > std::max(0.03 * torque.worst_mean, 1e-3);
+      far_over += far ? 1 : 0;
+    }
+  }
+  std::printf("  %d of %d rests tremble by more than a hundredth\n", trembling, rests);
+  EXPECT_LE(trembling, 2 + rests / 10);
+  EXPECT_LE(far_over, 1 + rests / 30);
+  EXPECT_GE(rests, 2);
+}
+
+// A hand that presses a file on a block with 10 N, contacts one period late and without the guard.
+TEST(rests, a_file_is_held_on_a_block_with_10_n) {
+  const int touches = extent(1, 3);
+  const std::uint64_t seed = fresh_seed("rests, 10 N", std::to_string(touches) + " touch(es)");
+  const auto without_planes = [](const render_function& whole) -> render_function {
+    return [whole](const scene_pose& at, tick& out) {
+      const status s = whole(at, out);
+      out.planes = {};
+      out.planes_near = {};
+      return s;
+    };
+  };
+  press_shelf shelf(press_bake::simplified);
+  const auto probe = shelf.get("file"), fixed = shelf.get("block");
+  ASSERT_TRUE(probe && fixed);
+  touch_finder finder("file on block", (*probe)->full, (*fixed)->full, {});
+  int pressed = 0, worse = 0;
+  for (int i = 0; i < touches; ++i) {
+    const auto touch = finder.next(seed);
+    ASSERT_TRUE(touch);
+    for (const double hz : {1000.0, 200.0}) {
+      if (hz < 500.0 && !test_support::at_length()) continue;
+      const auto render = plane_renderer_law(1.0 / hz).render(**probe, **fixed, session_rules{}.stiffness_n_per_m);
+      ASSERT_TRUE(render);
+      rest_rules rules;
+      rules.grip = 2;
+      rules.way_m = 10.0 * (1.0 / firm_hand().stiffness_n_per_m + 1.0 / coupling_settings{}.stiffness_n_per_m);
+      rules.contact_period_ns = static_cast<std::int64_t>(1e9 / hz);
+      rules.guard = false;
+      const vec3 c_a = (*probe)->model->mass.centre_of_mass;
+      const rest_result held = rest_session(*render, *touch, c_a, rules, seed);
+      const rest_result line = rest_session(without_planes(*render), *touch, c_a, rules, seed);
+      for (const auto& [name, r] : {std::pair{"planes", &held}, std::pair{"a line", &line}}) {
+        std::printf("  touch %llu, %.0f Hz, %s: %.2f N, deepest %.3f mm, %.2f N/ms at rest, %.4f mJ%s\n",
+                    static_cast<unsigned long long>(touch->index), hz, name, r->largest_n, 1e3 * r->deepest_m,
+                    r->step_n_per_ms, 1e3 * r->surplus_j, r->ended_early ? ", shut" : "");
+      }
+      const bool fast = hz > 500.0;
+      EXPECT_FALSE(held.ended_early);
+      // 0.1 mm is wanted at 1 kHz: 0.07 to 0.10 mm measured. A touch that slides off an edge, and ends with less force
+      // than it was pressed with, is deeper on its way where contacts are 5 ms apart: 0.74 mm measured.
+      const bool slid = held.largest_n < 8.0;
+      EXPECT_LE(held.deepest_m, slid ? 1.2e-3 : (fast ? 2e-4 : 3e-4)) << hz;
+      EXPECT_LE(held.step_n_per_ms, fast ? 0.3 : 1.0) << hz;
+      EXPECT_LE(held.surplus_j, 1e-5) << hz;
+      if (!(held.largest_n > 3.0)) continue;  // it slid off
+      ++pressed;
+      worse += line.deepest_m > 2.0 * held.deepest_m || line.step_n_per_ms > 1.0 || line.surplus_j > 1e-3 ? 1 : 0;
+    }
+  }
+  EXPECT_TRUE(pressed == 0 || worse > 0) << "the control: a line instead of planes holds as well";
+}
+
+// The control: two rests that buzz where planes are told of the present pose alone and are a quarter as stiff, so that
+// several times as many samples press as a contact can tell.
+TEST(rests, buzz_on_soft_planes_of_the_present_pose) {
+  constexpr double soft_n_per_m = 5e4;
+  const auto of_the_present = [](const render_function& whole) -> render_function {
+    return [whole](const scene_pose& at, tick& out) {
+      const status s = whole(at, out);
+      out.planes_near = {};
+      return s;
+    };
+  };
+  for (const auto& [name, first] : {std::pair{"gear on torus", 1}, std::pair{"file on block", 0}}) {
+    if (first == 0 && !test_support::at_length()) continue;
+    const press_choice which{20261123, 1, first, 1e-4};
+    const rest_row buzzing = rest_on(name, which, of_the_present, soft_n_per_m), still = rest_on(name, which, as_it_is);
+    ASSERT_EQ(buzzing.rests.size(), 1U);
+    ASSERT_EQ(still.rests.size(), 1U);
+    EXPECT_TRUE(buzzing.rests[0].trembles()) << name;
+    EXPECT_LT(still.rests[0].heard.force.worst_rms, 0.5 * buzzing.rests[0].heard.force.worst_rms) << name;
+  }
+}
+
+}  // namespace
+}  // namespace asperity::presses
