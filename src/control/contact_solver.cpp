@@ -15,14 +15,15 @@ namespace {
 /// The planes as one step sees them: x_i = d_i + h_i g_i . v is the depth that plane i answers to at the velocity v.
 struct plane_rows {
   std::size_t count = 0;
-  std::array<double, most_support_planes> horizon_s{};  // h_i
-  std::array<double, most_support_planes> depth_m{};    // x_i
-  std::array<double, most_support_planes> change_m{};   // of x_i by the step that is tried
+  std::array<double, most_support_planes> stiffness_n_per_m{};  // k_i
+  std::array<double, most_support_planes> horizon_s{};          // h_i
+  std::array<double, most_support_planes> depth_m{};            // x_i
+  std::array<double, most_support_planes> change_m{};           // of x_i by the step that is tried
 };
 
 /// Where along a step the potential is least: its slope there is the sum of p0 + p1 t and of each pressed plane's part,
 /// which is linear between the places where a plane begins or ceases to be pressed.
-[[nodiscard]] double least_along(const plane_rows& rows, double stiffness_n_per_m, double p0, double p1) noexcept {
+[[nodiscard]] double least_along(const plane_rows& rows, double p0, double p1) noexcept {
   double from = 0.0;
   for (std::size_t piece = 0; piece <= rows.count; ++piece) {
     double at_zero = p0;
@@ -35,7 +36,7 @@ struct plane_rows {
       if (turns > from) until = std::min(until, turns);
       const bool pressed = dx > 0.0 ? turns <= from : (dx < 0.0 ? turns > from : x > 0.0);
       if (!pressed) continue;
-      const double slope = stiffness_n_per_m * dx / rows.horizon_s[i];
+      const double slope = rows.stiffness_n_per_m[i] * dx / rows.horizon_s[i];
       at_zero += slope * x;
       rate += slope * dx;
     }
@@ -46,20 +47,20 @@ struct plane_rows {
   return from;
 }
 
-}  // namespace
-
-contact_solution solve_contact(const mat6& a, const vec6& load, const vec6& v0, double h_s,
-                               const support_planes& planes, const vec6& moved, const contact_law& law) noexcept {
+[[nodiscard]] contact_solution solve_planes(const mat6& a, const vec6& load, const vec6& v0, double h_s,
+                                            const support_planes& planes, const vec6& moved, const contact_laws& laws,
+                                            bool dissipates) noexcept {
   constexpr double tolerance_n = 1e-9;
-  const double k = law.stiffness_n_per_m;
   contact_solution out;
   vec6 v = v0;
   plane_rows rows;
   rows.count = planes.size();
   for (std::size_t i = 0; i < rows.count; ++i) {
     const double d = planes[i].depth_m + dot(planes[i].gradient, moved);
+    const double alpha = dissipates ? laws.dissipation_s_per_m(planes[i].body) : 0.0;
     out.deepest_m = std::max(out.deepest_m, d);
-    rows.horizon_s[i] = h_s + 1.5 * law.dissipation_s_per_m * std::max(0.0, d);
+    rows.stiffness_n_per_m[i] = laws.stiffness_n_per_m(planes[i].body);
+    rows.horizon_s[i] = h_s + 1.5 * alpha * std::max(0.0, d);
     rows.depth_m[i] = d + rows.horizon_s[i] * dot(planes[i].gradient, v);
   }
   for (;;) {
@@ -69,6 +70,7 @@ contact_solution solve_contact(const mat6& a, const vec6& load, const vec6& v0, 
     vec6 slope = imbalance;
     for (std::size_t i = 0; i < rows.count; ++i) {
       if (!(rows.depth_m[i] > 0.0)) continue;
+      const double k = rows.stiffness_n_per_m[i];
       add_outer(curvature, k * rows.horizon_s[i], planes[i].gradient);
       slope += (k * rows.depth_m[i]) * planes[i].gradient;
     }
@@ -82,23 +84,36 @@ contact_solution solve_contact(const mat6& a, const vec6& load, const vec6& v0, 
       rows.change_m[i] = rows.horizon_s[i] * dot(planes[i].gradient, step);
       const double end = x + rows.change_m[i];
       const double supposed = x > 0.0 ? end : 0.0;
-      out.residual_n = std::max(out.residual_n, k * std::fabs(std::max(0.0, end) - supposed));
+      out.residual_n = std::max(out.residual_n, rows.stiffness_n_per_m[i] * std::fabs(std::max(0.0, end) - supposed));
     }
-    const bool done = out.residual_n <= tolerance_n || out.passes >= law.most_passes;
-    const double part = done ? 1.0 : least_along(rows, k, dot(step, imbalance), dot(step, a * step));
+    const bool done = out.residual_n <= tolerance_n || out.passes >= laws.usual.most_passes;
+    const double part = done ? 1.0 : least_along(rows, dot(step, imbalance), dot(step, a * step));
     v += part * step;
     for (std::size_t i = 0; i < rows.count; ++i) rows.depth_m[i] += part * rows.change_m[i];
     if (done) break;
   }
   vec6 pushed;
   for (std::size_t i = 0; i < rows.count; ++i) {
-    out.lambda_n[i] = k * std::max(0.0, rows.depth_m[i]);
+    out.lambda_n[i] = rows.stiffness_n_per_m[i] * std::max(0.0, rows.depth_m[i]);
     pushed = pushed - out.lambda_n[i] * planes[i].gradient;
   }
   out.velocity = v;
   out.on_probe_w = to_wrench(pushed);
   out.solved = true;
   return out;
+}
+
+}  // namespace
+
+contact_solution solve_contact(const mat6& a, const vec6& load, const vec6& v0, double h_s,
+                               const support_planes& planes, const vec6& moved, const contact_laws& laws) noexcept {
+  return solve_planes(a, load, v0, h_s, planes, moved, laws, true);
+}
+
+contact_solution balance_of(const mat6& springs, const vec6& pull, const support_planes& planes, const vec6& moved,
+                            const contact_laws& laws) noexcept {
+  // A step of one second with the springs in the place of the mass.
+  return solve_planes(springs, pull, {}, 1.0, planes, moved, laws, false);
 }
 
 }  // namespace asperity

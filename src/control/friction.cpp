@@ -63,19 +63,27 @@ void friction::forget() noexcept {
   slips_ = leaves_out_ = false;
 }
 
-double friction::coefficient(double slip_m_per_s) const noexcept {
+double friction::coefficient(const bristle& b, double slip_m_per_s) const noexcept {
   const double ratio = slip_m_per_s / settings_.stribeck_m_per_s;
-  return settings_.dynamic_coefficient +
-         (settings_.static_coefficient - settings_.dynamic_coefficient) * std::exp(-ratio * ratio);
+  return b.dynamic_coefficient + (b.static_coefficient - b.dynamic_coefficient) * std::exp(-ratio * ratio);
 }
 
-void friction::find_bodies(const support_planes& planes, const contact_solution& by) noexcept {
+void friction::find_bodies(const support_planes& planes, const contact_solution& by,
+                           const contact_laws& laws) noexcept {
   leaves_out_ = false;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (!(by.lambda_n[i] > 0.0)) continue;
-    const bool known =
-        std::any_of(bristles_.begin(), bristles_.end(), [&](const bristle& b) { return b.body == planes[i].body; });
-    if (!known && !bristles_.push_back({.body = planes[i].body})) leaves_out_ = true;
+    const std::uint32_t body = planes[i].body;
+    const surface_pair* const pair = laws.pair(body);
+    const double at_rest = pair != nullptr ? pair->static_friction : settings_.static_coefficient;
+    const double slipping = pair != nullptr ? pair->dynamic_friction : settings_.dynamic_coefficient;
+    if (!(at_rest > 0.0) ||
+        std::any_of(bristles_.begin(), bristles_.end(), [&](const bristle& b) { return b.body == body; })) {
+      continue;
+    }
+    if (!bristles_.push_back({.body = body, .static_coefficient = at_rest, .dynamic_coefficient = slipping})) {
+      leaves_out_ = true;
+    }
   }
 }
 
@@ -98,7 +106,7 @@ void friction::measure(const support_planes& planes, const contact_solution& by,
     b.held = held_j > b.stored_j ? std::sqrt(b.stored_j / held_j) * b.stretch : b.stretch;
     // What the bristle gave up in the pass before, or the step before, has slipped; the rest is its own stretch.
     const double slip_m_per_s = (1.0 - b.theta) * std::sqrt(squared(b.metric, b.held + h_s * v)) / h_s;
-    const double most_m = coefficient(slip_m_per_s) * b.normal_n / k;
+    const double most_m = coefficient(b, slip_m_per_s) * b.normal_n / k;
     const double stretch_m = std::sqrt(squared(b.metric, b.held + (h_s + settings_.damping_s) * v));
     b.theta = stretch_m > most_m ? most_m / stretch_m : 1.0;
   }
@@ -131,14 +139,15 @@ void friction::settle(double h_s, const vec6& v) noexcept {
 }
 
 contact_solution friction::solve(mat6& a, const vec6& load, const vec6& v0, double h_s, const support_planes& planes,
-                                 const vec6& moved, const contact_law& law) noexcept {
+                                 const vec6& moved, const contact_laws& laws) noexcept {
   constexpr int most_passes = 4;
   const double k = settings_.stiffness_n_per_m, horizon_s = h_s + settings_.damping_s;
-  contact_solution out = solve_contact(a, load, v0, h_s, planes, moved, law);
-  if (!settings_.any() || !out.solved) return out;
+  contact_solution out = solve_contact(a, load, v0, h_s, planes, moved, laws);
+  if (!out.solved) return out;
   mat6 with;
   for (int pass = 0; pass < most_passes; ++pass) {
-    find_bodies(planes, out);
+    find_bodies(planes, out, laws);
+    if (bristles_.empty()) return out;
     measure(planes, out, pass == 0 ? v0 : out.velocity, h_s);
     with = a;
     vec6 pulled = load;
@@ -148,7 +157,7 @@ contact_solution friction::solve(mat6& a, const vec6& load, const vec6& v0, doub
       with += horizon_s * spring;
       pulled = pulled - spring * (b.held + horizon_s * v0);
     }
-    out = solve_contact(with, pulled, v0, h_s, planes, moved, law);
+    out = solve_contact(with, pulled, v0, h_s, planes, moved, laws);
     if (!out.solved) return out;
   }
   a = with;

@@ -37,7 +37,7 @@ bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, p
               0.5 * pull_.stiffness_n_m_per_rad * glm::dot(moved.angular, moved.angular);
   for (support_plane& p : out.planes) {
     if (!is_finite(p)) return false;
-    energy_j += 0.5 * stiffness_n_per_m_ * std::max(0.0, p.depth_m) * std::max(0.0, p.depth_m);
+    energy_j += 0.5 * laws_.stiffness_n_per_m(p.body) * std::max(0.0, p.depth_m) * std::max(0.0, p.depth_m);
   }
   out.energy_j = energy_j;
   return std::isfinite(energy_j);
@@ -75,7 +75,7 @@ void rest_prediction::search(const plane_source& planes_near) noexcept {
     all_.clear();
     for (const support_plane& p : here_.planes) static_cast<void>(all_.push_back(as_from_here(p, here_.moved)));
     for (const support_plane& p : cuts_) static_cast<void>(all_.push_back(p));
-    const vec6 way = detail::rest_of(pull_, all_) - here_.moved;
+    const vec6 way = detail::rest_of(pull_, all_, laws_) - here_.moved;
     const double share = detail::share_of_furthest(way);
     if (share * detail::furthest_rest_m < still_m && share * detail::furthest_rest_rad < still_rad) return;
     const vec6 step = share > reach ? (reach / share) * way : way;

@@ -28,13 +28,11 @@ inline constexpr double most_ways = 5.0;
 
 /// Where springs and planes balance, as a motion from the pose where both were reported, of at most half a millimetre
 /// and 25 mrad.
-[[nodiscard]] inline vec6 rest_of(const coupling_pull& pull, const support_planes& planes) noexcept {
+[[nodiscard]] inline vec6 rest_of(const coupling_pull& pull, const support_planes& planes,
+                                  const contact_laws& laws = {}) noexcept {
   mat6 springs;
   for (std::size_t i = 0; i < 6; ++i) springs(i, i) = i < 3 ? pull.stiffness_n_per_m : pull.stiffness_n_m_per_rad;
-  contact_law still;
-  still.dissipation_s_per_m = 0.0;
-  // A step of one second with the springs in the place of the mass: its velocity is the way.
-  const contact_solution s = solve_contact(springs, to_vec6(pull.on_probe_w), {}, 1.0, planes, {}, still);
+  const contact_solution s = balance_of(springs, to_vec6(pull.on_probe_w), planes, {}, laws);
   if (!s.solved || !is_finite(s.velocity)) return {};
   const double ways = share_of_furthest(s.velocity);
   return ways > most_ways ? (most_ways / ways) * s.velocity : s.velocity;

@@ -11,6 +11,7 @@
 #include "file_formats.hpp"
 #include "gltf_document.hpp"
 #include "haptic_texture_extension.hpp"
+#include "surface_json.hpp"
 
 namespace asperity::io {
 namespace {
@@ -220,6 +221,28 @@ bake_report read_report(const json_object& from) {
   return report;
 }
 
+/// The physics material of the colliders on the nodes that place this mesh; nothing where none has one.
+std::optional<material> read_surface(const json_object& root, std::size_t mesh) {
+  std::optional<std::size_t> named;
+  for (std::size_t n = 0; n < root.array("nodes").size(); ++n) {
+    const json_object node = root.element("nodes", n);
+    if (!node.has("mesh") || node.whole("mesh") != mesh || !node.has("extensions")) continue;
+    const json_object extensions = node.object("extensions");
+    if (!extensions.has(extension::rigid_bodies)) continue;
+    const json_object body = extensions.object(extension::rigid_bodies);
+    if (!body.has("collider") || !body.object("collider").has("physicsMaterial")) continue;
+    const std::size_t index = static_cast<std::size_t>(body.object("collider").whole("physicsMaterial"));
+    if (named && *named != index) reject("nodes place the mesh with more than one physics material; leave it one");
+    named = index;
+  }
+  if (!named) return std::nullopt;
+  const json_object bodies = root.object("extensions").object(extension::rigid_bodies);
+  if (*named >= bodies.array("physicsMaterials").size()) {
+    reject(bodies.path("physicsMaterials") + " has no material " + std::to_string(*named) + ", which a node names");
+  }
+  return read_material(bodies.element("physicsMaterials", *named));
+}
+
 textured_model read_model(const gltf_document& document) {
   const json_object root(document.source(), "the document");
   const std::size_t m = find_mesh(root);
@@ -238,6 +261,7 @@ textured_model read_model(const gltf_document& document) {
   model.texture = read_texture(document, haptic.object("texture"));
   model.pieces = read_pieces(document, haptic.object("pieces"), model.mesh);
   model.report = read_report(haptic.object("report"));
+  model.surface = read_surface(root, m);
   return model;
 }
 

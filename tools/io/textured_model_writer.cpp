@@ -17,6 +17,7 @@
 #include "haptic_texture_extension.hpp"
 #include "relief_image.hpp"
 #include "report_object.hpp"
+#include "surface_json.hpp"
 
 namespace asperity::io {
 namespace {
@@ -33,6 +34,7 @@ std::string as_utf8(const std::string& name) {
 /// The model that the file will hold: positions and texture coordinates as float32, its name as UTF-8.
 textured_model as_in_file(textured_model model) {
   model.name = as_utf8(model.name);
+  if (model.surface) model.surface->name = as_utf8(model.surface->name);
   for (vec3& p : model.mesh.positions) p = round_to_float32(p);
   for (coarse_triangle& t : model.mesh.triangles) {
     for (vec2& uv : t.uv) uv = round_to_float32(uv);
@@ -191,6 +193,16 @@ bool add_pieces(const textured_model& model, glb_builder& glb, object& to) {
   return true;
 }
 
+/// What the body is like to touch: a physics material, and a collider on the node that names it.
+void add_surface(const material& surface, tinygltf::Node& node, glb_builder& glb) {
+  const object collider{{"geometry", value(object{{"node", value(0)}})}, {"physicsMaterial", value(0)}};
+  node.extensions[extension::rigid_bodies] = value(object{{"collider", value(collider)}});
+  const tinygltf::Value::Array materials{value(material_object(surface))};
+  glb.model.extensions[extension::rigid_bodies] = value(object{{"physicsMaterials", value(materials)}});
+  glb.model.extensionsUsed.emplace_back(extension::rigid_bodies);
+  glb.model.extensionsUsed.emplace_back(extension::haptic_material);
+}
+
 result<void> write(const textured_model& given, const std::filesystem::path& file) {
   const textured_model model = as_in_file(given);
   // What is written must load again, so it passes the same check first.
@@ -200,6 +212,11 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
   if (!has_finite_figures(model.report)) {
     return fault(error_code::invalid_argument, file,
                  "is not written: its bake report holds a number that is not finite");
+  }
+  if (model.surface) {
+    if (const result<void> ok = check(*model.surface); !ok) {
+      return fault(ok.error().code, file, "is not written: " + ok.error().message);
+    }
   }
   const split_vertices split = split_at_seams(model.mesh);
   glb_builder glb;
@@ -236,6 +253,7 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
   tinygltf::Node node;
   node.mesh = 0;
   node.name = model.name;
+  if (model.surface) add_surface(*model.surface, node, glb);
   glb.model.nodes.push_back(std::move(node));
   tinygltf::Scene scene;
   scene.nodes.push_back(0);

@@ -37,8 +37,14 @@ class contact_loop {
  public:
   /// @param shared outlives the loop
   /// @param selection which support planes are handed on; selection_for() knows what fits a period
-  contact_loop(Renderer feel, scene_placement placement, exchange& shared, const plane_selection& selection = {})
-      : renderer_(std::move(feel)), placement_(std::move(placement)), shared_(&shared), selection_(selection) {}
+  /// @param laws those that the device loop holds the probe by: where it will rest depends on them
+  contact_loop(Renderer feel, scene_placement placement, exchange& shared, const plane_selection& selection = {},
+               contact_laws laws = {})
+      : renderer_(std::move(feel)),
+        placement_(std::move(placement)),
+        shared_(&shared),
+        selection_(selection),
+        rest_(std::move(laws)) {}
 
   /// compute() and publish() in one.
   /// @return the renderer's answer; ok without work where no new pose came

@@ -4,12 +4,15 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <utility>
 
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/core/export.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/model/material.hpp"
 
 namespace asperity {
 
@@ -39,6 +42,31 @@ struct contact_law {
   return {};
 }
 
+/// The law of every body's planes: what its surface and the probe's make of a touch, and one law for all of which that
+/// is not known. Copied outside a tick only.
+struct contact_laws {
+  contact_laws(const contact_law& of_the_others = {}, surface_pairs of_bodies = {}) noexcept
+      : usual(of_the_others), pairs(std::move(of_bodies)) {}
+
+  /// The pair of a body (support_plane::body); null where the usual law holds. @rt safe
+  [[nodiscard]] const surface_pair* pair(std::uint32_t body) const noexcept {
+    return body < pairs.size() && pairs[body] ? &*pairs[body] : nullptr;
+  }
+  /// @rt safe
+  [[nodiscard]] double stiffness_n_per_m(std::uint32_t body) const noexcept {
+    const surface_pair* const p = pair(body);
+    return p != nullptr ? p->stiffness_n_per_m : usual.stiffness_n_per_m;
+  }
+  /// @rt safe
+  [[nodiscard]] double dissipation_s_per_m(std::uint32_t body) const noexcept {
+    const surface_pair* const p = pair(body);
+    return p != nullptr ? p->dissipation_s_per_m : usual.dissipation_s_per_m;
+  }
+
+  contact_law usual;
+  surface_pairs pairs;
+};
+
 /// Outcome of one step against support planes.
 struct contact_solution {
   vec6 velocity{};                                     ///< of c_A at the end of the step, m/s and rad/s, world axes
@@ -51,16 +79,25 @@ struct contact_solution {
 };
 
 /// Velocity v and forces lambda at the end of a step of length h, with
-///   A (v - v0) = load - sum lambda_i g_i,   lambda_i = k max(0, d_i + h_i g_i . v),   h_i = h + 1.5 alpha max(0, d_i).
+///   A (v - v0) = load - sum lambda_i g_i,   lambda_i = k max(0, d_i + h_i g_i . v),   h_i = h + 1.5 alpha max(0, d_i),
+/// k and alpha those of the plane's body.
 /// These are the conditions for the least value of a convex function of v that is quadratic wherever the set of pressed
 /// planes is the same. Newton's method with an exact line search finds it in finitely many passes; each factorises one
 /// 6x6 matrix. It keeps no state: the same step has the same answer whatever came before.
 /// @param moved q - q0 of the planes at the beginning of the step
-/// @pre a symmetric positive definite; h_s > 0; check(law)
-/// @rt safe: at most law.most_passes passes
+/// @pre a symmetric positive definite; h_s > 0; check(laws.usual)
+/// @rt safe: at most laws.usual.most_passes passes
 /// @source the problem: compliant unilateral constraints with implicit steps; the primal form as in Castro et al. 2023
 [[nodiscard]] ASPERITY_API contact_solution solve_contact(const mat6& a, const vec6& load, const vec6& v0, double h_s,
                                                           const support_planes& planes, const vec6& moved,
-                                                          const contact_law& law) noexcept;
+                                                          const contact_laws& laws) noexcept;
+
+/// Where springs and planes balance, planes as springs that dissipate nothing: the velocity of the answer is the way, m
+/// and rad, from where `moved` is.
+/// @param springs their stiffness about c_A, symmetric positive definite
+/// @param pull    of the springs at `moved`
+[[nodiscard]] ASPERITY_API contact_solution balance_of(const mat6& springs, const vec6& pull,
+                                                       const support_planes& planes, const vec6& moved,
+                                                       const contact_laws& laws) noexcept;
 
 }  // namespace asperity

@@ -37,6 +37,9 @@ struct control_settings {
   coupling_settings coupling{};
   contact_law contact{};         ///< of support planes, see check(); a linear contact brings its own stiffness
   friction_settings friction{};  ///< on support planes, see check()
+  /// What the probe's surface and each fixed body's make of a touch, in the place of the two above: surfaces_of() a
+  /// scene takes it from the models' materials. Empty: the two above hold for all bodies.
+  surface_pairs surfaces{};
   guard_settings guard{};
   contact_ageing ageing{};  ///< how old a contact may be felt
   rate_limits rates{};      ///< how late the loops may be
@@ -54,6 +57,11 @@ struct control_settings {
   int substeps = 8;                           ///< of the probe in one device period
   std::int64_t longest_step_ns = 20'000'000;  ///< a later tick advances the probe by this much only
 };
+
+/// The laws of these settings for every body's planes.
+[[nodiscard]] inline contact_laws laws_of(const control_settings& settings) {
+  return {settings.contact, settings.surfaces};
+}
 
 /// The same with the nominal period of a session, where the caller has stated none. A contact that is as old as these
 /// loops make it, and one more period late, is no surprise, down to 100 Hz: slower loops are a surprise as such.

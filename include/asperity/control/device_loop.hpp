@@ -58,7 +58,7 @@ class device_loop {
         shared_(&shared),
         observer_(std::move(observer)),
         check_(settings.samples),
-        motion_(settings.probe, settings.coupling, settings.contact, settings.substeps, settings.friction),
+        motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
         guard_(guard_for(settings.guard, dev.capabilities())),
         rates_(settings.rates, settings.ageing),
         gate_(tighter(limits_of(dev.capabilities()), settings.limits), command_valid_ns, settings.low_pass_hz),

@@ -13,7 +13,7 @@
 
 namespace asperity {
 
-/// How the probe rubs on every body. The same for all of them.
+/// How the probe rubs on a body. The coefficients are of bodies whose surface_pair is not known; the rest of all.
 struct friction_settings {
   double static_coefficient = 0.0;   ///< of a contact that does not slip: largest tangential per normal force
   double dynamic_coefficient = 0.0;  ///< of one that slips fast; at most the static one. Both 0: no friction
@@ -76,7 +76,7 @@ class ASPERITY_API friction {
   /// @pre as solve_contact   @rt safe: at most five solutions
   [[nodiscard]] contact_solution solve(mat6& a, const vec6& load, const vec6& v0, double h_s,
                                        const support_planes& planes, const vec6& moved,
-                                       const contact_law& law) noexcept;
+                                       const contact_laws& laws) noexcept;
 
   /// Ends the step that was solved, with the velocity that it really had: what else stops a probe may have made it
   /// another one than the solution's. Friction makes no energy with any. @rt safe
@@ -94,6 +94,7 @@ class ASPERITY_API friction {
  private:
   struct bristle {
     std::uint32_t body = 0;
+    double static_coefficient = 0.0, dynamic_coefficient = 0.0;
     vec6 stretch{};  // z
     double stored_j = 0.0;
     // Of the step that is being solved.
@@ -103,9 +104,9 @@ class ASPERITY_API friction {
     double theta = 1.0;
   };
 
-  [[nodiscard]] double coefficient(double slip_m_per_s) const noexcept;
-  // The bristles of the bodies that are pressed; new ones are at rest.
-  void find_bodies(const support_planes& planes, const contact_solution& by) noexcept;
+  [[nodiscard]] double coefficient(const bristle& b, double slip_m_per_s) const noexcept;
+  // The bristles of the bodies that are pressed and have friction; new ones are at rest.
+  void find_bodies(const support_planes& planes, const contact_solution& by, const contact_laws& laws) noexcept;
   // Metric, force and share of a bristle for these forces and this velocity.
   void measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept;
 

@@ -1,6 +1,8 @@
 // The support planes of the pose where the probe will come to rest: what planes of its present pose cannot know.
 #pragma once
 
+#include <utility>
+
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/virtual_coupling.hpp"
@@ -32,6 +34,9 @@ namespace asperity {
 /// lessen a merit: bundle methods, e.g. K. C. Kiwiel, Methods of descent for nondifferentiable optimization, 1985
 class ASPERITY_API rest_prediction {
  public:
+  /// @param laws those that hold the probe
+  explicit rest_prediction(contact_laws laws = {}) noexcept : laws_(std::move(laws)) {}
+
   /// Forgets the pose of rest: the next search begins where the probe is.
   void forget() noexcept { known_ = false; }
 
@@ -92,7 +97,7 @@ class ASPERITY_API rest_prediction {
   void report(support_planes& planes) noexcept;
 
   static constexpr std::size_t most_cuts = 12;
-  double stiffness_n_per_m_ = contact_law{}.stiffness_n_per_m;
+  contact_laws laws_;
   bool known_ = false;
   pose rest_T_wc_{};
   coupling_pull pull_{};

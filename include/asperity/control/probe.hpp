@@ -104,10 +104,10 @@ class probe {
   /// @param rubbing of the probe on what the planes stand for, from step to step
   /// @param out which planes pushed, and how hard
   /// @return ok | not_finite (as above). A solver that ran out of passes is ok and tells its residual.
-  /// @pre check(law)   @rt safe: at most law.most_passes passes of each solution that friction takes
+  /// @pre check(laws.usual)   @rt safe: at most laws.usual.most_passes passes of each solution that friction takes
   [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
                                       const twist& target_velocity_w, const support_planes& planes,
-                                      const known_region& within, const contact_law& law, friction& rubbing,
+                                      const known_region& within, const contact_laws& laws, friction& rubbing,
                                       contact_solution& out, const wrench& external_w = {}) noexcept {
     const vec6 v = to_vec6(state_.velocity_w);
     const vec6 coupled = to_vec6(coupling.on_probe(target_T_wc, target_velocity_w, state_.T_wc, state_.velocity_w));
@@ -116,7 +116,7 @@ class probe {
     mat6 a = (1.0 / h_s) * inertia;
     const vec6 stretch_rate = add_coupling(h_s, coupling, v, a);
     const vec6 load = coupled + to_vec6(external_w) - stretch_rate;
-    out = rubbing.solve(a, load, v, h_s, planes, pose_difference(state_.T_wc, within.T_wc), law);
+    out = rubbing.solve(a, load, v, h_s, planes, pose_difference(state_.T_wc, within.T_wc), laws);
     if (!out.solved || !is_finite(out.on_probe_w) || !plausible(out.velocity)) {
       out = {};
       rubbing.forget();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <utility>
 
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/friction.hpp"
@@ -28,10 +29,10 @@ class probe_motion {
  public:
   /// @param substeps of the probe in one period; at least one is made
   /// @param rubbing on support planes; a contact without planes has no friction
-  /// @pre check(law), check(rubbing)
-  probe_motion(const probe_settings& body, const coupling_settings& coupling, const contact_law& law, int substeps,
+  /// @pre check(laws.usual), check(rubbing)
+  probe_motion(const probe_settings& body, const coupling_settings& coupling, contact_laws laws, int substeps,
                const friction_settings& rubbing = {}) noexcept
-      : law_(law),
+      : laws_(std::move(laws)),
         substeps_(std::max(1, substeps)),
         coupling_(coupling, body.mass_kg, mean_inertia(body)),
         probe_(body),
@@ -92,10 +93,8 @@ class probe_motion {
     for (std::size_t i = 0; i < 6; ++i) {
       springs(i, i) = i < 3 ? coupling_.stiffness_n_per_m() : coupling_.stiffness_n_m_per_rad();
     }
-    contact_law still = law_;
-    still.dissipation_s_per_m = 0.0;
     const vec6 moved = pose_difference(probe_.state().T_wc, contact.T_wc);
-    return solve_contact(springs, {}, {}, 1.0, contact.planes, moved, still).on_probe_w;
+    return balance_of(springs, {}, contact.planes, moved, laws_).on_probe_w;
   }
 
   /// What the hand feels of the coupling: minus its wrench on the probe, world axes, about target().position.
@@ -154,7 +153,7 @@ class probe_motion {
       return s;
     }
     const status s = probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, contact.planes,
-                                           {contact.T_wc, contact.known}, law_, friction_, pressed_);
+                                           {contact.T_wc, contact.known}, laws_, friction_, pressed_);
     touched_ = {pressed_.on_probe_w + friction_.on_probe_w(), {}, false};
     return s;
   }
@@ -166,7 +165,7 @@ class probe_motion {
   };
   static constexpr std::size_t most_recent = 10;  // of 10 kHz
 
-  contact_law law_;
+  contact_laws laws_;
   int substeps_;
   virtual_coupling coupling_;
   asperity::probe probe_;

@@ -32,7 +32,8 @@ class virtual_session {
   virtual_session(Renderer feel, scene_placement placement, Device& dev, const control_settings& settings,
                   const virtual_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
-        contact_(std::move(feel), placement, shared_, selection_for(schedule.periods().renewal_ns())),
+        contact_(std::move(feel), placement, shared_, selection_for(schedule.periods().renewal_ns()),
+                 laws_of(settings)),
         device_(dev, with_periods(settings, schedule.periods()), placement.centre_of_mass_a, shared_,
                 std::move(observer)),
         next_contact_ns_(schedule.start_ns),

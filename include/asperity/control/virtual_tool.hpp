@@ -18,6 +18,7 @@ struct virtual_tool_settings {
   coupling_settings coupling{};
   contact_law contact{};
   friction_settings friction{};
+  surface_pairs surfaces{};      ///< as control_settings::surfaces
   plane_selection selection{};   ///< selection_for() the period in which ticks are rendered
   pose T_ha{};                   ///< the probe's body frame on the handle
   vec3 centre_of_mass_a{0.0};    ///< c_A in the probe's body frame, m (textured_model::mass)
@@ -42,7 +43,9 @@ class virtual_tool {
       : settings_(settings),
         T_hc_(settings.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), settings.centre_of_mass_a}),
         T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), settings.centre_of_mass_a})),
-        motion_(settings.probe, settings.coupling, settings.contact, settings.substeps, settings.friction) {}
+        motion_(settings.probe, settings.coupling, {settings.contact, settings.surfaces}, settings.substeps,
+                settings.friction),
+        rest_({settings.contact, settings.surfaces}) {}
 
   /// Puts the probe where the handle is, at rest.
   /// @pre is_valid(T_wh)

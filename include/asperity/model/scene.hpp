@@ -25,6 +25,13 @@ struct scene {
   return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
 }
 
+/// What the probe's surface and that of each fixed body make of a touch. @pre every model has been checked
+[[nodiscard]] inline surface_pairs surfaces_of(const scene& bodies) {
+  surface_pairs out;
+  for (const model_ptr& b : bodies.fixed) out.push_back(combined(bodies.probe->surface, b->surface));
+  return out;
+}
+
 /// Memory that a scene's models take, bytes; a model that appears several times counts once.
 [[nodiscard]] inline std::size_t memory_bytes(const scene& bodies) noexcept {
   std::size_t bytes = sizeof bodies + heap_bytes(bodies.fixed) + (bodies.probe ? memory_bytes(*bodies.probe) : 0);

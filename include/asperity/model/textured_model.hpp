@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "asperity/model/convex_piece.hpp"
 #include "asperity/model/haptic_texture.hpp"
 #include "asperity/model/mass_properties.hpp"
+#include "asperity/model/material.hpp"
 
 namespace asperity {
 
@@ -32,8 +34,11 @@ struct textured_model {
   mass_properties mass;  ///< of the coarse mesh
   bounds box;            ///< of the coarse mesh
   bake_report report;
+  std::optional<material> surface;  ///< what it is like to touch; nothing where nobody said
 
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(name, mesh, texture, pieces); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(name, mesh, texture, pieces) + (surface ? surface->heap_bytes() : 0);
+  }
 };
 
 /// Memory that a model takes, bytes: itself and all that it holds. See heap_bytes() for what is counted.
