@@ -13,6 +13,7 @@
 #include "cli.hpp"
 #include "file_names.hpp"
 #include "interrupt.hpp"
+#include "material_option.hpp"
 #include "mesh_units.hpp"
 #include "model_drawing.hpp"
 #include "options.hpp"
@@ -32,6 +33,7 @@ struct bake_command {
   std::string out;
   std::string picture;
   std::string name;
+  std::string material;
   std::size_t triangles = 600;
   std::uint32_t texture = 1024;
   unsigned threads = 0;
@@ -47,6 +49,7 @@ result<void> check_paths(const bake_command& options) {
   const std::vector<named_file> coarse = mesh_files(options.coarse, "--coarse");
   inputs.insert(inputs.end(), coarse.begin(), coarse.end());
   for (const std::string& image : options.relief->inputs()) inputs.push_back({"the relief", image});
+  if (!preset_material(options.material)) inputs.push_back({"--material", options.material});
   const std::vector<named_file> outputs{{"-o", options.out}, {"--picture", options.picture}};
   if (const result<void> ok = check_outputs(inputs, outputs); !ok) return ok;
   return check_writable(options.out);
@@ -54,6 +57,12 @@ result<void> check_paths(const bake_command& options) {
 
 result<answer> run_bake(const bake_command& options, const common_options& common) {
   if (const result<void> ok = check_paths(options); !ok) return ok.error();
+  std::optional<material> surface;
+  if (!options.material.empty()) {
+    result<material> read = read_material_option(options.material);
+    if (!read) return read.error();
+    surface = std::move(*read);
+  }
 
   std::optional<output_file> drawing;
   if (!options.picture.empty()) {
@@ -112,9 +121,10 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     settings.coarse = std::move(coarse).value();
   }
   // A mesh that the picture does not need is not kept twice.
-  const result<textured_model> model =
+  result<textured_model> model =
       drawing && !settings.relief ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
   if (!model) return model.error();
+  model->surface = std::move(surface);
 
   json picture;
   if (drawing) {
@@ -174,6 +184,8 @@ void add_bake(command_line& line) {
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
       ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
+  sub.add_option("--material", o->material,
+                 "What the surface is like to touch: steel, wood, rubber, ice, or a material file (.json)");
   sub.add_option("--threads", o->threads, "Threads to use; 0 takes all. The result does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

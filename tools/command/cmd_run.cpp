@@ -219,7 +219,16 @@ result<answer> run_session(const run_command& options, const common_options& com
   control.probe = found.probe = solid_probe(shape);
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
   control.coupling = found.coupling.settings;
-  if (!options.friction.empty()) control.friction = friction_of(options.friction).value_or(friction_settings{});
+  if (formulation_name(options.render) == "planes") control.surfaces = surfaces_of(feel->scene());
+  if (!options.friction.empty()) {
+    control.friction = friction_of(options.friction).value_or(friction_settings{});
+    for (std::optional<surface_pair>& pair : control.surfaces) {
+      if (!pair) continue;
+      pair->static_friction = control.friction.static_coefficient;
+      pair->dynamic_friction = control.friction.dynamic_coefficient;
+    }
+  }
+  found.surfaces = control.surfaces;
   found.rate = look_at_rate(chosen, *feel, {poses->T_wb, shape.centre_of_mass}, touch_T_wa, control);
   if (found.rate && !common.quiet && !common.json) complain("note: " + to_text(*found.rate));
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
@@ -309,8 +318,10 @@ void add_run(command_line& line) {
                  "The same of the rotation (N m/rad); by default what the device can show, and 3 with other contacts")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1e-3, 1e3));
-  sub.add_option("--friction", o->friction,
-                 "Coefficients of friction on support planes, STATIC or STATIC,DYNAMIC: 0.6,0.4; none by default")
+  sub.add_option(
+         "--friction", o->friction,
+         "Coefficients of friction on support planes, STATIC or STATIC,DYNAMIC: 0.6,0.4; by default those of the "
+         "models' materials, or none")
       ->check(friction_error, "MU[,MU]");
   sub.add_option(
          "--clock", o->clock,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "material_option.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -111,6 +112,7 @@ json describe(const textured_model& model) {
         {"max_error_percent", percent_of_diagonal(model, r.max_error_m)},
         {"peak_to_valley", r.peak_to_valley_m},
         {"max_displacement", r.max_displacement_m}}},
+      {"material", model.surface ? to_json(*model.surface) : json()},
       {"memory", memory_bytes(model)},
   };
   if (r.quality) add_quality(*r.quality, out);
@@ -142,6 +144,7 @@ std::string describe_text(const textured_model& model) {
   out += row("volume", brief(model.mass.volume_m3 * 1e6) + " cm^3");
   const vec3& c = model.mass.centre_of_mass;
   out += row("centre of mass", length_text(c.x) + ", " + length_text(c.y) + ", " + length_text(c.z));
+  if (model.surface) out += row("material", to_text(*model.surface));
   out += row("memory", memory_text(memory_bytes(model)));
   return out;
 }

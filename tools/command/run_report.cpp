@@ -1,10 +1,13 @@
 #include "run_report.hpp"
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <system_error>
 
 #include "gpu_report.hpp"
 #include "interrupt.hpp"
+#include "material_option.hpp"
 #include "model_report.hpp"
 #include "statistics.hpp"
 #include "text.hpp"
@@ -139,6 +142,12 @@ json friction_json(const run_command& options) {
   return {{"static", mu->static_coefficient}, {"dynamic", mu->dynamic_coefficient}};
 }
 
+json surfaces_json(const surface_pairs& pairs) {
+  json out = json::array();
+  for (const std::optional<surface_pair>& p : pairs) out.push_back(p ? to_json(*p) : json());
+  return out;
+}
+
 std::string replay_text(const replay_outcome& replay) {
   const std::string what = replay.device + ", " + std::to_string(replay.ticks) + " ticks on record" +
                            (replay.cut ? ", cut off before its end; " : "; ");
@@ -156,7 +165,7 @@ std::string to_text(const real_time_grants& got) {
 }
 
 answer report(const run_command& options, const session_findings& found) {
-  const auto& [poses, ended, summary, memory, coupling, rate, probe, replay, driver] = found;
+  const auto& [poses, ended, summary, memory, coupling, rate, probe, replay, driver, surfaces] = found;
   const bool real_time = clock_of(options) == "real";
   const time_summary contact = summarise(ended.contact.seconds);
   const time_summary device = summarise(ended.device.seconds);
@@ -178,7 +187,8 @@ answer report(const run_command& options, const session_findings& found) {
                   {"grid", grid_json(options.render)},
                   {"lookup", lookup_json(options.render)},
                   {"coupling", command::to_json(coupling, probe)},
-                  {"friction", friction_json(options)}};
+                  {"friction", friction_json(options)},
+                  {"surfaces", surfaces_json(surfaces)}};
   out.document.update(summary.to_json());
   out.document["contact_loop"] = loop_json(options.contact_rate_hz, ended.contact, contact);
   out.document["rate_check"] = rate ? command::to_json(*rate) : json();
@@ -208,6 +218,9 @@ answer report(const run_command& options, const session_findings& found) {
   if (const auto mu = friction_of(options.friction); mu && mu->any()) {
     out.text +=
         row("friction", brief(mu->static_coefficient) + " at rest, " + brief(mu->dynamic_coefficient) + " slipping");
+  }
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i]) out.text += row("surfaces", printable(file_stem(options.fixed[i])) + ": " + to_text(*surfaces[i]));
   }
   out.text += row("contact loop", loop_text(options.contact_rate_hz, ended.contact, contact, real_time));
   out.text += row("device loop", loop_text(options.device_rate_hz, ended.device, device, real_time));

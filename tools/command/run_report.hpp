@@ -38,6 +38,7 @@ struct session_findings {
   probe_settings probe;
   std::optional<replay_outcome> replay;  ///< only of a replay
   std::string driver{};                  ///< what became of the driver's process; empty where all is well
+  surface_pairs surfaces{};              ///< of the probe with each fixed body; empty with other contacts than planes
 };
 
 /// What a session in real time asked the system for and got, in one line.

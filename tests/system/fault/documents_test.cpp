@@ -338,7 +338,8 @@ TEST_F(documents, run) {
                   "fault_record", "interrupted",      "recording",    "plot",
                   "units",        "device_recording", "replay",       "real_time",
                   "signal",       "driver_fault",     "rates",        "vibration",
-                  "wall",         "coupling",         "rate_check",   "friction"});
+                  "wall",         "coupling",         "rate_check",   "friction",
+                  "surfaces"});
   for (const char* loop : {"contact_loop", "device_loop"}) {
     expect_keys(d[loop], {"rate", "ticks", "idle", "late", "skipped", "over_period", "kept", "tick_time"});
   }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include <asperity/control/probe.hpp>
@@ -191,10 +192,58 @@ TEST(contact_law, says_what_is_out_of_range) {
 
 /// A step without friction.
 status step_on(probe& tool, double h_s, const virtual_coupling& coupling, const pose& target,
-               const support_planes& planes, const contact_law& law, contact_solution& out,
+               const support_planes& planes, const contact_laws& laws, contact_solution& out,
                const known_region& within = {}, const wrench& external_w = {}) {
   friction none;
-  return tool.step_on_planes(h_s, coupling, target, {}, planes, within, law, none, out, external_w);
+  return tool.step_on_planes(h_s, coupling, target, {}, planes, within, laws, none, out, external_w);
+}
+
+// Each plane is a spring of its own body's stiffness; a body beyond the list, and one without a pair, has the usual law's.
+TEST(contact_solver, springs_of_each_body_are_its_own) {
+  drawn d(seed_of(fresh_seed("contact_solver_bodies", "200 steps"), "bodies"));
+  for (int trial = 0; trial < 200; ++trial) {
+    problem p(d);
+    for (std::size_t i = 0; i < p.planes.size(); ++i) p.planes[i].body = static_cast<std::uint32_t>(d.bits() % 4);
+    contact_laws laws(
+        p.law,
+        {surface_pair{.stiffness_n_per_m = d.log_between(50.0, 1e7), .dissipation_s_per_m = d.between(0.0, 20.0)},
+         std::nullopt,
+         surface_pair{.stiffness_n_per_m = d.log_between(50.0, 1e7), .dissipation_s_per_m = d.between(0.0, 20.0)}});
+    const contact_solution s = solve_contact(p.a, p.load, p.before, p.h_s, p.planes, p.moved, laws);
+    ASSERT_TRUE(s.solved);
+    vec6 pushed;
+    for (std::size_t i = 0; i < p.planes.size(); ++i) {
+      const std::uint32_t body = p.planes[i].body;
+      const bool known = body == 0 || body == 2;
+      const double k = known ? laws.pairs[body]->stiffness_n_per_m : p.law.stiffness_n_per_m;
+      const double alpha = known ? laws.pairs[body]->dissipation_s_per_m : p.law.dissipation_s_per_m;
+      const double horizon_s = p.h_s + 1.5 * alpha * std::max(0.0, p.depth(i));
+      const double end_m = p.depth(i) + horizon_s * dot(p.planes[i].gradient, s.velocity);
+      const double want_n = k * std::max(0.0, end_m);
+      EXPECT_NEAR(s.lambda_n[i], want_n, 1e-6 + 1e-6 * want_n) << trial << ' ' << body;
+      pushed = pushed - s.lambda_n[i] * p.planes[i].gradient;
+    }
+    const vec6 left = p.a * (s.velocity - p.before) - p.load - pushed;
+    for (std::size_t k = 0; k < 6; ++k) EXPECT_NEAR(left[k], 0.0, 1e-5) << trial;
+  }
+}
+
+// Where springs and planes balance nothing moves any more, so that nothing dissipates.
+TEST(contact_solver, balances_springs_with_planes_of_each_body) {
+  mat6 springs;
+  for (std::size_t i = 0; i < 6; ++i) springs(i, i) = 1000.0;
+  support_planes planes;
+  EXPECT_TRUE(planes.push_back(plane({0, 0, 1}, vec3(0.0), 1e-4)));
+  EXPECT_TRUE(planes.push_back(plane({1, 0, 0}, vec3(0.0), 1e-4)));
+  planes[1].body = 1;
+  const contact_laws laws({}, {surface_pair{.stiffness_n_per_m = 3000.0, .dissipation_s_per_m = 50.0},
+                               surface_pair{.stiffness_n_per_m = 1e6, .dissipation_s_per_m = 50.0}});
+  const contact_solution s = balance_of(springs, {{-0.5, 0.0, -2.0}, vec3(0.0)}, planes, {}, laws);
+  ASSERT_TRUE(s.solved);
+  // k_i d_i of each plane against the springs' pull, less what they give way by.
+  const auto way = [](double k, double pull) { return (pull + k * 1e-4) / (1000.0 + k); };
+  EXPECT_NEAR(s.velocity.linear.z, way(3000.0, -2.0), 1e-12);
+  EXPECT_NEAR(s.velocity.linear.x, way(1e6, -0.5), 1e-12);
 }
 
 /// A probe that flies about between walls from everywhere, all of whose planes stay as they are.
@@ -368,17 +417,23 @@ TEST(probe_on_planes, loses_what_its_law_says_in_a_blow) {
                               0.01, 1e-5);
   for (const double alpha : {1.0, 5.0}) {
     for (const double speed : {0.02, 0.05}) {
+      // Once by the law of all bodies, once by the pair of the plane's own.
+      const bool pair = speed > 0.03;
+      const contact_laws laws =
+          pair ? contact_laws({}, {std::nullopt, surface_pair{.stiffness_n_per_m = 2e4, .dissipation_s_per_m = alpha}})
+               : contact_laws(contact_law{.dissipation_s_per_m = alpha});
       probe tool;
       tool.reset({});
       support_planes planes;
       ASSERT_TRUE(planes.push_back(plane({0, 0, 1}, vec3(0.0), 0.0)));
+      planes[0].body = pair ? 1 : 0;
       contact_solution out;
       // One push brings it to speed.
       const double h_s = 1e-7;
       ASSERT_EQ(tool.step(h_s, none, {}, {}, {}, {{0, 0, -0.01 * speed / h_s}, vec3(0.0)}), status::ok);
       const pose touch = tool.state().T_wc;
       do {
-        ASSERT_EQ(step_on(tool, h_s, none, {}, planes, {.dissipation_s_per_m = alpha}, out, {touch, {}}), status::ok);
+        ASSERT_EQ(step_on(tool, h_s, none, {}, planes, laws, out, {touch, {}}), status::ok);
       } while (out.lambda_n[0] > 0.0);
       const double lost = alpha * speed;  // to first order; the next is its square
       EXPECT_NEAR(tool.state().velocity_w.linear.z, speed * (1.0 - lost), (0.01 + lost * lost) * speed)

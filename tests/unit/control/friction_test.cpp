@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <utility>
 #include <vector>
@@ -174,6 +175,32 @@ TEST(Friction, EachBodyRubsByWhatItPresses) {
   jaws[1].depth_m = -1.0;
   s = step(rubbing, heavy, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, jaws);
   EXPECT_NEAR(rubbing.on_probe_w().force.x, -0.5 * 2.0, 0.02);
+}
+
+// The same tongue: each jaw has the coefficient of its own pair, and one of which nothing is known the settings'.
+TEST(Friction, EachBodyRubsByItsOwnPair) {
+  support_planes jaws = floor_under({{0.0, 0.0, -0.002}});
+  EXPECT_TRUE(jaws.push_back(plane_at({0, 0, 1}, {0.0, 0.0, 0.002}, 1e-5, 1)));
+  jaws[0].depth_m = 1e-5;
+  mat6 heavy;
+  for (std::size_t i = 0; i < 6; ++i) heavy(i, i) = 1e9;
+  const surface_pair rough{.static_friction = 0.7, .dynamic_friction = 0.7}, smooth{};
+  const auto drag_n = [&](surface_pairs pairs, double of_the_others) {
+    friction rubbing({.static_coefficient = of_the_others, .dynamic_coefficient = of_the_others});
+    const contact_laws laws({}, std::move(pairs));
+    for (int i = 0; i < 2000; ++i) {
+      mat6 a = heavy;
+      const contact_solution s = rubbing.solve(a, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, h_s, jaws, {}, laws);
+      EXPECT_TRUE(s.solved);
+      rubbing.settle(h_s, s.velocity);
+    }
+    return -rubbing.on_probe_w().force.x;
+  };
+  EXPECT_NEAR(drag_n({rough, smooth}, 0.2), 0.7 * 2.0, 0.02);
+  EXPECT_NEAR(drag_n({smooth, rough}, 0.2), 0.7 * 2.0, 0.02);
+  EXPECT_NEAR(drag_n({std::nullopt, rough}, 0.2), (0.2 + 0.7) * 2.0, 0.03);
+  EXPECT_NEAR(drag_n({rough}, 0.2), (0.2 + 0.7) * 2.0, 0.03);
+  EXPECT_NEAR(drag_n({smooth, smooth}, 0.2), 0.0, 1e-12);
 }
 
 // Bodies that are near and not pressed take no bristle from those that are; one too many that presses is told.

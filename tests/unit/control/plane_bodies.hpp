@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -20,6 +21,7 @@ struct wall {
   double amplitude_m = 0.0;
   double wave_m = 1e-3;
   vec3 along_w{1.0, 0.0, 0.0};
+  std::uint32_t body = 0;
 
   [[nodiscard]] double phase(const vec3& p_w) const noexcept {
     return 6.283185307179586 * glm::dot(along_w, p_w) / wave_m;
@@ -110,7 +112,7 @@ struct plane_body {
                       .n_ab_w = -w.outward_w,
                       .r_w = r,
                       .spread_m = 0.0,
-                      .body = 0});
+                      .body = w.body});
   }
 
   [[nodiscard]] std::span<const support_plane> reported(double gaps_m) noexcept {
