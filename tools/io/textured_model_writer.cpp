@@ -248,6 +248,7 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
   }
   haptic["report"] = value(report_object(model.report));
   mesh.extensions[extension::name] = value(std::move(haptic));
+  glb.model.extensionsUsed.emplace_back(extension::name);
 
   glb.model.meshes.push_back(std::move(mesh));
   tinygltf::Node node;
@@ -261,7 +262,6 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
   glb.model.defaultScene = 0;
   glb.model.asset.version = "2.0";
   glb.model.asset.generator = "asperity";
-  glb.model.extensionsUsed.emplace_back(extension::name);
   const std::string bytes = glb.finish();
   if (bytes.size() > max_model_bytes) {
     return fault(error_code::limit_exceeded, file,

@@ -105,6 +105,28 @@ TEST_F(Schema, EveryKeyOfTheWriterIsDescribedAndRequired) {
   }
 }
 
+// The extension of a material, which a model need not have.
+TEST(SchemaOfAMaterial, TheWriterKeepsItAndEveryKeyIsRequired) {
+  const json schema = json::parse(test_support::read_all(std::filesystem::path(ASPERITY_SOURCE_DIR) /
+                                                         "docs/reference/ASPERITY_haptic_material.schema.json"));
+  const test_support::scratch_folder folder;
+  textured_model model = test_support::make_flat_box({1, 1, 1}, 24);
+  model.surface = preset_material("rubber").value();
+  ASSERT_TRUE(io::save_textured_model(model, folder.file("m.glb")));
+  const json document = test_support::glb_editor(test_support::read_all(folder.file("m.glb"))).json;
+  const json written = document["extensions"]["KHR_physics_rigid_bodies"]["physicsMaterials"][0]["extensions"]
+                               ["ASPERITY_haptic_material"];
+  EXPECT_EQ(breach(written, schema, schema, ""), "");
+  EXPECT_EQ(written.size(), 3U);
+  for (const auto& [key, value] : written.items()) {
+    json damaged = written;
+    damaged.erase(key);
+    EXPECT_NE(breach(damaged, schema, schema, ""), "") << key << " can be left out";
+    damaged[key] = 1e9;
+    EXPECT_NE(breach(damaged, schema, schema, ""), "") << key << " can be anything";
+  }
+}
+
 TEST_F(Schema, AReportWithoutQualityIsAnOlderOne) {
   extension_["report"].erase("quality");
   EXPECT_EQ(breach(extension_, schema_, schema_, ""), "");
