@@ -46,7 +46,7 @@ run_interop() {
   if [[ $# -eq 0 ]]; then
     step "bake a CAD part"
     "$asperity" --quiet models --only cad_part -o "$out"
-    "$asperity" --quiet bake "$out/cad_part.ply" --triangles 720 -o "$out/cad_part.glb"
+    "$asperity" --quiet bake "$out/cad_part.ply" --triangles 720 --material steel -o "$out/cad_part.glb"
     set -- "$out/cad_part.glb"
   fi
   interop_find_browser "$folder"
