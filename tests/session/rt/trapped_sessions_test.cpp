@@ -1,7 +1,10 @@
 // Short sessions inside the trap: every policy and path that the long one does not take.
+#include <array>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -52,6 +55,35 @@ TEST(trapped_session, every_motion_with_an_erased_device) {
     virtual_session<analytic_wall, any_device> session({}, {{pose{}}, vec3(0.0)}, dev, control_settings{});
     EXPECT_EQ(run(session, 1000 * ms), 1000U);
     EXPECT_EQ(session.device().gate().fault(), gate_fault::none);
+  }
+}
+
+/// Floors of three bodies in one plane.
+struct three_floors {
+  std::array<support_plane, 3> planes{};
+
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
+    out = {};
+    for (std::uint32_t i = 0; i < planes.size(); ++i) {
+      planes[i] = {
+          .depth_m = -at.T_wa.position.z, .gradient = {{0, 0, -1}, vec3(0.0)}, .n_ab_w = {0, 0, -1}, .body = i};
+    }
+    out.centre_of_mass_w = at.T_wa.position;
+    out.planes = planes;
+    return status::ok;
+  }
+};
+
+TEST(trapped_session, every_body_with_a_material_of_its_own) {
+  control_settings control;
+  control.surfaces = {combined(std::nullopt, std::optional(*preset_material("rubber"))), std::nullopt,
+                      combined(std::nullopt, std::optional(*preset_material("steel")))};
+  for (const motion_kind kind : {motion_kind::press, motion_kind::scrub}) {
+    simulated_device dev(hand(kind));
+    ASSERT_TRUE(dev.open() && dev.arm());
+    virtual_session<three_floors, simulated_device> session({}, {{pose{}, pose{}, pose{}}, vec3(0.0)}, dev, control);
+    EXPECT_EQ(run(session, 1000 * ms), 1000U);
+    EXPECT_GT(session.device().pressed().lambda_n[0], 0.0);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include <asperity/control/virtual_coupling.hpp>
+#include <asperity/control/virtual_tool.hpp>
 #include <asperity/model/material.hpp>
 
 #include "support/extent.hpp"
@@ -139,6 +140,66 @@ TEST(material_session, rubber_is_felt_softer_than_steel) {
   for (const char* preset : {"steel", "wood", "ice", "rubber"}) {
     const double wanted = series(preset_material(preset)->stiffness_n_per_m);
     EXPECT_NEAR(stiffness_felt(preset), wanted, 0.03 * wanted) << preset;
+  }
+}
+
+/// A floor under a point, which keeps how far from the probe its planes are asked for.
+struct asked_floor {
+  double* farthest_m = nullptr;
+  std::array<support_plane, 1> planes{};
+  double height_m = 0.0;
+
+  [[nodiscard]] support_plane plane(double height) const noexcept {
+    return {.depth_m = -height, .gradient = {{0, 0, -1}, vec3(0.0)}, .n_ab_w = {0, 0, -1}, .body = 1, .sample = 1};
+  }
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
+    out = {};
+    height_m = at.T_wa.position.z;
+    planes[0] = plane(height_m);
+    out.centre_of_mass_w = at.T_wa.position;
+    out.planes = planes;
+    out.planes_near = plane_source(*this);
+    return status::ok;
+  }
+  [[nodiscard]] status planes_at(const vec6& moved, double above_m, plane_list& out) noexcept {
+    *farthest_m = std::max(*farthest_m, std::fabs(moved.linear.z));
+    const support_plane p = plane(height_m + moved.linear.z);
+    if (p.depth_m > above_m) static_cast<void>(out.push_back(p));
+    return status::ok;
+  }
+};
+
+// A probe that rests 0.4 mm deep in a soft body is where it will rest. By another stiffness the search would go for the
+// surface, as far as it goes.
+TEST(material_session, where_the_probe_rests_is_sought_by_its_material) {
+  const surface_pairs soft{std::nullopt, surface_pair{.stiffness_n_per_m = 5000.0}};
+  for (const bool in_session : {true, false}) {
+    double farthest_m = 0.0, height_m = 0.0;
+    const asked_floor floor{.farthest_m = &farthest_m};
+    if (in_session) {
+      control_settings control;
+      control.surfaces = soft;
+      simulated_device dev(hand_that_presses(2.0, vec3(0.0), {0, 0, -1}, 500.0));
+      ASSERT_TRUE(dev.open() && dev.arm());
+      virtual_session<asked_floor, simulated_device> session(floor, {{pose{}, pose{}}, vec3(0.0)}, dev, control);
+      static_cast<void>(session.run_until(1'500'000'000));
+      farthest_m = 0.0;
+      static_cast<void>(session.run_until(2'000'000'000));
+      height_m = session.device().probe().state().T_wc.position.z;
+    } else {
+      virtual_tool tool({.surfaces = soft});
+      tool.place({});
+      asked_floor body = floor;
+      tick found;
+      for (int i = 0; i < 2000; ++i) {
+        if (i == 1500) farthest_m = 0.0;
+        const status s = body.step({tool.T_wa(), {}}, found);
+        static_cast<void>(tool.follow({quat(1, 0, 0, 0), {0, 0, -0.0044}}, 1e-3, found, s));
+      }
+      height_m = tool.T_wa().position.z;
+    }
+    EXPECT_NEAR(height_m, -4e-4, 4e-5) << in_session;
+    EXPECT_LT(farthest_m, 2e-5) << in_session;
   }
 }
 
