@@ -213,11 +213,6 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
     return fault(error_code::invalid_argument, file,
                  "is not written: its bake report holds a number that is not finite");
   }
-  if (model.surface) {
-    if (const result<void> ok = check(*model.surface); !ok) {
-      return fault(ok.error().code, file, "is not written: " + ok.error().message);
-    }
-  }
   const split_vertices split = split_at_seams(model.mesh);
   glb_builder glb;
   tinygltf::Mesh mesh;
