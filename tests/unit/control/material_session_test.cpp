@@ -80,7 +80,7 @@ TEST(material_session, holds_and_makes_no_energy_over_the_whole_range) {
         EXPECT_LE(o.surplus_j, no_surplus_j) << which();
         // No hand of these presses harder than the coupling's longest stretch, on one point.
         const double hardest_n = c.control.coupling.stiffness_n_per_m * (c.hand.motion.depth_m + 0.01);
-        const double allowed_m = 4e-4 + 2.0 * hardest_n / softest;
+        const double allowed_m = 3e-4 + hardest_n / softest;
         EXPECT_LE(o.deepest_m, allowed_m) << which();
         deepest_by_law = std::max(deepest_by_law, o.deepest_m / allowed_m);
         surplus = std::max(surplus, o.surplus_j);
