@@ -60,9 +60,9 @@ struct probe_energy {
 /// the push of the planes at the end of the step (solve_contact), which is stable for any stiffness as well.
 ///
 /// A step that leaves the known region ends at its border: on the way from where the probe is to that point of the
-/// border which lies between the step's end and the region's centre. Planes that hold at all three hold there. It goes that way
-/// as far as the border, which stands still, need not push the probe on; so the border takes energy and gives none. A
-/// probe that is outside, because a newer contact knows less of where it went, is not pulled back.
+/// border which lies between the step's end and the region's centre. Planes that hold at all three hold there. It goes
+/// that way as far as the border, which stands still, need not push the probe on; so the border takes energy and gives
+/// none. A probe that is outside, because a newer contact knows less of where it went, is not pulled back.
 /// The gyroscopic torque, which would break the symmetry, is left out: for a 10 g tool at a hand's 10 rad/s it is about
 /// 1 mN m.
 /// @source science, section 4

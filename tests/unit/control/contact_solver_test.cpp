@@ -198,7 +198,8 @@ status step_on(probe& tool, double h_s, const virtual_coupling& coupling, const 
   return tool.step_on_planes(h_s, coupling, target, {}, planes, within, laws, none, out, external_w);
 }
 
-// Each plane is a spring of its own body's stiffness; a body beyond the list, and one without a pair, has the usual law's.
+// Each plane is a spring of its own body's stiffness; a body beyond the list, and one without a pair, has the usual
+// law's.
 TEST(contact_solver, springs_of_each_body_are_its_own) {
   drawn d(seed_of(fresh_seed("contact_solver_bodies", "200 steps"), "bodies"));
   for (int trial = 0; trial < 200; ++trial) {
