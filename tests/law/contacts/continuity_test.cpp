@@ -85,7 +85,12 @@ continuity of_the_paper(const contact_scene& s) {
 // The control: a formulation that does jump is found out by the same measure. Slid on one face alone the paper's is no
 // control, because it sees one contact from beginning to end.
 TEST(Continuity, ThePapersClustersJump) {
-  for (const contact_scene& s : {slide_off(), rocking(), v_groove()}) {
+  const std::vector<contact_scene> scenes{slide_off(), rocking(), v_groove()};
+  const std::uint64_t seed = test_support::fresh_seed("the paper's jumps", "1 of 3 scenes; at length all");
+  const std::size_t today = test_support::seed_of(seed, "jump") % scenes.size();
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (!test_support::at_length() && i != today) continue;
+    const contact_scene& s = scenes[i];
     SCOPED_TRACE(s.name);
     const continuity c = of_the_paper(s);
     EXPECT_GT(c.force_ratio(), 5.0);
@@ -99,7 +104,8 @@ TEST(Continuity, SlideOffPressesNoHarder) {
   least_motion_renderer r = make_scene_renderer(s, scene_settings());
   const double on_the_face = glm::length(wrench_at(r, s.path(0.0)).force);
   double most = 0.0;
-  for (double t = 0.0; t < 1.1; t += 0.002) most = std::max(most, glm::length(wrench_at(r, s.path(t)).force));
+  for (double t = 0.0; t < 1.1; t += test_support::extent(0.008, 0.002))
+    most = std::max(most, glm::length(wrench_at(r, s.path(t)).force));
   std::printf("slide-off: %.3f N on the face, at most %.3f N (%.2f times)\n", on_the_face, most, most / on_the_face);
   EXPECT_GT(on_the_face, 0.7);  // 0.4 mm deep, and tilted
   EXPECT_LE(most, 1.1 * on_the_face);

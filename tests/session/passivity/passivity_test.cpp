@@ -17,7 +17,7 @@ using namespace asperity::test_support;
 
 constexpr std::array<const char*, 3> hand_names{"soft", "firm", "tapping"};
 // 18 rows: a thousand sessions at length.
-const int sessions_per_row = extent(6, 56);
+const int sessions_per_row = extent(4, 56);
 constexpr int one_textured_in = 8;
 constexpr double stiff_n_per_m = 2000.0;
 
@@ -104,7 +104,7 @@ TEST(passivity, the_guard_keeps_its_bound_and_a_held_force_without_it_does_not) 
       "%d sessions, each run in three ways; with the guard at most %.0f %% of the bound; firm hand, 200 Hz, "
       "late, 2 N/mm and more: a held force without the guard breaks it in %d of %d\n",
       sessions, 100.0 * everywhere.largest_part_of_bound, stiff_late_broken, stiff_late);
-  EXPECT_GE(sessions, extent(100, 1000));
+  EXPECT_GE(sessions, extent(70, 1000));
   EXPECT_LT(linearised_everywhere.acted_percent(), 1.0);  // a net, not a part of the loop
   // Negative control.
   EXPECT_GE(stiff_late, sessions_per_row / 2);

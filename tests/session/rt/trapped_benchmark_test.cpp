@@ -104,13 +104,13 @@ void trap_file_on_cad_part(std::uint64_t steady_ticks, Make&& make) {
 
 TEST(benchmark_ticks, file_on_cad_part_does_nothing_that_a_tick_must_not_do) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part(test_support::extent(9'000U, 99'000U),
+  trap_file_on_cad_part(test_support::extent(4'000U, 99'000U),
                         [](const scene& bodies) { return test_support::build_renderer(bodies); });
 }
 
 TEST(benchmark_ticks, nor_does_it_with_the_contacts_of_the_paper) {
   if (const std::string why = tick_trap::missing(); !why.empty()) GTEST_SKIP() << why;
-  trap_file_on_cad_part(test_support::extent(5'000U, 24'000U),
+  trap_file_on_cad_part(test_support::extent(3'000U, 24'000U),
                         [](const scene& bodies) { return make_window_renderer(bodies); });
 }
 

@@ -29,7 +29,7 @@ void run_sessions_of_today(std::uint64_t count) {
 }
 
 TEST(simulation, every_invariant_holds_in_the_sessions_of_today) {
-  run_sessions_of_today(asperity::test_support::extent(50U, 500U));
+  run_sessions_of_today(asperity::test_support::extent(30U, 500U));
 }
 
 TEST(simulation, DISABLED_every_invariant_holds_in_many_sessions_of_today) { run_sessions_of_today(20'000); }

@@ -12,7 +12,7 @@ using namespace asperity::simulation;
 // The first of the sessions that simulation_long_test goes on with at length, few enough for builds without optimisation
 // and under sanitizers.
 TEST(simulation, every_invariant_holds_in_every_tick_of_every_session) {
-  const std::uint64_t sessions = asperity::test_support::extent(60U, 200U);
+  const std::uint64_t sessions = asperity::test_support::extent(40U, 200U);
   const summary all = check_every_session({1, sessions});
   if (all.sessions < sessions) return;
   // Sessions that meet nothing prove nothing.
@@ -26,7 +26,7 @@ TEST(simulation, every_invariant_holds_in_every_tick_of_every_session) {
 }
 
 TEST(simulation, is_the_same_to_the_bit_for_the_same_seed) {
-  std::vector<std::uint64_t> digests(asperity::test_support::extent<std::size_t>(15, 40));
+  std::vector<std::uint64_t> digests(asperity::test_support::extent<std::size_t>(10, 40));
   for (std::uint64_t i = 0; i < digests.size(); ++i) digests[i] = run_sessions({1 + i, 1}).digest;
   for (std::uint64_t i = 0; i < digests.size(); ++i) {
     ASSERT_EQ(run_sessions({1 + i, 1}).digest, digests[i]) << "seed " << 1 + i;

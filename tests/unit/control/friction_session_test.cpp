@@ -34,13 +34,13 @@ plane_case rubbed(plane_body body, double mu_static, double mu_dynamic, double d
 
 // Three hands press, scrub and tap on a plate, in a corner and in a groove, as hard as they like.
 TEST(friction_session, holds_and_makes_no_energy) {
-  drawn d(seed_of(fresh_seed("friction_session.holds_and_makes_no_energy", "72 sessions, 864 at length"), "friction"));
+  drawn d(seed_of(fresh_seed("friction_session.holds_and_makes_no_energy", "36 sessions, 864 at length"), "friction"));
   struct rates {
     double device_hz, contact_hz;
   };
   constexpr std::array<rates, 4> rubbed_rates{{{10'000, 10'000}, {4000, 1000}, {1000, 1000}, {200, 200}}};
   double deepest_fast = 0.0, deepest_slow = 0.0, surplus = 0.0;
-  const int each = extent(2, 24);
+  const int each = extent(1, 24);
   for (const rates& r : rubbed_rates) {
     for (const double mu : {0.0, 0.4, 1.0}) {
       for (int kind = 0; kind < 3; ++kind) {

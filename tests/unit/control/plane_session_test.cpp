@@ -101,11 +101,11 @@ TEST(plane_session, holds_a_block_that_is_pressed) {
 
 // Hands of three kinds come down on a plate of 1 mm as hard as they like: the probe is never past its middle.
 TEST(plane_session, never_goes_through_a_thin_plate) {
-  drawn d(seed_of(fresh_seed("thin_plate", "72 sessions, 720 at length"), "plate"));
+  drawn d(seed_of(fresh_seed("thin_plate", "36 sessions, 720 at length"), "plate"));
   double deepest = 0.0;
   double surplus = 0.0;
   int through = 0;
-  const int each = extent(4, 40);
+  const int each = extent(2, 40);
   for (const loop_rates& r : all_rates) {
     for (int kind = 0; kind < hand_kinds; ++kind) {
       for (int i = 0; i < each; ++i) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <random>
 
+#include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
 #include "unit/field/charted_model.hpp"
@@ -72,7 +73,7 @@ const std::vector<shape>& shapes() {
 constexpr double facets = 6e-4;
 
 TEST(BodyFieldShapes, SignsAndDistances) {
-  const std::uint64_t seed = fresh_seed("shapes", "100000 points each");
+  const std::uint64_t seed = fresh_seed("shapes", "25000 points each, 100000 at length");
   for (const shape& s : shapes()) {
     SCOPED_TRACE(s.name);
     const body_field& f = s.field;
@@ -83,7 +84,7 @@ TEST(BodyFieldShapes, SignsAndDistances) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     int far_off = 0, inner = 0;
     double largest = 0.0;
-    for (int i = 0; i < 100000; ++i) {
+    for (int i = 0; i < extent(25'000, 100'000); ++i) {
       const vec3 p =
           0.5 * (s.model.box.low + s.model.box.high) +
           0.55 * vec3(unit(random), unit(random), unit(random)) * (s.model.box.high - s.model.box.low + 4.0 * pitch);

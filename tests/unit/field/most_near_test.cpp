@@ -14,7 +14,7 @@ namespace {
 using namespace test_support;
 
 TEST(BodyFieldBound, HoldsInEveryBallAndIsNotIdle) {
-  const std::uint64_t seed = fresh_seed("bound", "5000 balls of 20 points on each of 3 bodies; at length 20000");
+  const std::uint64_t seed = fresh_seed("bound", "2000 balls of 20 points on each of 3 bodies; at length 20000");
   const std::vector<vec2> cup{{0, -0.02},     {0.015, -0.02},    {0.015, 0.02},
                               {0.0125, 0.02}, {0.0125, -0.0175}, {0, -0.0175}};
   const std::vector<textured_model> models{
@@ -31,7 +31,7 @@ TEST(BodyFieldBound, HoldsInEveryBallAndIsNotIdle) {
     std::normal_distribution<double> normal;
     double least = 1.0, loosest = 0.0;
     int dismissed = 0;
-    const int balls = extent(5000, 20000);
+    const int balls = extent(2000, 20000);
     for (int i = 0; i < balls; ++i) {
       const double reach = i % 4 == 0 ? 1.5 : 0.6;
       vec3 p = reach * vec3(unit(random), unit(random), unit(random)) * (model.box.high - model.box.low);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "exit_lab.hpp"
+#include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace asperity {
@@ -35,10 +36,10 @@ field_body_ptr plate() {
 }
 
 TEST(ExitClosedForms, AFlatContactIsASpring) {
-  drawing draw{std::mt19937_64(fresh_seed("ExitClosedForms.AFlatContactIsASpring", "40 depths"))};
+  drawing draw{std::mt19937_64(fresh_seed("ExitClosedForms.AFlatContactIsASpring", "15 depths, 40 at length"))};
   exit_lab lab(make_points_body(box_points(vec3(ball_m), 12)), {half_space()});
   const double k = lab.rule().stiffness_n_per_m;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < extent(15, 40); ++i) {
     const double depth = draw.between(0.02, 8.0) * mm;
     const exit_answer a = lab.at(vec3(draw.between(-2, 2) * mm, draw.between(-2, 2) * mm, ball_m - depth));
     EXPECT_FALSE(a.hit.any());
@@ -89,12 +90,12 @@ TEST(ExitClosedForms, AFaceCutInPiecesIsAsStiff) {
 }
 
 TEST(ExitClosedForms, EachWallOfAConcaveCornerHasItsOwnSpring) {
-  drawing draw{std::mt19937_64(fresh_seed("ExitClosedForms.EachWallOfAConcaveCorner", "30 poses"))};
+  drawing draw{std::mt19937_64(fresh_seed("ExitClosedForms.EachWallOfAConcaveCorner", "5 poses, 30 at length"))};
   const field_body_ptr corner = concave_corner();
   exit_lab ball(make_points_body(sphere_points(ball_m, 40000)), {corner});
   exit_lab box(make_points_body(box_points(vec3(ball_m), 12)), {corner});
   const double k = ball.rule().stiffness_n_per_m;
-  for (int i = 0; i < 30; ++i) {
+  for (int i = 0; i < extent(5, 30); ++i) {
     const vec3 depth(draw.between(0.5, 3) * mm, draw.between(0.5, 3) * mm, draw.between(0.5, 3) * mm);
     const exit_answer of_ball = ball.at(vec3(ball_m) - depth), of_box = box.at(vec3(ball_m) - depth);
     for (int axis = 0; axis < 3; ++axis) {

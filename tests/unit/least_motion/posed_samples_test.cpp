@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "exit_lab.hpp"
+#include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace asperity {
@@ -48,10 +49,11 @@ std::vector<double> all_depths(const pose& T_wa, const pose& T_wb, const vec3& x
 pose drawn_pose(drawing& draw) { return {draw.rotation(), 8.0 * mm * draw.vector() + vec3(0.0, 0.0, 8.0 * mm)}; }
 
 TEST(PosedSamples, FindsTheDeepestOfAll) {
-  drawing draw{std::mt19937_64(fresh_seed("PosedSamples.FindsTheDeepestOfAll", "60 poses"))};
+  drawing draw{std::mt19937_64(fresh_seed("PosedSamples.FindsTheDeepestOfAll", "20 poses, 60 at length"))};
   posed_samples samples(boxes().scene, vec3(0.0));
   int inside = 0;
-  for (int i = 0; i < 60; ++i) {
+  const int poses = extent(20, 60);
+  for (int i = 0; i < poses; ++i) {
     const pose T_wa = drawn_pose(draw), T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
     const vec3 x_w = 2.0 * mm * draw.vector();
     samples.place({T_wa, {&T_wb, 1}}, 10'000'000);
@@ -66,8 +68,10 @@ TEST(PosedSamples, FindsTheDeepestOfAll) {
     EXPECT_LT(samples.count.spent, all.size());
     inside += most > 0.0 ? 1 : 0;
   }
-  EXPECT_GT(inside, 20);
-  EXPECT_LT(inside, 60);
+  EXPECT_GT(inside, poses / 5);
+  if (at_length()) {  // few poses may all be inside
+    EXPECT_LT(inside, poses);
+  }
 }
 
 // What a search has read at a pose bounds what it asks for next; a bound that is too low hides a sample.

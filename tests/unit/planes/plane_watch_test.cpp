@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "asperity/planes/plane_renderer.hpp"
+#include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
 
@@ -101,9 +102,9 @@ reported press(plane_renderer& feel, drawn_pose& draw, std::size_t b, double dep
 
 // As deep as planes let 20 N press: neither on the thin plate nor on the block is anything told.
 TEST(plane_watch, is_silent_in_ordinary_presses) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.is_silent_in_ordinary_presses", "30 presses"))};
+  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.is_silent_in_ordinary_presses", "12 presses, 30 at length"))};
   plane_renderer feel = make_boxes();
-  for (int n = 0; n < 30; ++n) {
+  for (int n = 0; n < extent(12, 30); ++n) {
     const double depth = draw.between(5e-5, n % 2 == 0 ? 3e-4 : 4e-4), step = draw.between(1e-5, 1e-4);
     const reported t = press(feel, draw, static_cast<std::size_t>(n % 2), depth, step);
     EXPECT_EQ(t.beyond_field + t.passed + t.not_held, 0U) << n << ": depth " << depth << " step " << step;
@@ -112,9 +113,10 @@ TEST(plane_watch, is_silent_in_ordinary_presses) {
 
 // Through the plate at up to 4 m/s, in ticks of a millisecond: told, and not before it is half way.
 TEST(plane_watch, reports_every_passage_of_a_plate) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.reports_every_passage_of_a_plate", "30 presses"))};
+  drawn_pose draw{
+      std::mt19937_64(fresh_seed("plane_watch.reports_every_passage_of_a_plate", "12 presses, 30 at length"))};
   plane_renderer feel = make_boxes();
-  for (int n = 0; n < 30; ++n) {
+  for (int n = 0; n < extent(12, 30); ++n) {
     const double step = 2e-5 * std::pow(200.0, draw.between(0.0, 1.0));
     const reported t = press(feel, draw, 0, 1.6e-3 + 2.0 * step, step);
     EXPECT_GE(t.passed, 1U) << n << ": step " << step;
@@ -128,9 +130,10 @@ TEST(plane_watch, reports_every_passage_of_a_plate) {
 
 // Into the block: not held from a millimetre on, beyond its field near the middle, passed behind it.
 TEST(plane_watch, reports_how_deep_a_block_was_left) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.reports_how_deep_a_block_was_left", "8 presses"))};
+  drawn_pose draw{
+      std::mt19937_64(fresh_seed("plane_watch.reports_how_deep_a_block_was_left", "3 presses, 8 at length"))};
   plane_renderer feel = make_boxes();
-  for (int n = 0; n < 8; ++n) {
+  for (int n = 0; n < extent(3, 8); ++n) {
     const double step = draw.between(1e-4, 1e-3);
     const reported shallow = press(feel, draw, 1, 5e-4, 1e-4);
     EXPECT_EQ(shallow.not_held + shallow.beyond_field + shallow.passed, 0U);
@@ -145,9 +148,9 @@ TEST(plane_watch, reports_how_deep_a_block_was_left) {
 
 // A probe that is led round the plate's rim, 0.1 mm deep, is on the other side and has not passed.
 TEST(plane_watch, is_silent_round_a_rim) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.is_silent_round_a_rim", "6 ways"))};
+  drawn_pose draw{std::mt19937_64(fresh_seed("plane_watch.is_silent_round_a_rim", "2 ways, 6 at length"))};
   plane_renderer feel = make_boxes();
-  for (int n = 0; n < 6; ++n) {
+  for (int n = 0; n < extent(2, 6); ++n) {
     const std::vector<pose> T_wb = placed(draw);
     const double depth = draw.between(2e-5, 1e-4), y = 0.008 * draw.unit();
     // A ball's way would be a stadium; a box that keeps its attitude goes along three sides.
