@@ -95,6 +95,17 @@ class relief_fit {
     finish();
   }
 
+  /// Calls visit(foot_b, inwards) for the feet of the points, brick by brick, with the unit slope of the smooth part.
+  template <class Visit>
+  void for_each_foot(Visit&& visit) const {
+    const auto [nx, ny, nz] = out_.bricks_along;
+    for (const point& p : points_) {
+      const vec3 brick(static_cast<double>(p.cell % nx), static_cast<double>(p.cell / nx % ny),
+                       static_cast<double>(p.cell / (nx * ny)));
+      visit(out_.low + out_.pitch_m * (static_cast<double>(side) * brick + vec3(p.place)), vec3(p.along) / off_surface);
+    }
+  }
+
  private:
   static constexpr std::size_t side = relief_bricks::side;
   static constexpr double off_surface = 0.6;  // pitches: reaches all nodes within two pitches of the surface
@@ -348,7 +359,6 @@ class relief_fit {
 
   /// Hands the coefficients over. Leaves out bricks whose coefficients are next to zero, on flat faces.
   void finish() {
-    points_ = std::vector<point>();  // gives its memory back, as = {} does not
     const float nothing = 0.01F * fine_enough_;
     std::uint32_t kept = 1;
     for (std::size_t b = 1; b < work_.size(); ++b) {

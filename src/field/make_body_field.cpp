@@ -1,6 +1,7 @@
 #include "field/make_body_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -10,6 +11,7 @@
 #include "field/fine_surface.hpp"
 #include "field/fit_relief.hpp"
 #include "field/inside_columns.hpp"
+#include "field/quick_read.hpp"
 #include "model/surface_index.hpp"
 #include "model/texture_scale.hpp"
 
@@ -88,6 +90,21 @@ void lay_relief(body_field& out, const bounds& box, const field_settings& settin
   }
 }
 
+/// Measures slopes at every second point of the fine surface, and above and below it.
+[[nodiscard]] slope_boxes measure_slopes(const relief_fit& fit, const body_field& of) {
+  constexpr std::array<double, 11> off_surface{0.0, -0.4, 0.2, -0.9, 0.7, -1.5, 1.3, -2.2, 2.1, -3.0, 3.0};  // pitches
+  static_assert(off_surface.back() == body_field::slopes_to);
+  slope_boxes out(of.smooth);
+  std::size_t n = 0;
+  fit.for_each_foot([&](const vec3& foot_b, const vec3& inwards) {
+    if (++n % 2 == 0) return;
+    const vec3 p_b = foot_b + off_surface[n / 2 % off_surface.size()] * of.smooth.pitch_m * inwards;
+    const coarse_reading at = quick_read<quick_part::bend>(of.smooth, p_b).at;
+    out.add(p_b, at.slope + of.relief(p_b, at).slope);
+  });
+  return out;
+}
+
 }  // namespace
 
 result<body_field> make_body_field(const textured_model& model, const field_settings& settings) {
@@ -163,6 +180,7 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
   }
   out.most_third = detail::third_bounds(out.smooth);
   out.most_relief = detail::relief_bounds(out.fine);
+  out.slopes = measure_slopes(fit, out);
   return out;
 }
 

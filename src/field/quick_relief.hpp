@@ -18,9 +18,10 @@ namespace asperity::detail {
   constexpr std::size_t side = relief_bricks::side;
   std::array<std::size_t, 3> first{};  // of the three nodes along each axis
   float f[3];
+  const double per_pitch = 1.0 / of.pitch_m;
   for (std::size_t k = 0; k < 3; ++k) {
     const int axis = static_cast<int>(k);
-    const double g = (p_b[axis] - of.low[axis]) / of.pitch_m + 0.5;
+    const double g = (p_b[axis] - of.low[axis]) * per_pitch + 0.5;
     if (!(g >= 1.0 && g < static_cast<double>(side * of.bricks_along[k]) - 1.0)) return 0.0;
     const auto middle = static_cast<std::size_t>(g);
     f[k] = static_cast<float>(g - 0.5 - static_cast<double>(middle));
@@ -29,13 +30,17 @@ namespace asperity::detail {
   const auto weights = [](float at) noexcept {
     return std::array<float, 3>{0.5F * (0.5F - at) * (0.5F - at), 0.75F - at * at, 0.5F * (0.5F + at) * (0.5F + at)};
   };
-  const std::array<float, 3> along_x = weights(f[0]), along_y = weights(f[1]), along_z = weights(f[2]);
-  // Two rows of four, end to end, with the weights of three of their nodes.
-  float row[2 * side] = {};
+  const std::array<float, 3> along_y = weights(f[1]), along_z = weights(f[2]);
+  // Two rows of four, end to end. The weight of a node is the spline at its distance, and zero for five of them.
   const std::size_t in_row = first[0] % side;
-  for (std::size_t i = 0; i < 3; ++i) row[in_row + i] = along_x[i];
+  const auto spline = [](const lanes& x) noexcept {
+    const lanes far = x < 0.0F ? -x : x, outer = 1.5F - far, inner = 0.5F - far;
+    const lanes o = outer > 0.0F ? outer : lanes{}, i = inner > 0.0F ? inner : lanes{};
+    return 0.5F * o * o - 1.5F * i * i;
+  };
+  const lanes off = lanes{0.0F, 1.0F, 2.0F, 3.0F} - (static_cast<float>(in_row + 1) + f[0]);
+  const lanes left = spline(off), right = spline(off + static_cast<float>(side));
   const bool both = in_row + 3 > side;
-  const lanes left = load_lanes(row), right = load_lanes(row + side);
   const std::size_t brick_x = first[0] / side;
   lanes sum{};
   for (std::size_t k = 0; k < 3; ++k) {

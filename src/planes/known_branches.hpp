@@ -14,11 +14,9 @@
 #include "asperity/field/field_scene.hpp"
 #include "asperity/field/sample_tree.hpp"
 #include "asperity/model/scene.hpp"
+#include "planes/slope_spread.hpp"
 
 namespace asperity {
-
-/// No depth in a field grows faster than this with the way of its point: smooth part and relief together.
-inline constexpr double steepest_depth = 3.0;
 
 /// Upper bounds of how deep the samples of each ball of one body's tree lie in another body's field.
 class branch_bounds {

@@ -13,6 +13,7 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/planes/near_samples.hpp"
+#include "planes/slope_spread.hpp"
 
 namespace asperity {
 
@@ -22,6 +23,8 @@ namespace asperity {
 /// scene.
 class known_depths {
  public:
+  static constexpr float rounding_m = 1e-9F;
+
   /// @param leaves most of a tick
   explicit known_depths(std::size_t leaves) {
     for (list* l : {&now_, &before_}) {
@@ -34,7 +37,8 @@ class known_depths {
 
   /// Begins a tick with these leaves. Leaves come in the order of body, whose samples they are and sample, as
   /// plane_finder lists them; what comes in another order is not known.
-  /// @param grows_m of a patch: how much deeper than in the tick before its samples can be   @rt safe
+  /// @param grows_m of a patch and of the largest of its bounds: how much deeper its samples can be than in the tick
+  /// before   @rt safe
   template <class Grows>
   void begin(const near_samples& found, Grows&& grows_m) noexcept {
     std::swap(now_, before_);
@@ -42,7 +46,8 @@ class known_depths {
     now_.most_m.clear();
     std::size_t last = 0;  // leaf of before_
     for (const near_patch& patch : found.patches()) {
-      const float grown_m = static_cast<float>(grows_m(patch)) + rounding_m;
+      const std::size_t first = now_.most_m.size();
+      float most_m = -std::numeric_limits<float>::infinity();
       for (const near_leaf& leaf : found.leaves_of(patch)) {
         const std::size_t count = std::min<std::size_t>(leaf.count, now_.most_m.capacity() - now_.most_m.size());
         const bool complete = count == leaf.count && (now_.leaves.empty() || now_.leaves.back().complete);
@@ -54,9 +59,12 @@ class known_depths {
         if (last == before_.leaves.size() || is_before(at, before_.leaves[last])) continue;
         const std::size_t from = before_.leaves[last].offset;
         for (std::size_t i = 0; i < std::min(count, before_.most_m.size() - from); ++i) {
-          now_.most_m[at.offset + i] = before_.most_m[from + i] + grown_m;
+          now_.most_m[at.offset + i] = before_.most_m[from + i];
+          most_m = std::max(most_m, before_.most_m[from + i]);
         }
       }
+      const float grown_m = static_cast<float>(grows_m(patch, static_cast<double>(most_m))) + rounding_m;
+      for (std::size_t i = first; i < now_.most_m.size(); ++i) now_.most_m[i] += grown_m;
     }
   }
 
@@ -74,20 +82,26 @@ class known_depths {
 
   /// What is known of a patch at the pose that was asked for last.
   struct asked_patch {
-    vec3 r_w{0.0};          ///< from the probe's centre of mass at the tick's pose
-    double radius_m = 0.0;  ///< about it
-    float most_m = 0.0F;    ///< none of its samples is deeper
-    float grown_m = 0.0F;   ///< by what the bounds of its samples have grown since they were written
+    vec3 middle_y{0.0};    ///< of its ball in the other body's frame at the tick's pose
+    double arm_m = 0.0;    ///< from the probe's centre of mass to its furthest sample
+    vec3 asked_y{0.0};     ///< the middle at the last pose of which more is known
+    vec3 turned{0.0};      ///< from the tick's pose to that one, rotation vector
+    float most_m = 0.0F;   ///< none of its samples is deeper there
+    float since_m = 0.0F;  ///< how much deeper they can have come on the poses since
+    float grown_m = 0.0F;  ///< by what the bounds of its samples have grown since they were written
+    bool has_slopes = false;
+    slope_spread slopes{};  ///< about it, once they were needed
   };
 
   /// Ends the tick: from here on questions are for poses near by, and bounds those of the pose that was asked for last.
-  /// @param r_w of a patch, from the probe's centre of mass   @rt safe
-  template <class Place>
-  void ask(const near_samples& found, Place&& r_w) noexcept {
+  /// @param placed a patch's middle and arm   @rt safe
+  template <class Placed>
+  void ask(const near_samples& found, Placed&& placed) noexcept {
     asked_m_.assign(now_.most_m.begin(), now_.most_m.end());
     asked_.clear();
     for (const near_patch& patch : found.patches()) {
-      asked_.push_back({.r_w = r_w(patch), .radius_m = patch.ball.radius_m});
+      asked_.push_back(placed(patch));
+      asked_.back().asked_y = asked_.back().middle_y;
       close(asked_.back(), patch);
     }
   }
@@ -117,8 +131,6 @@ class known_depths {
   }
 
  private:
-  static constexpr float rounding_m = 1e-9F;
-
   struct place {
     std::uint32_t body;
     bool of_fixed;

@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "asperity/core/pose.hpp"
 #include "asperity/field/field_body.hpp"
@@ -17,6 +18,7 @@
 #include "field/quick_read.hpp"
 #include "field/quick_relief.hpp"
 #include "planes/ball_bound.hpp"
+#include "planes/slope_spread.hpp"
 
 namespace asperity {
 
@@ -44,6 +46,15 @@ class leaf_reader {
     return patch.body == body_ && patch.of_probe == of_probe_;
   }
 
+  /// A point of X in Y's frame.
+  [[nodiscard]] vec3 in_field(const vec3& point_x) const noexcept { return T_yx_ * point_x; }
+  /// The slopes of Y's field within far_m of where the middle of a patch was found.
+  [[nodiscard]] slope_spread slopes_about(const near_patch& patch, const vec3& middle_y, double far_m) const noexcept {
+    return spread_about(*in_y_, middle_y, far_m, patch.in_other);
+  }
+  /// m, of Y's smooth part.
+  [[nodiscard]] double pitch_m() const noexcept { return in_y_->smooth.pitch_m; }
+
   /// A leaf's bound at this pose; the leaf may have been listed at another.
   [[nodiscard]] depth_bound bound_of(const near_leaf& leaf) const noexcept {
     ++work_->bounded;
@@ -68,21 +79,25 @@ class leaf_reader {
     for (std::size_t first = 0; first < samples.size(); first += of.size()) {
       std::size_t count = 0;
       for (std::size_t i = first; i < std::min(samples.size(), first + of.size()); ++i) {
-        double most_m = i < known.size() ? static_cast<double>(known[i]) : depth_bound::unknown;
-        if (most_m > above_m) {
-          most_m = std::min(most_m, most_of(samples[i], centre_y, near, above_m));
-          if (i < known.size()) known[i] = rounded_up(most_m);
-        }
-        if (most_m > above_m) of[count++] = {&samples[i], most_m};
+        const double most_m = i < known.size() ? static_cast<double>(known[i]) : depth_bound::unknown;
+        if (most_m > above_m) of[count++] = {i, most_m, false};
       }
+      // The sample that may be the deepest is read first, quickly and then in full: what it says dismisses most others by
+      // what is known of them.
       for (;;) {
         candidate* next = of.data();
         for (std::size_t i = 1; i < count; ++i) {
           if (of[i].most_m > next->most_m) next = &of[i];
         }
         if (count == 0 || !(next->most_m >= above_m)) break;
+        const field_sample& sample = samples[next->index];
+        if (!std::exchange(next->is_read, true)) {
+          next->most_m = std::min(next->most_m, most_of(sample, centre_y, near, above_m));
+          if (next->index < known.size()) known[next->index] = rounded_up(next->most_m);
+          continue;
+        }
         next->most_m = -std::numeric_limits<double>::infinity();
-        const sample_depth now = exact(*next->sample);
+        const sample_depth now = exact(sample);
         const bool first_of_equals = best.sample != nullptr && now.depth_m == best.depth_m && now.sample < best.sample;
         if (!(now.depth_m > above_m) && !first_of_equals) continue;
         best = now;
@@ -119,8 +134,9 @@ class leaf_reader {
 
  private:
   struct candidate {
-    const field_sample* sample;
+    std::size_t index;
     double most_m;
+    bool is_read;  // quickly
   };
   struct sample_depth {
     const field_sample* sample = nullptr;
@@ -139,7 +155,8 @@ class leaf_reader {
     const double smooth_m = q.at.value_m + q.error_m;
     const double by_highest_m = smooth_m + std::min(near.relief_m, in_y_->highest_relief_m);
     if (!(by_highest_m > above_m)) return by_highest_m;
-    if (in_y_->smooth.clamped(p_y) != p_y) return smooth_m;
+    // The relief ends with the grid, no closer to the surface than three pitches. What is kept holds on either side.
+    if (!(q.at.value_m > -2.0 * in_y_->smooth.pitch_m)) return smooth_m + in_y_->highest_relief_m;
     const foot_and_fade to = in_y_->foot(p_y, q.at);
     if (!(to.fade > 0.0)) return smooth_m;
     return smooth_m + q.error_m + to.fade * detail::quick_relief(in_y_->fine, to.foot_b);

@@ -61,6 +61,25 @@ class readers {
   std::optional<leaf_reader> of_probe_, of_fixed_;
 };
 
+// Brings what is known of a patch to the pose that is asked for, turned by so much from the tick's. Returns how much
+// deeper its samples can be there than at the tick's pose.
+double come_to(known_depths::asked_patch& asked, const near_patch& patch, const leaf_reader& there,
+               const vec3& turned) noexcept {
+  constexpr double asked_pitches = 0.4;  // of the smooth part: the poses that are asked for are mostly no further
+  const double radius_m = patch.ball.radius_m;
+  if (!std::exchange(asked.has_slopes, true)) {
+    asked.slopes = there.slopes_about(patch, asked.middle_y, radius_m + asked_pitches * there.pitch_m());
+  }
+  const vec3 now_y = there.in_field(patch.ball.centre_b), before_y = std::exchange(asked.asked_y, now_y);
+  const vec3 turn = turned - std::exchange(asked.turned, turned);
+  const patch_way gone{now_y - before_y, std::sqrt(glm::dot(turn, turn)) * radius_m};
+  const patch_way come{now_y - asked.middle_y, std::sqrt(glm::dot(turned, turned)) * radius_m};
+  const double here_m = glm::length(come.of_middle), before_m = glm::distance(before_y, asked.middle_y);
+  const double grown_m = asked.slopes.growth_m(gone, radius_m + std::max(here_m, before_m));
+  known_depths::grow(asked, std::min(grown_m, static_cast<double>(std::exchange(asked.since_m, 0.0F))));
+  return asked.slopes.growth_m(come, radius_m + here_m);
+}
+
 }  // namespace
 
 plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
@@ -96,11 +115,17 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   met_->clear();
   told_m_ = std::min(reach_m_, at.gaps_m);
   learn_ways(at);
-  known_->begin(found, [&](const near_patch& patch) noexcept {
-    const vec3 r_w = reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
-    const double r_m = std::sqrt(glm::dot(r_w, r_w)) + patch.ball.radius_m;
+  known_->begin(found, [&](const near_patch& patch, double most_m) noexcept {
+    const leaf_reader& reader = reading.of(patch);
     const way& w = ways_[patch.body];
-    return steepest_depth * (w.slid_m + w.chord * (r_m + w.slid_m));
+    const vec3 now_y = reader.in_field(patch.ball.centre_b);
+    const vec3 before_y = (patch.of_probe ? w.before_ba : w.before_ab) * patch.ball.centre_b;
+    const patch_way gone{now_y - before_y, w.chord * patch.ball.radius_m};
+    const double at_most_m = steepest_depth * gone.most_m();
+    // Slopes are asked for where they can spare readings.
+    if (!(most_m + at_most_m > -told_m_)) return at_most_m;
+    const double far_m = patch.ball.radius_m + gone.most_m();
+    return reader.slopes_about(patch, now_y, far_m).growth_m(gone, far_m);
   });
   // What may be near is read first: it hides what lies behind it.
   sort_by_depth(found.patches());
@@ -113,7 +138,10 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   }
   teach(found);
   known_->ask(found, [&](const near_patch& patch) noexcept {
-    return reading.of(patch).from_centre_of_mass_w(patch.ball.centre_b);
+    const leaf_reader& reader = reading.of(patch);
+    const vec3 r_w = reader.from_centre_of_mass_w(patch.ball.centre_b);
+    return known_depths::asked_patch{.middle_y = reader.in_field(patch.ball.centre_b),
+                                     .arm_m = std::sqrt(glm::dot(r_w, r_w)) + patch.ball.radius_m};
   });
   *asked_at_ = {};
   work_ = reading.work();
@@ -127,10 +155,11 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
 void plane_depth::learn_ways(const scene_pose& at) noexcept {
   for (std::size_t b = 0; b < ways_.size(); ++b) {
     way& w = ways_[b];
-    const pose T_ba = inverse(at.T_wb[b]) * at.T_wa;
-    const vec3 slid = T_ba * centre_of_mass_a_ - w.T_ba * centre_of_mass_a_;
-    const quat turn = glm::conjugate(w.T_ba.rotation) * T_ba.rotation;
-    w = {T_ba, std::sqrt(glm::dot(slid, slid)), 2.0 * std::sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z)};
+    w.before_ba = w.T_ba;
+    w.before_ab = inverse(w.T_ba);
+    w.T_ba = inverse(at.T_wb[b]) * at.T_wa;
+    const quat turn = glm::conjugate(w.before_ba.rotation) * w.T_ba.rotation;
+    w.chord = 2.0 * std::sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
   }
 }
 
@@ -158,7 +187,7 @@ void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
 void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
                        std::span<near_plane> out) noexcept {
   // Gaps up to this are reported whatever lies before them.
-  const double always_m = reach_m_ / 9.0;
+  const double always_m = std::min(reach_m_ / 9.0, told_m_ / 5.0);
   // The pose alone decides which patches have a plane, and only these are compared with others. So it decides which
   // planes are reported; a patch without a plane may be listed or not.
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
@@ -177,17 +206,21 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const near_leaf& leaf = leaves[i];
     const std::span<float> known = known_->of(patch.first_leaf + i);
-    float most_m = known.size() < leaf.count ? most_of_patch_m : -std::numeric_limits<float>::infinity();
+    std::size_t may_matter = leaf.count - known.size();
     for (float& m : known) {
       m = std::min(m, most_of_patch_m);
-      most_m = std::max(most_m, m);
+      may_matter += static_cast<double>(m) > above_m ? 1 : 0;
     }
     out[i].plane.depth_m = -std::numeric_limits<double>::infinity();
-    if (!(static_cast<double>(most_m) > above_m)) continue;
-    const depth_bound near = reader.bound_of(leaf);
-    if (!(near.most_m > above_m)) {
-      for (float& m : known) m = std::min(m, leaf_reader::rounded_up(near.most_m));
-      continue;
+    if (may_matter == 0) continue;
+    // One reading may dismiss all of them, at the price of a few quick ones.
+    depth_bound near;
+    if (may_matter >= 4) {
+      near = reader.bound_of(leaf);
+      if (!(near.most_m > above_m)) {
+        for (float& m : known) m = std::min(m, leaf_reader::rounded_up(near.most_m));
+        continue;
+      }
     }
     out[i] = reader.deepest(leaf, near, above_m, known);
     if (!(out[i].plane.depth_m > above_m)) continue;
@@ -206,19 +239,18 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
   readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, sinking_m_);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
+  const double slid_m = std::sqrt(glm::dot(step.linear, step.linear));
   const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
-  const double moved_rad = std::sqrt(glm::dot(moved.angular, moved.angular));
   for (std::size_t p = 0; p < found.patches().size(); ++p) {
     known_depths::asked_patch& asked = known_->asked()[p];
-    const vec3 way_w = step.linear + glm::cross(step.angular, asked.r_w);
-    const double way_m = std::sqrt(glm::dot(way_w, way_w)) + turned_rad * asked.radius_m;
-    known_depths::grow(asked, steepest_depth * way_m);
-    const vec3 come_w = moved.linear + glm::cross(moved.angular, asked.r_w);
-    const double come_m = std::sqrt(glm::dot(come_w, come_w)) + moved_rad * asked.radius_m;
-    const double least_m = std::max(above_m, steepest_depth * come_m - told_m_);
-    if (!(static_cast<double>(asked.most_m) > least_m)) continue;
+    // Most patches are too far away for any motion of this length.
+    asked.since_m +=
+        static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
+    if (!(static_cast<double>(asked.most_m + asked.since_m) > above_m)) continue;
     const near_patch& patch = found.patches()[p];
     const leaf_reader& reader = reading.of(patch);
+    const double least_m = std::max(above_m, come_to(asked, patch, reader, moved.angular) - told_m_);
+    if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     known_->open(asked, patch);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
       reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i),

@@ -9,6 +9,7 @@
 #include "asperity/field/coarse_grid.hpp"
 #include "asperity/field/relief_bounds.hpp"
 #include "asperity/field/relief_bricks.hpp"
+#include "asperity/field/slope_boxes.hpp"
 #include "asperity/field/third_bounds.hpp"
 
 namespace asperity {
@@ -42,6 +43,8 @@ struct body_field {
   detail::relief_bricks fine;
   detail::third_bounds most_third;                       ///< of the smooth part
   detail::relief_bounds most_relief;                     ///< of the fine part
+  detail::slope_boxes slopes;                            ///< of both, near the surface
+  static constexpr double slopes_to = 3.0;               ///< they were measured up to so many pitches off the surface
   double lowest_relief_m = 0.0, highest_relief_m = 0.0;  ///< bounds of the relief; at most and at least 0
   double thickness_m = 0.0;          ///< of the thinnest parts of the body; 0 where no two walls face each other
   double thinnest_resolved_m = 0.0;  ///< parts thinner than this are blurred: three pitches of the smooth part
@@ -105,7 +108,7 @@ struct body_field {
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(smooth, fine, most_third, most_relief);
+    return asperity::heap_bytes(smooth, fine, most_third, most_relief, slopes);
   }
 
  private:

@@ -33,11 +33,11 @@ class leaf_reader;
 /// can be sideways, where the bodies would not slide apart. A sample therefore sinks, by up to 3 % of the smallest
 /// body's diagonal, as the way turns from where its own surface looks: the plane leaves without a step.
 ///
-/// Surface that lies no further than a ninth of the reach is reported in full. Of what is further away, the planes are
-/// reported that a motion of up to five periods can meet first (first_met): a patch that lies behind other surface
-/// after every such motion has none. Whether it does follows from bounds of patches and leaves, so most samples are not
-/// read; what is reported has exact depths and slopes. What earlier ticks know of samples spares readings as well and
-/// changes nothing: planes follow from the pose alone.
+/// Surface that lies no further than a ninth of the reach, and a fifth of the gaps that are asked for, is reported in
+/// full. Of what is further away, the planes are reported that a motion of up to five periods can meet first
+/// (first_met): a patch that lies behind other surface after every such motion has none. Whether it does follows from
+/// bounds of patches and leaves, so most samples are not read; what is reported has exact depths and slopes. What
+/// earlier ticks know of samples spares readings as well and changes nothing: planes follow from the pose alone.
 ///
 /// A reading whose depth is -infinity stands for a leaf that has no plane.
 class ASPERITY_API plane_depth {
@@ -100,8 +100,8 @@ class ASPERITY_API plane_depth {
   std::vector<std::uint32_t> order_;  // of patches
   // How the probe has moved from the tick before, seen from each body.
   struct way {
-    pose T_ba{};
-    double slid_m = std::numeric_limits<double>::infinity(), chord = 0.0;
+    pose T_ba{}, before_ba{}, before_ab{};
+    double chord = 0.0;
   };
   std::vector<way> ways_;
   std::unique_ptr<plane_watch> watch_;

@@ -120,7 +120,7 @@ TEST(known_motion, ends_with_the_gaps_that_are_wanted) {
     // The next contact is asked for what this one was used for, and half as much again.
     linear_contact used;
     used.known = t.known;
-    EXPECT_NEAR(gaps_for(used, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, told_m)}), 1e-3 + 1.5 * told_m, 1e-12);
+    EXPECT_NEAR(gaps_for(used, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, told_m)}), 5e-4 + 1.5 * told_m, 1e-12);
   }
   EXPECT_GT(planes, 60U);
   EXPECT_TRUE(std::isinf(gaps_for({}, {})));

@@ -1,0 +1,91 @@
+// Which slopes a depth field has near a point, as they were measured.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "asperity/core/math.hpp"
+#include "asperity/core/memory.hpp"
+#include "asperity/field/coarse_grid.hpp"
+
+namespace asperity::detail {
+
+/// A box around the slopes at the points of each block of two cells a side of a grid. Measured, not proved: a slope that
+/// no point had is not in it. Made once, beside the field; never changed.
+class slope_boxes {
+ public:
+  slope_boxes() = default;
+
+  /// Allocates six numbers per eight nodes.
+  explicit slope_boxes(const coarse_grid& of)
+      : low_(of.low),
+        block_m_(2.0 * of.pitch_m),
+        along_{of.nodes[0] / 2 + 1, of.nodes[1] / 2 + 1, of.nodes[2] / 2 + 1} {
+    blocks_.resize(along_[0] * along_[1] * along_[2]);
+  }
+
+  /// Adds what was measured at a point; one outside the grid is left out.
+  void add(const vec3& p_b, const vec3& slope) noexcept {
+    std::array<std::size_t, 3> at{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double g = (p_b[static_cast<int>(k)] - low_[static_cast<int>(k)]) / block_m_;
+      if (!(g >= 0.0 && g < static_cast<double>(along_[k]))) return;
+      at[k] = static_cast<std::size_t>(g);
+    }
+    slopes& in = blocks_[place(at[0], at[1], at[2])];
+    in.low = glm::min(in.low, glm::vec3(slope));
+    in.high = glm::max(in.high, glm::vec3(slope));
+  }
+
+  /// How much a slope within radius_m of a point can differ from this one; infinity where a block has
+  /// none, and for radii of more than two cells.
+  /// @rt safe: 27 boxes at most
+  [[nodiscard]] double furthest(const vec3& p_b, double radius_m, const vec3& from) const noexcept {
+    constexpr double unknown = std::numeric_limits<double>::infinity();
+    if (!(radius_m <= block_m_)) return unknown;
+    std::array<std::size_t, 3> first{}, last{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double g = (p_b[static_cast<int>(k)] - low_[static_cast<int>(k)]) / block_m_, r = radius_m / block_m_;
+      const double end = static_cast<double>(along_[k]);
+      if (!(g - r >= 0.0 && g + r < end)) return unknown;
+      first[k] = static_cast<std::size_t>(g - r);
+      last[k] = static_cast<std::size_t>(g + r);
+    }
+    const glm::vec3 slope(from);
+    float most = 0.0F;
+    for (std::size_t z = first[2]; z <= last[2]; ++z) {
+      for (std::size_t y = first[1]; y <= last[1]; ++y) {
+        for (std::size_t x = first[0]; x <= last[0]; ++x) {
+          const slopes& in = blocks_[place(x, y, z)];
+          if (!(in.low.x <= in.high.x)) return unknown;
+          const glm::vec3 off = glm::max(slope - in.low, in.high - slope);
+          most = std::max(most, glm::dot(off, off));
+        }
+      }
+    }
+    return std::sqrt(static_cast<double>(most));
+  }
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(blocks_); }
+
+ private:
+  /// Of points in a block; empty while low is above high.
+  struct slopes {
+    glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+  };
+
+  [[nodiscard]] std::size_t place(std::size_t x, std::size_t y, std::size_t z) const noexcept {
+    return (z * along_[1] + y) * along_[0] + x;
+  }
+
+  vec3 low_{0.0};
+  double block_m_ = 1.0;
+  std::array<std::size_t, 3> along_{};
+  std::vector<slopes> blocks_;
+};
+
+}  // namespace asperity::detail

@@ -1,0 +1,84 @@
+// Measured slopes against exact readings at places drawn anew in each run.
+#include "asperity/field/slope_boxes.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <random>
+#include <vector>
+
+#include "support/fresh_seed.hpp"
+#include "support/small_models.hpp"
+#include "unit/field/field_measures.hpp"
+
+namespace asperity {
+namespace {
+
+using namespace test_support;
+
+struct places {
+  std::mt19937_64 bits;
+  double unit() { return std::uniform_real_distribution<double>(0.0, 1.0)(bits); }
+  vec3 direction() {
+    std::normal_distribution<double> n;
+    return glm::normalize(vec3(n(bits), n(bits), n(bits)));
+  }
+};
+
+// Balls up to the largest that are asked about, at most a pitch off the surface.
+TEST(SlopeBoxes, HoldTheSlopesOfEveryBall) {
+  places draw{std::mt19937_64(fresh_seed("SlopeBoxes.HoldTheSlopesOfEveryBall", "4000 balls on each of 3 bodies"))};
+  const std::vector<textured_model> models{make_textured_box({0.02, 0.015, 0.01}, 256, ridges(50e-6, 2e-3)),
+                                           make_textured_box({0.2, 0.1, 0.15}, 256, ridges(1e-3, 9e-3)),
+                                           make_flat_box({0.03, 0.03, 0.0005}, 128)};
+  for (const textured_model& model : models) {
+    const body_field f = built_field(model).value();
+    const double pitch = f.smooth.pitch_m;
+    int known = 0, read = 0, wrong = 0;
+    double most_wrong = 0.0, close = 0.0;
+    for (const surface_point& s : random_surface_points(model, 4000, draw.bits())) {
+      const vec3 c = s.p_b + pitch * (2.0 * draw.unit() - 1.0) * draw.direction();
+      const double radius = pitch * (0.2 + 1.2 * draw.unit());
+      const vec3 at_c = f.coarse(c).slope;
+      const double furthest = f.slopes.furthest(c, radius, at_c);
+      if (!std::isfinite(furthest)) continue;
+      ++known;
+      for (int i = 0; i < 10; ++i) {
+        const vec3 p = c + radius * std::cbrt(draw.unit()) * draw.direction();
+        const double off = glm::length(f.read(p).slope - at_c);
+        ++read;
+        wrong += off > furthest ? 1 : 0;
+        most_wrong = std::max(most_wrong, off - furthest);
+        close = std::max(close, off / furthest);
+      }
+    }
+    std::printf("  %d of 4000 balls known; %d of %d slopes outside, by up to %.3f\n", known, wrong, read, most_wrong);
+    EXPECT_GT(known, 2000);
+    // What is asked adds 0.15.
+    EXPECT_LE(wrong, read / 500);
+    EXPECT_LT(most_wrong, 0.3);
+    EXPECT_GT(close, 0.7) << "boxes that no slope comes near are of no use";
+  }
+}
+
+TEST(SlopeBoxes, SayNothingOfWhereNothingWasMeasured) {
+  detail::coarse_grid grid;
+  grid.pitch_m = 1e-3;
+  grid.nodes = {20, 20, 20};
+  detail::slope_boxes boxes(grid);
+  const vec3 middle(0.005, 0.005, 0.005), slope(0.0, 0.0, 1.0);
+  EXPECT_TRUE(std::isinf(boxes.furthest(middle, 1e-4, slope)));
+  boxes.add(middle, slope);
+  boxes.add(middle, {0.3, 0.0, 1.0});
+  EXPECT_NEAR(boxes.furthest(middle, 1e-4, slope), 0.3, 1e-6);
+  EXPECT_NEAR(boxes.furthest(middle, 1e-4, {0.0, 0.4, 1.0}), 0.5, 1e-6);
+  // Its neighbours have none, nor has what is beside the grid; a leap is not answered.
+  EXPECT_TRUE(std::isinf(boxes.furthest(middle, 1.9e-3, slope)));
+  EXPECT_TRUE(std::isinf(boxes.furthest(vec3(-0.01), 1e-4, slope)));
+  EXPECT_TRUE(std::isinf(boxes.furthest(middle, 1.0, slope)));
+  boxes.add(vec3(1.0), slope);  // outside: left out
+  EXPECT_TRUE(std::isinf(detail::slope_boxes().furthest(middle, 1e-4, slope)));
+}
+
+}  // namespace
+}  // namespace asperity
