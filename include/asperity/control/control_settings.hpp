@@ -40,6 +40,9 @@ struct control_settings {
   /// What the probe's surface and each fixed body's make of a touch, in the place of the two above: surfaces_of() a
   /// scene takes it from the models' materials. Empty: the two above hold for all bodies.
   surface_pairs surfaces{};
+  /// Gaps that every contact should tell at least, m; see gaps_for(). Half a millimetre is for the search of the pose of
+  /// rest, which looks 0.1 mm and 5 mrad around; what a hand begins to do in a period of a slow loop takes more.
+  double least_gaps_m = 5e-4;
   guard_settings guard{};
   contact_ageing ageing{};  ///< how old a contact may be felt
   rate_limits rates{};      ///< how late the loops may be
@@ -71,6 +74,9 @@ struct control_settings {
   const std::int64_t usual_ns =
       std::min(periods.oldest_contact_ns() + periods.renewal_ns(), slowest.oldest_contact_ns() + slowest.renewal_ns());
   settings.rates.surprise_age_ns = std::max(settings.rates.surprise_age_ns, usual_ns);
+  constexpr double begins_at_m_per_s = 0.5;
+  settings.least_gaps_m =
+      std::max(settings.least_gaps_m, begins_at_m_per_s * 1e-9 * static_cast<double>(periods.renewal_ns()));
   return settings;
 }
 

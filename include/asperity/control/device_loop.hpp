@@ -123,7 +123,8 @@ class device_loop {
     }
     if (placed_) {
       const pose& T_wc = motion_.probe().state().T_wc;
-      shared_->poses.back() = {T_wc, now_ns, motion_.pull(), gaps_for(shared_->contacts.front(), T_wc)};
+      shared_->poses.back() = {T_wc, now_ns, motion_.pull(),
+                               gaps_for(shared_->contacts.front(), T_wc, settings_.least_gaps_m)};
       shared_->poses.publish();
     }
     report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);

@@ -65,13 +65,12 @@ struct contact_ageing {
   return {T_wc.position - T_wc0.position, log_rotation(T_wc.rotation * glm::conjugate(T_wc0.rotation))};
 }
 
-/// Gaps that the next contact should tell, m: half a millimetre and one and a half times the way that the probe has
-/// made on this one. A probe that waits at the border of what is known gets half as much again with every contact, up to
-/// the renderer's reach; too small a guess costs a lag and no overlap. The half millimetre is for the search of the pose
-/// of rest, which asks for planes up to 0.1 mm and 5 mrad away.
+/// Gaps that the next contact should tell, m: least_m and one and a half times the way that the probe has made on this
+/// one. A probe that waits at the border of what is known gets half as much again with every contact, up to the
+/// renderer's reach; too small a guess costs a lag and no overlap.
 /// @return infinity where the contact does not say what is known   @rt safe
-[[nodiscard]] inline double gaps_for(const linear_contact& contact, const pose& T_wc) noexcept {
-  constexpr double least_m = 5e-4, times = 1.5;
+[[nodiscard]] inline double gaps_for(const linear_contact& contact, const pose& T_wc, double least_m) noexcept {
+  constexpr double times = 1.5;
   if (!contact.known.is_limited()) return std::numeric_limits<double>::infinity();
   const double way_m = contact.known.share(pose_difference(T_wc, contact.T_wc)) * contact.known.way_m;
   return least_m + times * way_m;

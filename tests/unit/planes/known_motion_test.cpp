@@ -120,10 +120,10 @@ TEST(known_motion, ends_with_the_gaps_that_are_wanted) {
     // The next contact is asked for what this one was used for, and half as much again.
     linear_contact used;
     used.known = t.known;
-    EXPECT_NEAR(gaps_for(used, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, told_m)}), 5e-4 + 1.5 * told_m, 1e-12);
+    EXPECT_NEAR(gaps_for(used, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, told_m)}, 5e-4), 5e-4 + 1.5 * told_m, 1e-12);
   }
   EXPECT_GT(planes, 60U);
-  EXPECT_TRUE(std::isinf(gaps_for({}, {})));
+  EXPECT_TRUE(std::isinf(gaps_for({}, {}, 5e-4)));
 }
 
 struct without_border {
@@ -140,6 +140,7 @@ struct passing {
   double fastest_m_per_s = 0.0;
   double more_lag_m = 0.0;    ///< than without a border
   double more_force_n = 0.0;  ///< on the hand
+  double raised_m = 0.0;      // without a border, by planes
 };
 
 /// A handle that swings sideways over the plate at a height, nearly as its script says.
@@ -181,6 +182,7 @@ passing swing(double height_m, double speed_m_per_s, std::int64_t device_ns, std
   for (std::size_t i = 1; i < held.size(); ++i) {
     const auto lag_m = [](const session_record& r) { return glm::distance(r.T_wa.position, r.T_wa_target.position); };
     out.more_lag_m = std::max(out.more_lag_m, lag_m(held[i]) - lag_m(open[i]));
+    out.raised_m = std::max(out.raised_m, open[i].T_wa.position.z - open[i].T_wa_target.position.z);
     out.more_force_n = std::max(out.more_force_n, glm::distance(held[i].on_hand_d.force, open[i].on_hand_d.force));
     out.fastest_m_per_s =
         std::max(out.fastest_m_per_s, glm::distance(open[i].T_wa_target.position, open[i - 1].T_wa_target.position) /
@@ -210,11 +212,12 @@ TEST(known_motion, does_not_hold_a_hand_in_free_space) {
                     1e9 / static_cast<double>(r.device_ns), 1e9 / static_cast<double>(r.contact_ns), o.fastest_m_per_s,
                     1e3 * o.more_lag_m, 1e3 * o.more_force_n);
         const bool free = (height_m > 0.02 && speed <= 1.0) || speed < 0.6;
-        // Wished for at all rates. With contacts of 200 Hz a millimetre over a body, a hand of 0.3 m/s is pulled by
-        // 1.8 N and one of 0.55 m/s by 4.6 N.
-        const bool slow_and_near = r.contact_ns > 1'000'000 && height_m < 0.002;
-        if (free) {
-          EXPECT_LT(o.more_force_n, slow_and_near ? 6.0 : least_felt_n) << height_m << ' ' << speed;
+        // Planes are straight. With contacts of 200 Hz, a hand sweeps past ridges further than a plane of their flanks is
+        // true, and is raised by it, whether there is a border or not: there is no free hand to compare with.
+        const bool raised = o.raised_m > 1e-4;
+        EXPECT_EQ(raised && free, r.contact_ns > 1'000'000 && height_m < 0.002 && free) << height_m << ' ' << speed;
+        if (free && !raised) {
+          EXPECT_LT(o.more_force_n, least_felt_n) << height_m << ' ' << speed;
         }
         held_n = std::max(held_n, o.more_force_n);
       }
