@@ -92,7 +92,7 @@ TEST(material_session, holds_and_makes_no_energy_over_the_whole_range) {
   std::printf("  %.2g to %.2g N/m; most energy %.5f mJ; at most %.2f of the depth that is allowed\n", soft_k, hard_k,
               1e3 * surplus, deepest_by_law);
   EXPECT_LT(soft_k, 5e3);
-  EXPECT_GT(hard_k, 1e6);
+  EXPECT_GT(hard_k, at_length() ? 1e6 : 1e5);  // one pair in 22 is above 1e6: 48 may draw none
 }
 
 // A ball that rests in a corner is in each wall by its force over that wall's own stiffness.

@@ -78,7 +78,7 @@ TEST(PosedSamples, FindsTheDeepestOfAll) {
 TEST(PosedSamples, FindsTheDeepestOfAllAtMotionAfterMotion) {
   drawing draw{std::mt19937_64(fresh_seed("PosedSamples.MotionAfterMotion", "6 poses, 8 motions each"))};
   posed_samples samples(boxes().scene, vec3(0.0)), forgetful(boxes().scene, vec3(0.0));
-  std::size_t spent = 0, spent_by_forgetful = 0;  // which takes the pose anew for each motion
+  std::size_t spent = 0, spent_by_forgetful = 0;  // forgetful takes the pose anew for each search
   for (int i = 0; i < 6; ++i) {
     const pose T_wa = drawn_pose(draw), T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
     samples.place({T_wa, {&T_wb, 1}}, 100'000'000);
@@ -88,17 +88,20 @@ TEST(PosedSamples, FindsTheDeepestOfAllAtMotionAfterMotion) {
       const double most = *std::max_element(all.begin(), all.end());
       const double less = most - draw.between(0.0, 0.3) * mm - 1e-9;
       mark m;
-      forgetful.place({T_wa, {&T_wb, 1}}, 100'000'000);
-      for (posed_samples* s : {&samples, &forgetful}) {
-        ASSERT_FALSE(s->deepest(x_w, most + 1e-12, m)) << i << ", " << n;
-        ASSERT_TRUE(s->deepest(x_w, less, m)) << i << ", " << n;
-        ASSERT_NEAR(m.depth_m, most, 1e-12) << i << ", " << n;
+      ASSERT_FALSE(samples.deepest(x_w, most + 1e-12, m)) << i << ", " << n;
+      ASSERT_TRUE(samples.deepest(x_w, less, m)) << i << ", " << n;
+      ASSERT_NEAR(m.depth_m, most, 1e-12) << i << ", " << n;
+      for (const double above_m : {most + 1e-12, less}) {
+        forgetful.place({T_wa, {&T_wb, 1}}, 100'000'000);
+        ASSERT_EQ(forgetful.deepest(x_w, above_m, m), above_m < most) << i << ", " << n;
+        spent_by_forgetful += forgetful.count.spent;
       }
-      spent_by_forgetful += forgetful.count.spent;
     }
     spent += samples.count.spent;
   }
-  EXPECT_LT(spent, spent_by_forgetful) << "what was read before saves nothing";
+  // 0.56 to 0.60 of it in 20 seeds; where branches forget, all of it.
+  EXPECT_LT(static_cast<double>(spent), 0.8 * static_cast<double>(spent_by_forgetful))
+      << "what was read before saves next to nothing";
 }
 
 // A motion with a turn takes each sample another way, and branches by as much as their size.
