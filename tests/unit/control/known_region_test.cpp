@@ -140,14 +140,14 @@ TEST(known_region, a_fast_touch_does_not_enter) {
         fastest = std::max(fastest, o.fastest_m_per_s);
         c.body.tells_known = false;
         const double without_m = run(c).deepest_m;
-        entered += without_m > 1e-3 ? 1 : 0;
+        entered += without_m > 2.0 * gives_way_m ? 1 : 0;
         open_m = std::max(open_m, without_m);
       }
       std::printf("| %.0f Hz | %.2f m/s | %.3f mm | %.3f mm | %.3f mm |\n", 1.0 / seconds(period_ns), fastest,
                   1e3 * in_time_m, 1e3 * late_m, 1e3 * open_m);
     }
   }
-  EXPECT_GE(entered, 3) << "the control: without a border hands do not enter by a millimetre either";
+  EXPECT_GE(entered, 2) << "the control: without a border hands do not enter either";
 }
 
 // The last contact may be any: the probe goes as far as that one knows and waits there.

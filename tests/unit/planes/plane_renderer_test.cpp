@@ -88,9 +88,10 @@ TEST(FieldRenderer, TellsDepthAndDirectionDeepDown) {
   }
 }
 
-// A control loop keeps the probe this near, and there one spring on the deepest plane is the force.
-TEST(FieldRenderer, PushesByItsSpringAtTheSurface) {
-  drawn_pose draw{std::mt19937_64(fresh_seed("FieldRenderer.PushesByItsSpringAtTheSurface", "200 poses"))};
+// A control loop keeps the probe this near, and there a spring on the deepest plane of each direction is the force. The
+// face has one direction. Where an edge of the probe lies beside points of the face, its own field has another one.
+TEST(FieldRenderer, PushesByItsSpringsAtTheSurface) {
+  drawn_pose draw{std::mt19937_64(fresh_seed("FieldRenderer.PushesByItsSpringsAtTheSurface", "200 poses"))};
   plane_renderer feel = make_boxes();
   const std::vector<pose> T_wb{pose{}};
   tick t;
@@ -98,7 +99,13 @@ TEST(FieldRenderer, PushesByItsSpringAtTheSurface) {
     const double depth = 1e-4 * draw.unit();
     ASSERT_EQ(feel.step({lowered(draw, depth), T_wb}, t), status::ok);
     const double k = feel.force().settings().stiffness_n_per_m;
-    EXPECT_NEAR(t.force.on_probe_w.force.z, k * std::max(0.0, depth), k * 8e-6) << "pose " << n;
+    double by_face_n = 0.0, by_others_n = 0.0;  // along the face's normal
+    for (std::size_t i = 0; i < t.contacts.size(); ++i) {
+      const double pushes_n = -k * std::max(0.0, t.depths[i].depth_m) * t.depths[i].gradient.linear.z;
+      (t.contacts[i].window.n_ab_w.z < -0.999 ? by_face_n : by_others_n) += pushes_n;
+    }
+    EXPECT_NEAR(by_face_n, k * std::max(0.0, depth), k * 8e-6) << "pose " << n;
+    EXPECT_NEAR(t.force.on_probe_w.force.z, by_face_n + by_others_n, 1e-9) << "pose " << n;
   }
 }
 
