@@ -40,9 +40,10 @@ struct control_settings {
   /// What the probe's surface and each fixed body's make of a touch, in the place of the two above: surfaces_of() a
   /// scene takes it from the models' materials. Empty: the two above hold for all bodies.
   surface_pairs surfaces{};
-  /// Gaps that every contact should tell at least, m; see gaps_for(). Half a millimetre is for the search of the pose of
-  /// rest, which looks 0.1 mm and 5 mrad around; what a hand begins to do in a period of a slow loop takes more.
-  double least_gaps_m = 5e-4;
+  /// Gaps that every contact should tell at least, m; see gaps_for(). A millimetre is for the search of the pose of rest,
+  /// which looks 0.1 mm and 5 mrad around: with half of it a press with 10 N stepped by 0.4 N/ms at rest. What a hand
+  /// begins to do in a period of a slow loop takes more.
+  double least_gaps_m = 1e-3;
   guard_settings guard{};
   contact_ageing ageing{};  ///< how old a contact may be felt
   rate_limits rates{};      ///< how late the loops may be
