@@ -12,7 +12,8 @@ namespace asperity {
 
 namespace {
 
-/// The planes as one step sees them: x_i = d_i + h_i g_i . v is the depth that plane i answers to at the velocity v.
+/// The planes as one step sees them: x_i = d_i + h_i (g_i . v + c_i) is the depth that plane i answers to at the
+/// velocity v, c_i the approach of its body.
 struct plane_rows {
   std::size_t count = 0;
   std::array<double, most_support_planes> stiffness_n_per_m{};  // k_i
@@ -49,7 +50,7 @@ struct plane_rows {
 
 [[nodiscard]] contact_solution solve_planes(const mat6& a, const vec6& load, const vec6& v0, double h_s,
                                             const support_planes& planes, const vec6& moved, const contact_laws& laws,
-                                            bool dissipates) noexcept {
+                                            bool moves) noexcept {
   constexpr double tolerance_n = 1e-9;
   contact_solution out;
   vec6 v = v0;
@@ -57,11 +58,12 @@ struct plane_rows {
   rows.count = planes.size();
   for (std::size_t i = 0; i < rows.count; ++i) {
     const double d = planes[i].depth_m + dot(planes[i].gradient, moved);
-    const double alpha = dissipates ? laws.dissipation_s_per_m(planes[i].body) : 0.0;
+    const double alpha = moves ? laws.dissipation_s_per_m(planes[i].body) : 0.0;
     out.deepest_m = std::max(out.deepest_m, d);
     rows.stiffness_n_per_m[i] = laws.stiffness_n_per_m(planes[i].body);
     rows.horizon_s[i] = h_s + 1.5 * alpha * std::max(0.0, d);
     rows.depth_m[i] = d + rows.horizon_s[i] * dot(planes[i].gradient, v);
+    if (moves) rows.depth_m[i] += rows.horizon_s[i] * planes[i].closing_m_per_s;
   }
   for (;;) {
     ++out.passes;
@@ -96,6 +98,7 @@ struct plane_rows {
   for (std::size_t i = 0; i < rows.count; ++i) {
     out.lambda_n[i] = rows.stiffness_n_per_m[i] * std::max(0.0, rows.depth_m[i]);
     pushed = pushed - out.lambda_n[i] * planes[i].gradient;
+    out.from_bodies_w += out.lambda_n[i] * planes[i].closing_m_per_s;
   }
   out.velocity = v;
   out.on_probe_w = to_wrench(pushed);

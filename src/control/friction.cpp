@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 
 #include "core/cholesky.hpp"
@@ -68,8 +69,8 @@ double friction::coefficient(const bristle& b, double slip_m_per_s) const noexce
   return b.dynamic_coefficient + (b.static_coefficient - b.dynamic_coefficient) * std::exp(-ratio * ratio);
 }
 
-void friction::find_bodies(const support_planes& planes, const contact_solution& by,
-                           const contact_laws& laws) noexcept {
+void friction::find_bodies(const support_planes& planes, const contact_solution& by, const contact_laws& laws,
+                           std::span<const body_velocity> carried) noexcept {
   leaves_out_ = false;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (!(by.lambda_n[i] > 0.0)) continue;
@@ -85,6 +86,7 @@ void friction::find_bodies(const support_planes& planes, const contact_solution&
       leaves_out_ = true;
     }
   }
+  for (bristle& b : bristles_) b.carried = velocity_of(carried, b.body);
 }
 
 void friction::measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept {
@@ -105,9 +107,10 @@ void friction::measure(const support_planes& planes, const contact_solution& by,
     const double held_j = 0.5 * k * squared(b.metric, b.stretch);
     b.held = held_j > b.stored_j ? std::sqrt(b.stored_j / held_j) * b.stretch : b.stretch;
     // What the bristle gave up in the pass before, or the step before, has slipped; the rest is its own stretch.
-    const double slip_m_per_s = (1.0 - b.theta) * std::sqrt(squared(b.metric, b.held + h_s * v)) / h_s;
+    const vec6 slide = v - b.carried;
+    const double slip_m_per_s = (1.0 - b.theta) * std::sqrt(squared(b.metric, b.held + h_s * slide)) / h_s;
     const double most_m = coefficient(b, slip_m_per_s) * b.normal_n / k;
-    const double stretch_m = std::sqrt(squared(b.metric, b.held + (h_s + settings_.damping_s) * v));
+    const double stretch_m = std::sqrt(squared(b.metric, b.held + (h_s + settings_.damping_s) * slide));
     b.theta = stretch_m > most_m ? most_m / stretch_m : 1.0;
   }
 }
@@ -123,15 +126,22 @@ void friction::settle(double h_s, const vec6& v) noexcept {
       energy_.lost_j += b.stored_j;
       continue;
     }
-    b.stretch = b.theta * (b.held + h_s * v);
-    const vec6 f = -k * (b.metric * (b.stretch + (b.theta * settings_.damping_s) * v));
-    on_probe_w_ += to_wrench(f);
+    const vec6 slide = v - b.carried;
+    b.stretch = b.theta * (b.held + h_s * slide);
+    const vec6 f = -k * (b.metric * (b.stretch + (b.theta * settings_.damping_s) * slide));
+    b.on_probe_w = to_wrench(f);
+    on_probe_w_ += b.on_probe_w;
+    energy_.from_bodies_j += h_s * dot(f, b.carried);
     slips_ = slips_ || b.theta < 1.0;
     b.stretch = without_rest(b.metric, b.stretch);
     const double now_j = 0.5 * k * squared(b.metric, b.stretch);
-    energy_.lost_j += b.stored_j - h_s * dot(f, v) - now_j;
+    energy_.lost_j += b.stored_j - h_s * dot(f, slide) - now_j;
     b.stored_j = now_j;
     stored_j += now_j;
+    if (b.carried.angular != vec3(0.0)) {  // z is the body's, and turns with it
+      const quat turned = exp_rotation(h_s * b.carried.angular);
+      b.stretch = {turned * b.stretch.linear, turned * b.stretch.angular};
+    }
     bristles_[kept++] = b;
   }
   bristles_.truncate(kept);
@@ -139,14 +149,15 @@ void friction::settle(double h_s, const vec6& v) noexcept {
 }
 
 contact_solution friction::solve(mat6& a, const vec6& load, const vec6& v0, double h_s, const support_planes& planes,
-                                 const vec6& moved, const contact_laws& laws) noexcept {
+                                 const vec6& moved, const contact_laws& laws,
+                                 std::span<const body_velocity> carried) noexcept {
   constexpr int most_passes = 4;
   const double k = settings_.stiffness_n_per_m, horizon_s = h_s + settings_.damping_s;
   contact_solution out = solve_contact(a, load, v0, h_s, planes, moved, laws);
   if (!out.solved) return out;
   mat6 with;
   for (int pass = 0; pass < most_passes; ++pass) {
-    find_bodies(planes, out, laws);
+    find_bodies(planes, out, laws, carried);
     if (bristles_.empty()) return out;
     measure(planes, out, pass == 0 ? v0 : out.velocity, h_s);
     with = a;
@@ -155,7 +166,7 @@ contact_solution friction::solve(mat6& a, const vec6& load, const vec6& v0, doub
       if (!(b.normal_n > 0.0)) continue;
       const mat6 spring = (b.theta * k) * b.metric;
       with += horizon_s * spring;
-      pulled = pulled - spring * (b.held + horizon_s * v0);
+      pulled = pulled - spring * (b.held + horizon_s * (v0 - b.carried));
     }
     out = solve_contact(with, pulled, v0, h_s, planes, moved, laws);
     if (!out.solved) return out;

@@ -20,7 +20,8 @@ concept contact_renderer = requires(R& renderer, const scene_pose& at, tick& out
   noexcept->std::same_as<status>;
 };
 
-/// Where the bodies of a session are. The fixed bodies stay where they are put.
+/// Where the bodies of a session are. The fixed bodies stay where they are put, but for those that an application moves
+/// (exchange::bodies).
 struct scene_placement {
   std::vector<pose> T_wb;      ///< one per fixed body
   vec3 centre_of_mass_a{0.0};  ///< c_A in the probe's body frame, metres (textured_model::mass)
@@ -61,6 +62,9 @@ class contact_loop {
     if (!shared_->poses.refresh()) return status::ok;
     const timed_pose& at = shared_->poses.front();
     const pose T_wa = at.T_wc * inverse(placement_.T_ac());
+    for (const body_place& b : at.bodies) {
+      if (b.body < placement_.T_wb.size()) placement_.T_wb[b.body] = b.T_wb;
+    }
     const status answer = renderer_.step({T_wa, placement_.T_wb, at.gaps_m}, last_);
     linearise(last_, answer, at, selection_, rest_, shared_->contacts.back());
     shared_->contacts.back().flags = flags_.held(shared_->contacts.back().flags, at.time_ns);
@@ -83,6 +87,7 @@ class contact_loop {
   /// How many poses were rendered.
   [[nodiscard]] std::uint64_t computed() const noexcept { return computed_; }
   [[nodiscard]] std::int64_t computed_at_ns() const noexcept { return computed_at_ns_; }
+  /// Where the bodies were in the last compute().
   [[nodiscard]] const scene_placement& placement() const noexcept { return placement_; }
 
  private:

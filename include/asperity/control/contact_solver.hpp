@@ -72,15 +72,17 @@ struct contact_solution {
   vec6 velocity{};                                     ///< of c_A at the end of the step, m/s and rad/s, world axes
   std::array<double, most_support_planes> lambda_n{};  ///< force along each plane's gradient, 0 or more, N
   wrench on_probe_w{};                                 ///< minus the sum of lambda times gradient, about c_A
-  double deepest_m = 0.0;   ///< of the planes at the beginning of the step; 0 where none is met
+  double from_bodies_w = 0.0;  ///< power with which moving bodies push, W; see support_plane::closing_m_per_s
+  double deepest_m = 0.0;      ///< of the planes at the beginning of the step; 0 where none is met
   double residual_n = 0.0;  ///< largest force that is out of balance in a plane, N; above 1e-7 the passes were too few
   int passes = 0;
   bool solved = false;  ///< false: the matrix is not positive definite, and nothing else here means anything
 };
 
 /// Velocity v and forces lambda at the end of a step of length h, with
-///   A (v - v0) = load - sum lambda_i g_i,   lambda_i = k max(0, d_i + h_i g_i . v),   h_i = h + 1.5 alpha max(0, d_i),
-/// k and alpha those of the plane's body.
+///   A (v - v0) = load - sum lambda_i g_i,   lambda_i = k max(0, d_i + h_i (g_i . v + c_i)),
+///   h_i = h + 1.5 alpha max(0, d_i),
+/// k and alpha those of the plane's body, c_i its own approach.
 /// These are the conditions for the least value of a convex function of v that is quadratic wherever the set of pressed
 /// planes is the same. Newton's method with an exact line search finds it in finitely many passes; each factorises one
 /// 6x6 matrix. It keeps no state: the same step has the same answer whatever came before.
@@ -92,7 +94,7 @@ struct contact_solution {
                                                           const support_planes& planes, const vec6& moved,
                                                           const contact_laws& laws) noexcept;
 
-/// Where springs and planes balance, planes as springs that dissipate nothing: the velocity of the answer is the way, m
+/// Where springs and planes balance, planes as springs that dissipate nothing and stand still: the velocity of the answer is the way, m
 /// and rad, from where `moved` is.
 /// @param springs their stiffness about c_A, symmetric positive definite
 /// @param pull    of the springs at `moved`

@@ -8,6 +8,7 @@
 
 #include "asperity/control/control_settings.hpp"
 #include "asperity/control/exchange.hpp"
+#include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/passivity_guard.hpp"
 #include "asperity/control/probe_motion.hpp"
 #include "asperity/control/rate_monitor.hpp"
@@ -23,7 +24,7 @@ namespace asperity {
 ///
 /// Order of one tick: read, judge the sample, book the energy of the last command, judge the rates, step the probe in
 /// substeps towards the device (which moves evenly from its last pose to this one), coupling wrench, guard, gate,
-/// write, publish the probe's pose, tell the observer.
+/// write, publish the probe's pose and what bodies felt, tell the observer.
 ///
 /// - The probe starts at the device's first good pose, at rest: no jump.
 /// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
@@ -35,6 +36,8 @@ namespace asperity {
 ///   wrench all the time: then the work is booked.
 /// - A contact older than contact_ageing allows goes on holding the probe, which then does not follow the hand, and is
 ///   not felt. Letting it go would bury the probe in the body, and the next contact would throw it out.
+/// - Bodies that the application moves (exchange::bodies) are followed from tick to tick (body_follower), and planes go
+///   with them. What they do to the probe is theirs in the guard's book.
 /// - Lateness past rate_limits shuts the gate (stalled, contact_stalled, overloaded) while the device may put out.
 /// - A rejected sample: the wanted wrench is zero in this tick, and the probe goes on towards the last good pose. After
 ///   sample_check_settings::reject_limit rejections in a row the gate shuts (bad_samples).
@@ -95,8 +98,12 @@ class device_loop {
     status probe_status = status::not_ready;
     guard_action guarded;
     rate_verdict rates;
+    follow_bodies(now_ns);
     if (placed_) {
-      if (accepted) guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0));
+      if (accepted) {
+        const double given_j = std::exchange(unobserved_bodies_j_, 0.0);
+        guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0), given_j);
+      }
       const bool surprised = take_contact(now_ns);
       rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
       probe_status = move_probe(dt_s, accepted, rates);
@@ -124,8 +131,13 @@ class device_loop {
     if (placed_) {
       const pose& T_wc = motion_.probe().state().T_wc;
       shared_->poses.back() = {T_wc, now_ns, motion_.pull(),
-                               gaps_for(shared_->contacts.front(), T_wc, settings_.least_gaps_m)};
+                               gaps_for(shared_->contacts.front(), T_wc, settings_.least_gaps_m, motion_.body_share()),
+                               bodies_.places()};
       shared_->poses.publish();
+      felt_bodies& felt = shared_->felt.back();
+      felt = motion_.felt();
+      felt.time_ns = now_ns;
+      shared_->felt.publish();
     }
     report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);
     return answer(verdict, probe_status);
@@ -137,6 +149,10 @@ class device_loop {
   [[nodiscard]] const virtual_coupling& coupling() const noexcept { return motion_.coupling(); }
   /// What the contact did to the probe in the last tick, plane by plane.
   [[nodiscard]] const contact_solution& pressed() const noexcept { return motion_.pressed(); }
+  /// What the bodies felt in the last tick.
+  [[nodiscard]] const felt_bodies& felt() const noexcept { return motion_.felt(); }
+  /// Where the moving bodies are.
+  [[nodiscard]] const body_follower& bodies() const noexcept { return bodies_; }
   [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
   [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
   [[nodiscard]] Observer& observer() noexcept { return observer_; }
@@ -212,9 +228,9 @@ class device_loop {
       static_cast<void>(shared_->contacts.refresh());
       return false;
     }
-    const wrench before = motion_.push_of(contact);
+    const wrench before = motion_.push_of(contact, bodies_.ways());
     if (!shared_->contacts.refresh()) return false;
-    const wrench change = motion_.push_of(shared_->contacts.front()) - before;
+    const wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
     return glm::length(change.force) > rates_.limits().surprise_n ||
            glm::length(change.torque) > rates_.limits().surprise_n_m;
   }
@@ -233,7 +249,15 @@ class device_loop {
   [[nodiscard]] status move_probe(double dt_s, bool accepted, const rate_verdict& rates) noexcept {
     const pose wanted_T_wc = accepted ? pose_of_sample() : motion_.target();
     const double part = part_allowed(motion_.way_to(wanted_T_wc), dt_s, rates);
-    return motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front());
+    const double before_j = motion_.probe().energy().from_bodies_j;
+    const status s = motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front(), bodies_.ways());
+    unobserved_bodies_j_ += motion_.probe().energy().from_bodies_j - before_j;
+    return s;
+  }
+
+  void follow_bodies(std::int64_t now_ns) noexcept {
+    if (shared_->bodies.refresh()) bodies_.take(shared_->bodies.front(), now_ns);
+    bodies_.advance(now_ns);
   }
 
   [[nodiscard]] double part_allowed(const vec6& way, double dt_s, const rate_verdict& rates) const noexcept {
@@ -267,9 +291,11 @@ class device_loop {
     r.unbalanced_n = motion_.pressed().residual_n;
     r.overlap_m = motion_.pressed().deepest_m;
     r.flags = contact.flags | flags_of(motion_, !contact.planes.empty() && probe_status == status::not_finite);
+    if (bodies_.is_lost() || bodies_.refused()) r.flags |= tick_flag::body_lost;
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
+    r.from_bodies_j = motion_.probe().energy().from_bodies_j;
     r.guard_alpha_per_s = guarded.alpha_per_s;
     r.guard_scale = guarded.scale;
     r.rate_scale = rates.scale;
@@ -306,6 +332,7 @@ class device_loop {
   Observer observer_;
   sample_check check_;
   probe_motion motion_;
+  body_follower bodies_;
   passivity_guard guard_;
   rate_monitor rates_;
   output_gate gate_;
@@ -316,8 +343,9 @@ class device_loop {
   bool placed_ = false;
   std::int64_t placed_ns_ = 0;
   std::int64_t last_clock_ns_ = 0;
-  std::int64_t now_ns_ = 0;    // the loop's time: the clock's steps forward, summed up
-  double unobserved_s_ = 0.0;  // time since the guard saw a pose
+  std::int64_t now_ns_ = 0;           // the loop's time: the clock's steps forward, summed up
+  double unobserved_s_ = 0.0;         // time since the guard saw a pose ...
+  double unobserved_bodies_j_ = 0.0;  // ... and what bodies gave in it
   std::int64_t valid_until_ns_ = std::numeric_limits<std::int64_t>::max();  // of the last command
   std::uint64_t sequence_ = 0;
   std::uint64_t beats_ = 0;   // of the application, as last seen ...

@@ -1,11 +1,13 @@
-// The two hand-overs between the contact thread and the device thread.
+// The hand-overs between the contact thread, the device thread and the application.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <limits>
 
+#include "asperity/control/felt_bodies.hpp"
 #include "asperity/control/linear_contact.hpp"
+#include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/triple_buffer.hpp"
@@ -18,6 +20,7 @@ struct timed_pose {
   std::int64_t time_ns = 0;
   coupling_pull pull{};
   double gaps_m = std::numeric_limits<double>::infinity();  ///< gaps that are wanted; see gaps_for()
+  body_places bodies{};                                     ///< where the moving bodies are at this time
 };
 
 /// How an application shows that it is alive: any of its threads beats, the device thread counts. It carries no time,
@@ -32,10 +35,13 @@ class heartbeat {
   std::atomic<std::uint64_t> beats_{0};
 };
 
-/// Data goes round once: the device thread publishes poses, the contact thread publishes contacts. Neither waits.
+/// Data goes round once: the device thread publishes poses, the contact thread publishes contacts. Neither waits. An
+/// application may tell of moving bodies, from one thread, and take what bodies feel, from one thread.
 struct exchange {
   triple_buffer<timed_pose> poses;         ///< written by the device thread
   triple_buffer<linear_contact> contacts;  ///< written by the contact thread
+  triple_buffer<moving_bodies> bodies;     ///< written by the application
+  triple_buffer<felt_bodies> felt;         ///< written by the device thread
   heartbeat application;                   ///< beaten by the application, never by a loop; see watchdog_ns
 };
 

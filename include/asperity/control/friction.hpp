@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "asperity/control/carried_contact.hpp"
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/core/export.hpp"
@@ -33,8 +35,9 @@ struct friction_settings {
 
 /// Where the energy of friction went since reset(), J.
 struct friction_energy {
-  double stored_j = 0.0;  ///< in the bristles now
-  double lost_j = 0.0;    ///< to heat; never less than a step before
+  double stored_j = 0.0;       ///< in the bristles now
+  double lost_j = 0.0;         ///< to heat; never less than a step before
+  double from_bodies_j = 0.0;  ///< that moving bodies gave
 };
 
 /// Contact with friction, step by step. The renderer's planes say which samples press and how hard; what has slipped is
@@ -51,7 +54,8 @@ struct friction_energy {
 ///   k (|z - theta y|^2 / 2 + theta (1 - theta) |y|^2 + theta t h |v|^2),
 /// which is not negative for any theta from 0 to 1: friction makes no energy, however well the passes that find theta
 /// and D have converged. Where other points press than before and the new metric would raise what is stored, z is made
-/// shorter.
+/// shorter. On a moving body v is the probe's velocity less that of the body: the loss is the same, and f does work on the
+/// body, which it gives.
 /// @source bristles: Canudas de Wit et al., A new model for control of systems with friction, 1995; one cone for all
 /// points of a body by the root of a mean square is ours
 class ASPERITY_API friction {
@@ -74,9 +78,10 @@ class ASPERITY_API friction {
   /// planes alone. The step is not over before settle().
   /// @param a friction's part is added to it, so that A (v - v0) goes on being what acts
   /// @pre as solve_contact   @rt safe: at most five solutions
+  /// @param carried velocities of the moving bodies about c_A
   [[nodiscard]] contact_solution solve(mat6& a, const vec6& load, const vec6& v0, double h_s,
-                                       const support_planes& planes, const vec6& moved,
-                                       const contact_laws& laws) noexcept;
+                                       const support_planes& planes, const vec6& moved, const contact_laws& laws,
+                                       std::span<const body_velocity> carried = {}) noexcept;
 
   /// Ends the step that was solved, with the velocity that it really had: what else stops a probe may have made it
   /// another one than the solution's. Friction makes no energy with any. @rt safe
@@ -84,6 +89,11 @@ class ASPERITY_API friction {
 
   /// Of the last step, about c_A, world axes.
   [[nodiscard]] const wrench& on_probe_w() const noexcept { return on_probe_w_; }
+  /// Calls visit(body, wrench on the probe) for the bodies that were rubbed on in the last step. @rt safe
+  template <class Visit>
+  void for_each_body(Visit&& visit) const noexcept {
+    for (const bristle& b : bristles_) visit(b.body, b.on_probe_w);
+  }
   /// Whether a body was slipped on in the last step.
   [[nodiscard]] bool slips() const noexcept { return slips_; }
   /// Whether a body was pressed without friction in the last step, because most_bodies others were rubbed on.
@@ -97,16 +107,19 @@ class ASPERITY_API friction {
     double static_coefficient = 0.0, dynamic_coefficient = 0.0;
     vec6 stretch{};  // z
     double stored_j = 0.0;
+    wrench on_probe_w{};
     // Of the step that is being solved.
     mat6 metric{};          // D
     vec6 held{};            // z in this metric
     double normal_n = 0.0;  // N
     double theta = 1.0;
+    vec6 carried{};  // velocity of the body about c_A
   };
 
   [[nodiscard]] double coefficient(const bristle& b, double slip_m_per_s) const noexcept;
   // The bristles of the bodies that are pressed and have friction; new ones are at rest.
-  void find_bodies(const support_planes& planes, const contact_solution& by, const contact_laws& laws) noexcept;
+  void find_bodies(const support_planes& planes, const contact_solution& by, const contact_laws& laws,
+                   std::span<const body_velocity> carried) noexcept;
   // Metric, force and share of a bristle for these forces and this velocity.
   void measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept;
 

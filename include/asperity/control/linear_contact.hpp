@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "asperity/control/moving_bodies.hpp"
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
@@ -41,6 +42,7 @@ struct linear_contact {
   std::uint32_t dropped = 0;          ///< contacts that did not fit
   status answer = status::not_ready;  ///< what the renderer answered at q0
   support_planes planes{};            ///< at q0; empty where the renderer knows none or nothing is near
+  body_places bodies{};               ///< where the moving bodies were at q0; the others stand still
   known_motion known{};               ///< how far the probe may go from q0; unlimited where nobody says
   tick_flag flags = tick_flag::none;  ///< what the planes do not answer
 };
@@ -68,12 +70,14 @@ struct contact_ageing {
 /// Gaps that the next contact should tell, m: least_m and one and a half times the way that the probe has made on this
 /// one. A probe that waits at the border of what is known gets half as much again with every contact, up to the
 /// renderer's reach; too small a guess costs a lag and no overlap.
+/// @param bodies_share of what the contact knows that moving bodies have used up meanwhile; see carried_contact
 /// @return infinity where the contact does not say what is known   @rt safe
-[[nodiscard]] inline double gaps_for(const linear_contact& contact, const pose& T_wc, double least_m) noexcept {
+[[nodiscard]] inline double gaps_for(const linear_contact& contact, const pose& T_wc, double least_m,
+                                     double bodies_share = 0.0) noexcept {
   constexpr double times = 1.5;
   if (!contact.known.is_limited()) return std::numeric_limits<double>::infinity();
-  const double way_m = contact.known.share(pose_difference(T_wc, contact.T_wc)) * contact.known.way_m;
-  return least_m + times * way_m;
+  const double share = contact.known.share(pose_difference(T_wc, contact.T_wc)) + bodies_share;
+  return least_m + times * share * contact.known.way_m;
 }
 
 /// A linear contact at one pose.

@@ -37,6 +37,7 @@ inline void linearise(const tick& found, status answer, const timed_pose& at, co
   out = {};
   out.T_wc = at.T_wc;
   out.time_ns = at.time_ns;
+  out.bodies = at.bodies;
   out.answer = answer;
   if (answer != status::ok && answer != status::capacity_reached) return;
   const status selected = select_planes(found.planes, selection, out.planes);

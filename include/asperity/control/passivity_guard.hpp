@@ -19,7 +19,9 @@ struct guard_settings {
   double credit_j = 0.1;        ///< most of the hand's energy that counts as lent to the loop
   double soft_limit_j = 0.005;  ///< surplus at which the wrench begins to be scaled down ...
   double hard_limit_j = 0.02;   ///< ... and at which only damping is left
-  double cut_off_j = 0.1;       ///< surplus at which damping has failed as well: a device_loop then shuts the gate
+  /// Most power of moving bodies that counts as theirs and not as the loop's, W. What they give beyond it is a surplus.
+  double bodies_power_w = 5.0;
+  double cut_off_j = 0.1;  ///< surplus at which damping has failed as well: a device_loop then shuts the gate
 };
 
 /// What the guard did in one tick.
@@ -36,7 +38,8 @@ struct guard_action {
 /// and every limit are in it once and are never booked a second time.
 /// surplus() is the sum; it may not go below -credit_j. Without that floor an hour of scraping, which puts joules in,
 /// would allow a vibration to give all of them back. credit_j covers what springs hold at full force and so costs a
-/// passive loop nothing.
+/// passive loop nothing. What moving bodies do to the probe is theirs: it is taken off the surplus, up to bodies_power_w,
+/// and what the probe does to them is added to it. The bound below then grows by bodies_power_w times the interval.
 /// Controller: with a surplus over tolerance_j (rounding, the encoder's steps), damping in proportion to the device's
 /// inertia, at the rate alpha = min(surplus / (h v.M v), 0.5 / h), so that one sample takes out the surplus and the
 /// damping itself stays stable. Past soft_limit_j the wanted wrench is scaled down as well, to zero at hard_limit_j.
@@ -57,8 +60,9 @@ class passivity_guard {
 
   /// Books one sample: the wrench that was held since the last call (it left the gate then) and the pose reached with
   /// it. Any frame, as long as wrench and pose share it and the torque is about the pose's origin.
+  /// @param from_bodies_j work that moving bodies did on the probe meanwhile
   /// @rt safe
-  void observe(const pose& T, const wrench& held, double h_s) noexcept {
+  void observe(const pose& T, const wrench& held, double h_s, double from_bodies_j = 0.0) noexcept {
     h_s_ = h_s;
     if (!has_last_) {
       has_last_ = true;
@@ -70,7 +74,8 @@ class passivity_guard {
     last_ = T;
     const double given_j = glm::dot(held.force, dx) + glm::dot(held.torque, dphi);
     delivered_j_ += given_j;
-    surplus_j_ = std::max(-settings_.credit_j, surplus_j_ + given_j);
+    const double lent_j = std::min(from_bodies_j, settings_.bodies_power_w * h_s);
+    surplus_j_ = std::max(-settings_.credit_j, surplus_j_ + given_j - lent_j);
     velocity_ = h_s > 0.0 ? twist{dx / h_s, dphi / h_s} : twist{};
   }
 

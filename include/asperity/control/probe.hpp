@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "asperity/control/carried_contact.hpp"
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/friction.hpp"
 #include "asperity/control/linear_contact.hpp"
@@ -41,12 +43,14 @@ struct known_region {
 
 /// Where the energy of the probe went since reset(), J. Work is of the wrench at the end of a step, as the step uses
 /// it. The five works minus numerical_j are the kinetic energy gained: to rounding where the inertia is a ball's,
-/// otherwise up to the gyroscopic torque that the step leaves out.
+/// otherwise up to the gyroscopic torque that the step leaves out. Bodies at rest give nothing: then contact and
+/// friction only take, but for what their springs give back.
 struct probe_energy {
   double by_coupling_j = 0.0;  ///< work that the coupling did on the probe
   double by_contact_j = 0.0;   ///< work that the contact did on the probe
   double by_friction_j = 0.0;  ///< work that friction did on the probe; minus what friction_energy stores and lost
   double by_external_j = 0.0;  ///< work that the external wrench did on the probe
+  double from_bodies_j = 0.0;  ///< of by_contact_j and by_friction_j, what moving bodies gave
   double by_border_j = 0.0;    ///< work that the border of the known region did on the probe: 0 or less
   double numerical_j = 0.0;  ///< energy that the implicit step took out: the work done minus the kinetic energy gained
 };
@@ -102,13 +106,15 @@ class probe {
 
   /// The same against support planes, as they were reported at within.T_wc.
   /// @param rubbing of the probe on what the planes stand for, from step to step
+  /// @param carried velocities of the moving bodies, whose planes know how fast they close
   /// @param out which planes pushed, and how hard
   /// @return ok | not_finite (as above). A solver that ran out of passes is ok and tells its residual.
   /// @pre check(laws.usual)   @rt safe: at most laws.usual.most_passes passes of each solution that friction takes
   [[nodiscard]] status step_on_planes(double h_s, const virtual_coupling& coupling, const pose& target_T_wc,
                                       const twist& target_velocity_w, const support_planes& planes,
                                       const known_region& within, const contact_laws& laws, friction& rubbing,
-                                      contact_solution& out, const wrench& external_w = {}) noexcept {
+                                      contact_solution& out, const wrench& external_w = {},
+                                      std::span<const body_velocity> carried = {}) noexcept {
     const vec6 v = to_vec6(state_.velocity_w);
     const vec6 coupled = to_vec6(coupling.on_probe(target_T_wc, target_velocity_w, state_.T_wc, state_.velocity_w));
     const mat6 inertia = inertia_w();
@@ -116,14 +122,16 @@ class probe {
     mat6 a = (1.0 / h_s) * inertia;
     const vec6 stretch_rate = add_coupling(h_s, coupling, v, a);
     const vec6 load = coupled + to_vec6(external_w) - stretch_rate;
-    out = rubbing.solve(a, load, v, h_s, planes, pose_difference(state_.T_wc, within.T_wc), laws);
+    out = rubbing.solve(a, load, v, h_s, planes, pose_difference(state_.T_wc, within.T_wc), laws, carried);
     if (!out.solved || !is_finite(out.on_probe_w) || !plausible(out.velocity)) {
       out = {};
       rubbing.forget();
       return stop();
     }
     out.velocity = keep_within(within, h_s, a, out.velocity);
+    const double given_before_j = rubbing.energy().from_bodies_j;
     rubbing.settle(h_s, out.velocity);
+    energy_.from_bodies_j += h_s * out.from_bodies_w + rubbing.energy().from_bodies_j - given_before_j;
     book(h_s, coupling, inertia, v, out.velocity, coupled, to_vec6(out.on_probe_w));
     energy_.by_friction_j += h_s * dot(to_vec6(rubbing.on_probe_w()), out.velocity);
     energy_.by_external_j += h_s * dot(to_vec6(external_w), out.velocity);

@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <utility>
 
+#include "asperity/control/carried_contact.hpp"
 #include "asperity/control/contact_solver.hpp"
+#include "asperity/control/felt_bodies.hpp"
 #include "asperity/control/friction.hpp"
 #include "asperity/control/linear_contact.hpp"
+#include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/probe.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/pose.hpp"
@@ -24,6 +28,8 @@ namespace asperity {
 /// probe that runs at several times the device's rate, so the target goes evenly from its last pose to the newest one.
 /// The probe goes no further than the contact knows (linear_contact::known), planes or not: there it waits for the next
 /// contact, and the coupling pulls at the hand by what it lags behind.
+/// Planes of bodies that move go with them, evenly through the period. A linear wrench does not: it is the one of the
+/// contact's time.
 /// @rt safe: no allocation, lock, throw, print or clock
 class probe_motion {
  public:
@@ -60,8 +66,13 @@ class probe_motion {
 
   /// One period of dt_s seconds, at whose end the target has gone `part` of its way to wanted_T_wc.
   /// @param part 1: all of it, to the bit
+  /// @param ways of the moving bodies in this period
   /// @return ok | not_finite (the probe is left at rest where it was)
-  [[nodiscard]] status move(double dt_s, const pose& wanted_T_wc, double part, const linear_contact& contact) noexcept {
+  [[nodiscard]] status move(double dt_s, const pose& wanted_T_wc, double part, const linear_contact& contact,
+                            std::span<const body_way> ways = {}) noexcept {
+    const carried_contact carried(contact, ways);
+    felt_.list.clear();
+    velocities_.clear();
     const pose from = target_T_wc_;
     vec6 way = way_to(wanted_T_wc);
     target_T_wc_ = wanted_T_wc;
@@ -79,22 +90,31 @@ class probe_motion {
     target_velocity_w_ = velocity_over(way, dt_s);
     for (int i = 1; i <= substeps_; ++i) {
       const double passed = static_cast<double>(i) / substeps_;
+      const double begun = static_cast<double>(i - 1) / substeps_;
       const pose target{exp_rotation(passed * way.angular) * from.rotation, from.position + passed * way.linear};
-      if (const status s = substep(dt_s / substeps_, target, contact); s != status::ok) return s;
+      if (const status s = substep(dt_s, target, contact, carried, begun); s != status::ok) return s;
     }
+    felt_.point_w = probe_.state().T_wc.position;
+    body_share_ = carried.moves() ? carried.body_share(probe_.state().T_wc, 1.0) : 0.0;
     return status::ok;
   }
 
   /// What a contact pushes with at the probe's pose, as far as the coupling will come to feel it: the linear wrench, or
   /// the wrench with which the coupling holds a resting probe that the planes have pushed out.
-  [[nodiscard]] wrench push_of(const linear_contact& contact) const noexcept {
+  /// @param ways of the moving bodies in the next period: the planes are taken where it begins
+  [[nodiscard]] wrench push_of(const linear_contact& contact, std::span<const body_way> ways = {}) const noexcept {
     if (contact.planes.empty()) return evaluate(contact, probe_.state().T_wc).on_probe_w;
     mat6 springs;
     for (std::size_t i = 0; i < 6; ++i) {
       springs(i, i) = i < 3 ? coupling_.stiffness_n_per_m() : coupling_.stiffness_n_m_per_rad();
     }
     const vec6 moved = pose_difference(probe_.state().T_wc, contact.T_wc);
-    return balance_of(springs, {}, contact.planes, moved, laws_).on_probe_w;
+    const carried_contact carried(contact, ways);
+    if (!carried.moves()) return balance_of(springs, {}, contact.planes, moved, laws_).on_probe_w;
+    support_planes planes;
+    body_velocities none;
+    carried.at(probe_.state().T_wc, 0.0, 0.0, planes, none);
+    return balance_of(springs, {}, planes, moved, laws_).on_probe_w;
   }
 
   /// What the hand feels of the coupling: minus its wrench on the probe, world axes, about target().position.
@@ -120,6 +140,10 @@ class probe_motion {
   [[nodiscard]] const contact_solution& pressed() const noexcept { return pressed_; }
   /// What rubs, and its energy.
   [[nodiscard]] const friction& rubbing() const noexcept { return friction_; }
+  /// What bodies felt in the last period, where the contact had planes; the time is the caller's.
+  [[nodiscard]] const felt_bodies& felt() const noexcept { return felt_; }
+  /// Of what the contact knows, the largest share that a body had used up by its own motion at the period's end.
+  [[nodiscard]] double body_share() const noexcept { return body_share_; }
   [[nodiscard]] const asperity::probe& probe() const noexcept { return probe_; }
   [[nodiscard]] const virtual_coupling& coupling() const noexcept { return coupling_; }
 
@@ -144,7 +168,9 @@ class probe_motion {
     return to_twist((1.0 / time_s) * sum);
   }
 
-  [[nodiscard]] status substep(double h_s, const pose& target, const linear_contact& contact) noexcept {
+  [[nodiscard]] status substep(double dt_s, const pose& target, const linear_contact& contact,
+                               const carried_contact& carried, double begun) noexcept {
+    const double h_s = dt_s / substeps_;
     if (contact.planes.empty()) {
       friction_.forget();
       const status s =
@@ -152,10 +178,30 @@ class probe_motion {
       touched_ = evaluate(contact, probe_.state().T_wc);
       return s;
     }
-    const status s = probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, contact.planes,
-                                           {contact.T_wc, contact.known}, laws_, friction_, pressed_);
+    const support_planes* planes = &contact.planes;
+    known_region within{contact.T_wc, contact.known};
+    if (carried.moves()) {
+      carried.at(probe_.state().T_wc, begun, dt_s, carried_, velocities_);
+      planes = &carried_;
+      within.known = carried.known(probe_.state().T_wc, begun);
+    }
+    const status s = probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, *planes, within, laws_,
+                                           friction_, pressed_, {}, velocities_);
     touched_ = {pressed_.on_probe_w + friction_.on_probe_w(), {}, false};
+    feel(*planes);
     return s;
+  }
+
+  // Adds a substep's share of what bodies feel.
+  void feel(const support_planes& planes) noexcept {
+    const double share = 1.0 / substeps_;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+      if (pressed_.lambda_n[i] > 0.0) {
+        felt_.add(planes[i].body, to_wrench(share * pressed_.lambda_n[i] * planes[i].gradient));
+      }
+    }
+    friction_.for_each_body(
+        [&](std::uint32_t body, const wrench& on_probe_w) noexcept { felt_.add(body, -share * on_probe_w); });
   }
 
   /// What the target did in one period.
@@ -176,6 +222,10 @@ class probe_motion {
   bool caught_up_ = true;
   contact_evaluation touched_{};
   contact_solution pressed_{};
+  support_planes carried_{};      // of the substep, where bodies move
+  body_velocities velocities_{};  // of the same
+  felt_bodies felt_{};
+  double body_share_ = 0.0;
 };
 
 }  // namespace asperity

@@ -102,6 +102,17 @@ class real_session {
   /// Timing so far. @pre the session does not run: the threads write without a lock
   [[nodiscard]] const tick_timing& device_timing() const noexcept { return device_timing_; }
   [[nodiscard]] const tick_timing& contact_timing() const noexcept { return contact_timing_; }
+  /// Tells where the bodies are that move; see moving_bodies. Their poses are those of told.time_ns, on the session's
+  /// clock. From one thread. @rt safe
+  void move_bodies(const moving_bodies& told) noexcept {
+    shared_.bodies.back() = told;
+    shared_.bodies.publish();
+  }
+  /// What the bodies felt in the newest device tick. From one thread; lives until its next call. @rt safe
+  [[nodiscard]] const felt_bodies& felt() noexcept {
+    shared_.felt.refresh();
+    return shared_.felt.front();
+  }
   /// A sign of life of the application, from any of its threads. Only these feed control_settings::watchdog_ns.
   void beat() noexcept { shared_.application.beat(); }
   /// The loops. @pre the session does not run

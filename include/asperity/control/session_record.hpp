@@ -29,6 +29,7 @@ struct session_record {
   double overlap_m = 0.0;           ///< of the deepest plane at the beginning of the last substep; 0 without planes
   std::int64_t contact_age_ns = 0;  ///< age of the contact in use; 0 before the first
   double delivered_j = 0.0;         ///< energy delivered to the hand since the start
+  double from_bodies_j = 0.0;       ///< work that moving bodies did on the probe since it was placed
   double surplus_j = 0.0;           ///< what the passivity guard acts on
   double guard_alpha_per_s = 0.0;   ///< damping rate that the guard added
   double guard_scale = 1.0;         ///< factor that the guard put on the wrench

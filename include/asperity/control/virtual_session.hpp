@@ -70,6 +70,17 @@ class virtual_session {
   /// @pre not before the last one
   void next_device_at(std::int64_t at_ns) noexcept { next_device_ns_ = at_ns; }
 
+  /// Tells where the bodies are that move; see moving_bodies. Their poses are those of told.time_ns, on the session's
+  /// clock. From one thread. @rt safe
+  void move_bodies(const moving_bodies& told) noexcept {
+    shared_.bodies.back() = told;
+    shared_.bodies.publish();
+  }
+  /// What the bodies felt in the newest device tick. From one thread; lives until its next call. @rt safe
+  [[nodiscard]] const felt_bodies& felt() noexcept {
+    shared_.felt.refresh();
+    return shared_.felt.front();
+  }
   /// A sign of life of the application. Only these feed control_settings::watchdog_ns.
   void beat() noexcept { shared_.application.beat(); }
   /// Time of the next device tick.

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "asperity/control/linearise.hpp"
+#include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/plane_selection.hpp"
 #include "asperity/control/probe_motion.hpp"
 #include "asperity/core/pose.hpp"
@@ -68,6 +70,23 @@ class virtual_tool {
     return follow(T_wh, dt_s, found, answer, T_wa());
   }
 
+  /// The same where bodies move meanwhile.
+  /// @param moving where they are at the beginning of these dt_s seconds, and how fast they go; the tick was rendered
+  ///               with them there
+  [[nodiscard]] wrench follow(const pose& T_wh, double dt_s, const tick& found, status answer,
+                              std::span<const body_motion> moving) noexcept {
+    moving_.clear();
+    places_.clear();
+    for (const body_motion& m : moving) {
+      if (!moving_.push_back(m)) break;
+      static_cast<void>(places_.push_back({m.body, m.T_wb}));
+    }
+    const wrench felt = follow(T_wh, dt_s, found, answer, T_wa());
+    moving_.clear();
+    places_.clear();
+    return felt;
+  }
+
   /// The same for a tick that was rendered earlier, at T_wa_then.
   [[nodiscard]] wrench follow(const pose& T_wh, double dt_s, const tick& found, status answer,
                               const pose& T_wa_then) noexcept {
@@ -78,8 +97,12 @@ class virtual_tool {
     const pose then_T_wc = T_wa_then * inverse(T_ca_);
     coupling_pull pull = motion_.coupling().pull(T_wh * T_hc_, then_T_wc);
     pull.on_probe_w += motion_.rubbing().on_probe_w();
-    linearise(found, answer, {then_T_wc, 0, pull}, settings_.selection, rest_, contact_);
-    last_ = motion_.move(std::min(dt_s, settings_.longest_step_s), T_wh * T_hc_, 1.0, contact_);
+    const double step_s = std::min(dt_s, settings_.longest_step_s);
+    linearise(found, answer, {.T_wc = then_T_wc, .pull = pull, .bodies = places_}, settings_.selection, rest_,
+              contact_);
+    body_ways ways;
+    for (const body_motion& m : moving_) static_cast<void>(ways.push_back(way_of(m, step_s)));
+    last_ = motion_.move(step_s, T_wh * T_hc_, 1.0, contact_, ways);
     const wrench felt = transport(motion_.on_hand_w(), motion_.target().position, T_wh.position);
     if (last_ == status::ok && !is_finite(felt)) last_ = status::not_finite;
     return last_ == status::ok ? felt : wrench{};
@@ -97,6 +120,8 @@ class virtual_tool {
   pose T_ca_;
   probe_motion motion_;
   rest_prediction rest_;
+  fixed_vector<body_motion, most_moving_bodies> moving_;
+  body_places places_;
   linear_contact contact_{};
   status last_ = status::not_ready;
 };

@@ -16,19 +16,20 @@ namespace asperity {
 /// The depth at another pose q near it is depth_m + gradient . (q - q0), q = (translation of c_A; rotation vector).
 /// All planes together are the depth of the pair: the largest of them. World axes.
 struct support_plane {
-  double depth_m = 0.0;      ///< directional penetration depth at q0; negative: a gap
-  vec6 gradient{};           ///< of the depth by the probe's motion about c_A, m/m and m/rad
-  vec3 n_ab_w{0.0};          ///< direction of the contact: unit, from the probe A to the body B
-  vec3 r_w{0.0};             ///< from c_A to the point that the plane stands for, m
-  double spread_m = 0.0;     ///< radius across n_ab_w of the surface that the plane stands for, m
-  std::uint32_t body = 0;    ///< index of B in scene::fixed
-  std::uint32_t sample = 0;  ///< planes of one body with the same number stand for the same point; 0: not known
+  double depth_m = 0.0;          ///< directional penetration depth at q0; negative: a gap
+  vec6 gradient{};               ///< of the depth by the probe's motion about c_A, m/m and m/rad
+  vec3 n_ab_w{0.0};              ///< direction of the contact: unit, from the probe A to the body B
+  vec3 r_w{0.0};                 ///< from c_A to the point that the plane stands for, m
+  double spread_m = 0.0;         ///< radius across n_ab_w of the surface that the plane stands for, m
+  std::uint32_t body = 0;        ///< index of B in scene::fixed
+  std::uint32_t sample = 0;      ///< planes of one body with the same number stand for the same point; 0: not known
+  double closing_m_per_s = 0.0;  ///< how fast the depth grows by the body's own motion; 0 for a body at rest
 };
 
 /// @rt safe
 [[nodiscard]] inline bool is_finite(const support_plane& p) noexcept {
   return std::isfinite(p.depth_m) && is_finite(p.gradient) && is_finite(p.n_ab_w) && is_finite(p.r_w) &&
-         std::isfinite(p.spread_m);
+         std::isfinite(p.spread_m) && std::isfinite(p.closing_m_per_s);
 }
 
 /// How far the probe may move from the pose of a tick: while share() is at most 1, it meets no surface but that of the

@@ -21,6 +21,9 @@ enum class tick_flag : std::uint8_t {
   unbalanced = 16,  ///< the contact solver left more than most_unbalanced_n, or found no solution; device ticks only
   /// A body was pressed without friction, because as many as can be rubbed on at once were; device ticks only.
   friction_left_out = 32,
+  /// A moving body was told of no more, or what was told of it is no motion of a body, or there were too many: it stands
+  /// still; device ticks only.
+  body_lost = 64,
 };
 
 /// Overlap beyond which planes do not hold the probe, m: the load of one plane of the usual 200 N/mm is 200 N there.

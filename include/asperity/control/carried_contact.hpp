@@ -1,0 +1,110 @@
+// Support planes that go with the bodies they belong to.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "asperity/control/linear_contact.hpp"
+#include "asperity/control/moving_bodies.hpp"
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+
+namespace asperity {
+
+/// Velocity of the point of a body that is at c_A, and of the body: what the probe would have if it stuck to it.
+struct body_velocity {
+  std::uint32_t body = 0;
+  vec6 about_c_w{};  ///< m/s and rad/s
+};
+using body_velocities = fixed_vector<body_velocity, most_moving_bodies>;
+
+/// The velocity of a body; zero where it does not move. @rt safe
+[[nodiscard]] inline vec6 velocity_of(std::span<const body_velocity> all, std::uint32_t body) noexcept {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const body_velocity& v) { return v.body == body; });
+  return found == all.end() ? vec6{} : found->about_c_w;
+}
+
+/// What moving bodies do to a contact between its pose and a step of the probe.
+///
+/// The depth of a pair of rigid bodies depends on their pose to each other alone. So a plane of a body that has moved by
+/// X (world) since the contact was rendered has, for the probe at T_wc, the depth that it had for X^-1 T_wc; its gradient,
+/// normal and point turn with the body, and the depth grows by minus the gradient times the body's velocity.
+/// Exact for a plane that turns; what a plane is not told of a curved surface is not known here either.
+/// @rt safe
+class carried_contact {
+ public:
+  /// @param contact outlives this
+  /// @param ways    of the bodies in the period; outlive this
+  carried_contact(const linear_contact& contact, std::span<const body_way> ways) noexcept
+      : contact_(&contact), ways_(ways) {}
+
+  /// Whether a body that the contact knows is one that may move. Where none is, the contact stands as it is.
+  [[nodiscard]] bool moves() const noexcept { return !ways_.empty() && !contact_->bodies.empty(); }
+
+  /// Planes for a step that begins with the probe at T_wc, after a part of the period.
+  /// @param dt_s the period's length, s; 0 leaves the velocities at 0
+  void at(const pose& T_wc, double part, double dt_s, support_planes& planes,
+          body_velocities& velocities) const noexcept {
+    planes = contact_->planes;
+    velocities.clear();
+    const vec6 moved = pose_difference(T_wc, contact_->T_wc);
+    for (const body_place& then : contact_->bodies) {
+      const body_way* const way = way_of(then.body);
+      if (way == nullptr) continue;
+      const pose T_wb = way->after(part);
+      vec6 v;
+      if (dt_s > 0.0) {
+        const vec6 of_origin = (1.0 / dt_s) * way->way;
+        v = {of_origin.linear + glm::cross(of_origin.angular, T_wc.position - T_wb.position), of_origin.angular};
+        static_cast<void>(velocities.push_back({then.body, v}));
+      }
+      const pose X = T_wb * inverse(then.T_wb);
+      const vec6 relative = pose_difference(inverse(X) * T_wc, contact_->T_wc);
+      for (support_plane& p : planes) {
+        if (p.body != then.body) continue;
+        const double depth_m = p.depth_m + dot(p.gradient, relative);
+        p.gradient = {X.rotation * p.gradient.linear, X.rotation * p.gradient.angular};
+        p.n_ab_w = X.rotation * p.n_ab_w;
+        p.r_w = X.rotation * p.r_w;
+        p.depth_m = depth_m - dot(p.gradient, moved);
+        p.closing_m_per_s = -dot(p.gradient, v);
+      }
+    }
+  }
+
+  /// How far the probe may go on what the contact knows, after a part of the period. Bodies that come use up some of it,
+  /// but never more than half: a body must not be able to hold the probe by being quick.
+  [[nodiscard]] known_motion known(const pose& T_wc, double part) const noexcept {
+    known_motion out = contact_->known;
+    if (!out.is_limited()) return out;
+    const double left = std::max(0.5, 1.0 - body_share(T_wc, part));
+    out.way_m *= left;
+    out.turn_rad *= left;
+    return out;
+  }
+
+  /// The largest share of what the contact knows that a body has used up by its own motion.
+  [[nodiscard]] double body_share(const pose& T_wc, double part) const noexcept {
+    double most = 0.0;
+    if (!contact_->known.is_limited()) return most;
+    for (const body_place& then : contact_->bodies) {
+      const body_way* const way = way_of(then.body);
+      if (way == nullptr) continue;
+      const pose X = way->after(part) * inverse(then.T_wb);
+      most = std::max(most, contact_->known.share({X * T_wc.position - T_wc.position, log_rotation(X.rotation)}));
+    }
+    return most;
+  }
+
+ private:
+  [[nodiscard]] const body_way* way_of(std::uint32_t body) const noexcept {
+    const auto found = std::find_if(ways_.begin(), ways_.end(), [&](const body_way& w) { return w.body == body; });
+    return found == ways_.end() ? nullptr : &*found;
+  }
+
+  const linear_contact* contact_;
+  std::span<const body_way> ways_;
+};
+
+}  // namespace asperity

@@ -1,0 +1,180 @@
+// Bodies of a scene that do not stand still: what an application tells of them, and where they are in between.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "asperity/core/fixed_vector.hpp"
+#include "asperity/core/pose.hpp"
+#include "asperity/core/spatial.hpp"
+
+namespace asperity {
+
+/// Most bodies of a session that ever move.
+inline constexpr std::size_t most_moving_bodies = 32;
+
+/// Where one body is, and how fast it goes.
+struct body_motion {
+  std::uint32_t body = 0;  ///< index in scene::fixed
+  pose T_wb{};             ///< of the body frame b in the world
+  twist velocity_w{};      ///< of the origin of b, world axes, m/s and rad/s
+};
+
+/// What an application tells of all bodies that move, or have moved, at one time. A body that is not listed any more
+/// stays where it was.
+struct moving_bodies {
+  std::int64_t time_ns = 0;  ///< of the poses, on the session's clock
+  fixed_vector<body_motion, most_moving_bodies> list;
+};
+
+/// Where one body was at a contact's pose.
+struct body_place {
+  std::uint32_t body = 0;
+  pose T_wb{};
+};
+using body_places = fixed_vector<body_place, most_moving_bodies>;
+
+/// The way of one body in one device period: it goes evenly from a pose to another.
+struct body_way {
+  std::uint32_t body = 0;
+  pose from_T_wb{};
+  vec6 way{};  ///< translation of the origin of b, m, and rotation vector about it, rad; world axes
+
+  /// After a part of its way, 0 to 1. @rt safe
+  [[nodiscard]] pose after(double part) const noexcept {
+    return {glm::normalize(exp_rotation(part * way.angular) * from_T_wb.rotation),
+            from_T_wb.position + part * way.linear};
+  }
+};
+using body_ways = fixed_vector<body_way, most_moving_bodies>;
+
+/// The way that a body goes in dt_s seconds. @rt safe
+[[nodiscard]] inline body_way way_of(const body_motion& m, double dt_s) noexcept {
+  return {m.body, m.T_wb, dt_s * to_vec6(m.velocity_w)};
+}
+
+/// Follows the bodies of a session in its device ticks.
+///
+/// An application tells poses when it has them, perhaps at 100 Hz; the device loop needs them at its own rate. Between two
+/// of them a body goes on at the velocity that was told, for longest_guess_ns at most; then it stands still, and is_lost()
+/// says so. Where a new pose is not the one that the old velocity led to, the difference is made up for in the time that
+/// lay between the two, so that a surface makes no step under the hand. A difference of more than snap_m or snap_rad is a
+/// body that was put elsewhere: it is there at once, and has no velocity from it.
+/// @rt safe: no allocation, lock, throw, print or clock
+class body_follower {
+ public:
+  static constexpr std::int64_t longest_guess_ns = 100'000'000;
+  static constexpr double snap_m = 0.01, snap_rad = 0.1;
+  /// Told speeds above these are no body's: the body is not followed. NaN fails too.
+  static constexpr double fastest_m_per_s = 100.0, fastest_rad_per_s = 1000.0;
+
+  /// Takes what was told, at now_ns on the session's clock.
+  void take(const moving_bodies& told, std::int64_t now_ns) noexcept {
+    refused_ = told.list.dropped() > 0;
+    for (followed& f : bodies_) f.is_told = false;
+    for (const body_motion& m : told.list) {
+      followed* const f = is_plausible(m) ? find_or_add(m.body) : nullptr;
+      if (f == nullptr) {
+        refused_ = true;
+        continue;
+      }
+      const pose was_T_wb = f->at(now_ns);
+      f->over_ns = std::clamp<std::int64_t>(now_ns - f->taken_ns, 1'000'000, 50'000'000);
+      f->told = m;
+      f->told_ns = std::min(told.time_ns, now_ns);
+      f->taken_ns = now_ns;
+      f->off = {};
+      const pose led_T_wb = f->at(now_ns);
+      const vec6 off{was_T_wb.position - led_T_wb.position,
+                     log_rotation(was_T_wb.rotation * glm::conjugate(led_T_wb.rotation))};
+      const bool is_elsewhere = glm::length(off.linear) > snap_m || glm::length(off.angular) > snap_rad;
+      if (f->is_new || is_elsewhere) {
+        f->last_T_wb = led_T_wb;
+      } else {
+        f->off = off;
+      }
+      f->is_new = false;
+      f->is_told = true;
+    }
+    for (followed& f : bodies_) {
+      if (!f.is_told) f.stand(now_ns);
+    }
+  }
+
+  /// Where the bodies went since the last call, and where they are at now_ns.
+  void advance(std::int64_t now_ns) noexcept {
+    ways_.clear();
+    places_.clear();
+    lost_ = false;
+    for (followed& f : bodies_) {
+      const pose T_wb = f.at(now_ns);
+      static_cast<void>(ways_.push_back({f.told.body,
+                                         f.last_T_wb,
+                                         {T_wb.position - f.last_T_wb.position,
+                                          log_rotation(T_wb.rotation * glm::conjugate(f.last_T_wb.rotation))}}));
+      static_cast<void>(places_.push_back({f.told.body, T_wb}));
+      f.last_T_wb = T_wb;
+      lost_ = lost_ || (f.moves() && now_ns - f.told_ns > longest_guess_ns);
+    }
+  }
+
+  [[nodiscard]] const body_ways& ways() const noexcept { return ways_; }
+  /// At the end of their ways.
+  [[nodiscard]] const body_places& places() const noexcept { return places_; }
+  /// Whether a body that moves has not been told of for longer than its motion is guessed.
+  [[nodiscard]] bool is_lost() const noexcept { return lost_; }
+  /// Whether something that was told last was no motion of a body, or one body too many.
+  [[nodiscard]] bool refused() const noexcept { return refused_; }
+
+ private:
+  struct followed {
+    body_motion told{};
+    std::int64_t told_ns = 0, taken_ns = 0, over_ns = 1;
+    vec6 off{};  // from where the told motion leads to where the body is, when it was taken; gone after over_ns
+    pose last_T_wb{};
+    bool is_new = true, is_told = false;
+
+    [[nodiscard]] bool moves() const noexcept {
+      const twist& v = told.velocity_w;
+      return glm::dot(v.linear, v.linear) > 0.0 || glm::dot(v.angular, v.angular) > 0.0;
+    }
+    [[nodiscard]] pose at(std::int64_t now_ns) const noexcept {
+      const double s = 1e-9 * static_cast<double>(std::clamp<std::int64_t>(now_ns - told_ns, 0, longest_guess_ns));
+      const double left =
+          std::clamp(1.0 - static_cast<double>(now_ns - taken_ns) / static_cast<double>(over_ns), 0.0, 1.0);
+      const vec3 turned = s * told.velocity_w.angular;
+      return {glm::normalize(exp_rotation(left * off.angular) * exp_rotation(turned) * told.T_wb.rotation),
+              told.T_wb.position + s * told.velocity_w.linear + left * off.linear};
+    }
+    void stand(std::int64_t now_ns) noexcept {
+      told.T_wb = at(now_ns);
+      told.velocity_w = {};
+      told_ns = taken_ns = now_ns;
+      off = {};
+    }
+  };
+
+  [[nodiscard]] static bool is_plausible(const body_motion& m) noexcept {
+    const twist& v = m.velocity_w;
+    return is_valid(m.T_wb) && glm::dot(v.linear, v.linear) <= fastest_m_per_s * fastest_m_per_s &&
+           glm::dot(v.angular, v.angular) <= fastest_rad_per_s * fastest_rad_per_s;
+  }
+
+  [[nodiscard]] followed* find_or_add(std::uint32_t body) noexcept {
+    followed* const known =
+        std::find_if(bodies_.begin(), bodies_.end(), [&](const followed& f) { return f.told.body == body; });
+    if (known != bodies_.end()) return known;
+    followed added;
+    added.told.body = body;
+    return bodies_.push_back(added) ? &bodies_.back() : nullptr;
+  }
+
+  fixed_vector<followed, most_moving_bodies> bodies_;
+  body_ways ways_;
+  body_places places_;
+  bool lost_ = false, refused_ = false;
+};
+
+}  // namespace asperity
