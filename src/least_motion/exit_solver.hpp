@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "asperity/core/memory.hpp"
@@ -41,8 +43,11 @@ class exit_solver {
   exit_solver& operator=(exit_solver&&) noexcept = default;
   ~exit_solver() = default;
 
-  /// @pre one pose per fixed body   @rt safe
-  void solve(const scene_pose& at) noexcept;
+  /// @pre one pose per fixed body
+  /// @param by_body of each fixed body, or empty: its part of the wrench is added. The pivot's part, and what pulls at a
+  /// way out that did not settle, is of the body that holds the deepest sample.
+  /// @rt safe
+  void solve(const scene_pose& at, std::span<wrench> by_body = {}) noexcept;
 
   [[nodiscard]] const wrench& on_probe_w() const noexcept { return wrench_; }
   /// dW/dq; the weights count as fixed.
@@ -59,10 +64,15 @@ class exit_solver {
   [[nodiscard]] posed_samples& posed() noexcept { return finder_.samples(); }
 
   // Adds up the wrench and the stiffness of the ways out that have weight.
-  void add_up() noexcept;
+  void add_up(std::span<wrench> by_body) noexcept;
   // Adds the spring's pull, at the deepest sample, for a way out that did not settle: the bed's push, which equals the
   // pull in balance, may be anything there.
-  void pull_out(const way_out& w) noexcept;
+  void pull_out(const way_out& w, std::span<wrench> by_body) noexcept;
+  // Adds to the wrench, and to what one body does.
+  void push(const wrench& part, std::uint32_t body, std::span<wrench> by_body) noexcept {
+    wrench_ += part;
+    if (body < by_body.size()) by_body[body] += part;
+  }
 
   exit_rule rule_;
   exit_springs springs_;

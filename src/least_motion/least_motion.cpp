@@ -12,7 +12,7 @@
 
 namespace asperity::exits {
 
-void exit_solver::solve(const scene_pose& at) noexcept {
+void exit_solver::solve(const scene_pose& at, std::span<wrench> by_body) noexcept {
   energy_j_ = 0.0;
   wrench_ = {};
   stiffness_ = {};
@@ -20,20 +20,21 @@ void exit_solver::solve(const scene_pose& at) noexcept {
   hit_ = finder_.hit();
   if (!any) return;
   posed().count.most += rule_.most_readings / 4;
-  add_up();
+  add_up(by_body);
   hit_.readings |= posed().count.cut;
 }
 
-void exit_solver::add_up() noexcept {
+void exit_solver::add_up(std::span<wrench> by_body) noexcept {
   energy_j_ = mixed_energy_j(finder_.ways(), springs_);
   unsettled_stiffness_ = {};
   mixed_stiffness stiffness(springs_);
+  const std::uint32_t of_deepest = posed().meeting_of(finder_.deepest()).body;
   for (const way_out& w : finder_.ways()) {
     if (!(w.weight > 0.0)) continue;
     bed_patch& patch = finder_.gathered_at(w.moved());
     const double share = w.weight;
     if (!w.settled) {
-      pull_out(w);
+      pull_out(w, by_body);
       continue;
     }
     way_out_stiffness own;
@@ -54,20 +55,20 @@ void exit_solver::add_up() noexcept {
       for (int i = 0; i < 3; ++i) by_pose += (-turned_slope[i]) * about.centre_by_pose[i];
       const double push_n = bed_.push_n(d.value_m);
       pushed_n += push_n * d.slope;
-      wrench_ += to_wrench((-share * push_n) * by_pose);
+      push(to_wrench((-share * push_n) * by_pose), posed().meeting_of(m).body, by_body);
       own.add(bed_.rise_n_per_m(d.value_m), push_n, {by_pose, d.slope, d.hessian_per_m, arm, rest, lever, of_probe});
     });
-    wrench_ +=
-        to_wrench((-0.5 * share * rule_.stiffness_n_per_m * glm::dot(w.turn_w, w.turn_w)) * about.arm_squared_by_pose);
+    const double turned = -0.5 * share * rule_.stiffness_n_per_m * glm::dot(w.turn_w, w.turn_w);
+    push(to_wrench(turned * about.arm_squared_by_pose), of_deepest, by_body);
     own.add_pivot(about, rule_.stiffness_n_per_m, w.turn_w, pushed_n);
     stiffness.add(share, own);
   }
   stiffness_ = stiffness.sum() + unsettled_stiffness_;
 }
 
-void exit_solver::pull_out(const way_out& w) noexcept {
+void exit_solver::pull_out(const way_out& w, std::span<wrench> by_body) noexcept {
   const vec3 pull_n = (w.weight * springs_.one) * w.z_w, lever = posed().lever_w(finder_.deepest());
-  wrench_ += wrench{pull_n, glm::cross(lever, pull_n)};
+  push({pull_n, glm::cross(lever, pull_n)}, posed().meeting_of(finder_.deepest()).body, by_body);
   const double length = glm::length(w.z_w);
   if (!(length > 0.0)) return;
   const vec3 along = w.z_w / length;
@@ -120,9 +121,9 @@ least_motion::~least_motion() = default;
 
 status least_motion::accumulate(const scene_pose& at, const near_samples&, std::span<const near_plane>,
                                 force_report& out) noexcept {
-  solver_->solve(at);
+  solver_->solve(at, out.by_body);
   report_ways();
-  out = {{solver_->on_probe_w(), solver_->stiffness()}, reported_.contacts(), reported_.depths()};
+  out = {{solver_->on_probe_w(), solver_->stiffness()}, reported_.contacts(), reported_.depths(), out.by_body};
   return solver_->hit().any() ? status::capacity_reached : status::ok;
 }
 

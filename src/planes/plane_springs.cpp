@@ -45,7 +45,7 @@ result<void> check(const plane_spring_settings& s) {
 
 status plane_springs::accumulate(const scene_pose&, const near_samples&, std::span<const near_plane> planes,
                                  force_report& out) noexcept {
-  out = {};
+  out = {.by_body = out.by_body};
   reported_.clear();
   for (const near_plane& deepest : deepest_of_each(planes, settings_.same_direction)) {
     const support_plane& p = deepest.plane;
@@ -64,7 +64,9 @@ status plane_springs::accumulate(const scene_pose&, const near_samples&, std::sp
     c.window.v_w = glm::cross(p.n_ab_w, c.window.u_w);
     reported_.add(c, d);
     if (!(p.depth_m > 0.0)) continue;
-    out.force.on_probe_w += to_wrench((-settings_.stiffness_n_per_m * p.depth_m) * p.gradient);
+    const wrench push = to_wrench((-settings_.stiffness_n_per_m * p.depth_m) * p.gradient);
+    out.force.on_probe_w += push;
+    if (p.body < out.by_body.size()) out.by_body[p.body] += push;
     add_outer(out.force.stiffness, -settings_.stiffness_n_per_m, p.gradient);
   }
   out.contacts = reported_.contacts();

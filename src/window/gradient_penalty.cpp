@@ -18,7 +18,7 @@ double pressed_m(const penetration& p, depth_value value) noexcept {
 
 status gradient_penalty::accumulate(const scene_pose&, const contact_set& contacts, std::span<const penetration> depths,
                                     force_report& out) const noexcept {
-  out = {};
+  out = {.by_body = out.by_body};
   const detail::direction_sameness sameness(settings_.same_direction_rad, settings_.other_direction_rad);
   const auto depth = [this](const penetration& p) noexcept { return pressed_m(p, settings_.value); };
   const auto share_mass = [&](const penetration& p) noexcept { return p.area_m2 * depth(p) * depth(p); };
@@ -37,7 +37,9 @@ status gradient_penalty::accumulate(const scene_pose&, const contact_set& contac
       }
     }
     const double k = settings_.stiffness_n_per_m * own / all;
-    sum.on_probe_w += to_wrench(-k * depth(p) * p.gradient);
+    const wrench push = to_wrench(-k * depth(p) * p.gradient);
+    sum.on_probe_w += push;
+    if (list[i].body < out.by_body.size()) out.by_body[list[i].body] += push;
     add_outer(sum.stiffness, -k, p.gradient);
     sum.stiffness += -k * depth(p) * p.curvature;
   }
@@ -45,7 +47,7 @@ status gradient_penalty::accumulate(const scene_pose&, const contact_set& contac
   for (const double x : sum.stiffness.m) {
     if (!std::isfinite(x)) return status::not_finite;
   }
-  out = {sum, list, depths.first(list.size())};
+  out = {sum, list, depths.first(list.size()), out.by_body};
   return status::ok;
 }
 

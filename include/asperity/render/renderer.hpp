@@ -24,6 +24,7 @@ struct tick {
   std::span<const contact> contacts;      ///< what the force model reports
   std::span<const penetration> depths;    ///< one per contact
   std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
+  std::span<const wrench> on_body;        ///< on each fixed body, about its own centre of mass; empty: not known
   std::span<const support_plane> planes;  ///< gaps included; empty where the depth backend knows none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
   known_motion known{};                   ///< how far the probe may move on what the planes tell
@@ -58,7 +59,8 @@ class basic_renderer {
         depth_(std::move(depth)),
         force_(std::move(force)),
         found_(limits),
-        readings_(limits.readings()) {
+        readings_(limits.readings()),
+        by_body_(scene_.fixed.size()) {
     if constexpr (reports_planes_nearby<Depth>) at_.T_wb.resize(scene_.fixed.size());
   }
 
@@ -80,7 +82,9 @@ class basic_renderer {
 
     const std::span<reading_type> readings = std::span(readings_).first(found_.size());
     if (const status s = depth_.measure(at, found_, readings); s != status::ok) return s;
+    std::fill(by_body_.begin(), by_body_.end(), wrench{});
     force_report report;
+    report.by_body = by_body_;
     const status felt = force_.accumulate(at, found_, readings, report);
     if (felt != status::ok && felt != status::capacity_reached) return felt;
     if (!is_finite(report.force.on_probe_w)) return status::not_finite;
@@ -88,6 +92,7 @@ class basic_renderer {
     out.contacts = report.contacts;
     out.depths = report.depths;
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
+    out.on_body = on_bodies(report.by_body, out.centre_of_mass_w, at);
     out.dropped_contacts = found_.dropped();
     if constexpr (reports_known_motion<Depth>) out.known = depth_.known();
     if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
@@ -129,7 +134,7 @@ class basic_renderer {
         return 0;
       }
     };
-    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, at_) + held(finder_) + held(depth_) +
+    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, by_body_, at_) + held(finder_) + held(depth_) +
            held(force_);
   }
 
@@ -148,12 +153,23 @@ class basic_renderer {
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return 0; }
   };
 
+  // From what each body does to the probe, about c_A, to what it feels itself, about its own centre of mass.
+  [[nodiscard]] std::span<const wrench> on_bodies(std::span<wrench> by_body, const vec3& c_a_w,
+                                                  const scene_pose& at) const noexcept {
+    for (std::size_t b = 0; b < by_body.size(); ++b) {
+      if (is_zero(by_body[b])) continue;
+      by_body[b] = -1.0 * transport(by_body[b], c_a_w, at.T_wb[b] * scene_.fixed[b]->mass.centre_of_mass);
+    }
+    return by_body;
+  }
+
   asperity::scene scene_;
   [[no_unique_address]] Finder finder_;
   [[no_unique_address]] Depth depth_;
   [[no_unique_address]] Force force_;
   found_type found_;
   std::vector<reading_type> readings_;
+  std::vector<wrench> by_body_;
   [[no_unique_address]] std::conditional_t<reports_planes_nearby<Depth>, kept_poses, nothing> at_;
 };
 

@@ -117,6 +117,42 @@ TYPED_TEST_P(RendererContract, TheSameMotionGivesTheSameBits) {
   EXPECT_GE(felt, 3);
 }
 
+// The bodies feel together what the probe feels, and only what touches feels anything.
+TYPED_TEST_P(RendererContract, TellsWhatEachBodyFeels) {
+  typename TestFixture::poses draw("renderer contract, bodies");
+  any_renderer feel = TypeParam::make(this->bodies());
+  std::array<int, 2> felt{};
+  const auto centre_w = [&](std::size_t b, const pose& T_wb) {
+    return T_wb * this->bodies().fixed[b]->mass.centre_of_mass;
+  };
+  for (int i = 0; i < 20; ++i) {
+    pose T_wa = draw.next();
+    if (i % 2 == 0) T_wa = {quat(1, 0, 0, 0), {0.021, T_wa.position.y, 0.0148}};  // on both
+    tick t;
+    const std::vector<pose> fixed{pose{}, {quat(1, 0, 0, 0), {0.04, 0.0, 0.001}}};
+    static_cast<void>(feel.step({T_wa, fixed}, t));
+    ASSERT_EQ(t.on_body.size(), 2U);
+    wrench sum = t.force.on_probe_w;
+    for (std::size_t b = 0; b < 2; ++b) sum += transport(t.on_body[b], centre_w(b, fixed[b]), t.centre_of_mass_w);
+    const double size_n = glm::length(t.force.on_probe_w.force);
+    EXPECT_LE(glm::length(sum.force), 1e-12 * size_n);
+    EXPECT_LE(glm::length(sum.torque), 1e-12 * size_n);
+    // Each alone: the other is out of reach.
+    for (std::size_t b = 0; b < 2; ++b) {
+      std::vector<pose> apart = fixed;
+      apart[1 - b].position.z = -1.0;
+      static_cast<void>(feel.step({T_wa, apart}, t));
+      const wrench expected = -1.0 * transport(t.force.on_probe_w, t.centre_of_mass_w, centre_w(b, apart[b]));
+      EXPECT_LE(glm::length(t.on_body[b].force - expected.force), 1e-12 * glm::length(expected.force));
+      EXPECT_LE(glm::length(t.on_body[b].torque - expected.torque), 1e-12 * glm::length(expected.force));
+      EXPECT_TRUE(is_zero(t.on_body[1 - b]));
+      felt[b] += is_zero(expected) ? 0 : 1;
+    }
+  }
+  EXPECT_GE(felt[0], 3);
+  EXPECT_GE(felt[1], 3);
+}
+
 TYPED_TEST_P(RendererContract, StiffnessIsSymmetricAndNegativeSemidefinite) {
   typename TestFixture::poses draw("renderer contract, stiffness");
   std::mt19937_64 bits(test_support::fresh_seed("renderer contract, directions", "100 directions"));
@@ -176,7 +212,8 @@ TYPED_TEST_P(RendererContract, ItsMemoryStaysTheSame) {
 }
 
 REGISTER_TYPED_TEST_SUITE_P(RendererContract, FeelsNothingFarAway, PushesBackHarderTheDeeperItIs,
-                            TheSameMotionGivesTheSameBits, StiffnessIsSymmetricAndNegativeSemidefinite,
-                            WhatIsNoPoseLeavesAZero, ItsMemoryStaysTheSame);
+                            TheSameMotionGivesTheSameBits, TellsWhatEachBodyFeels,
+                            StiffnessIsSymmetricAndNegativeSemidefinite, WhatIsNoPoseLeavesAZero,
+                            ItsMemoryStaysTheSame);
 
 }  // namespace asperity
