@@ -1,6 +1,7 @@
 // asperity query: contacts, depths and the wrench at one pair of poses.
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "cli.hpp"
 #include "exact/exact_renderer.hpp"
@@ -9,6 +10,7 @@
 #include "poses.hpp"
 #include "render_kinds.hpp"
 #include "render_options.hpp"
+#include "run_start.hpp"
 #include "scene_loading.hpp"
 #include "text.hpp"
 
@@ -17,9 +19,9 @@ namespace {
 
 struct query_command {
   std::string probe;
-  std::string fixed;
+  std::vector<std::string> fixed;
   std::string probe_pose;
-  std::string fixed_pose = "0 0 0 0 0 0 1";
+  std::vector<std::string> fixed_poses;
   render_options render;
 };
 
@@ -44,7 +46,8 @@ json to_json(const vec6& v) {
 
 json contact_json(const contact& c, const penetration& p) {
   const contact_window& w = c.window;
-  return {{"p_a", command::to_json(c.p_a_w)},
+  return {{"body", c.body},
+          {"p_a", command::to_json(c.p_a_w)},
           {"p_b", command::to_json(c.p_b_w)},
           {"n_ab", command::to_json(w.n_ab_w)},
           {"centre", command::to_json(w.centre_w)},
@@ -90,10 +93,15 @@ answer report(const query_command& options, any_renderer& feel, const tick& foun
     if (const auto most_m = depth_at_most_m(feel, i)) contacts.back()["depth_at_most"] = *most_m;
     out.text += contact_text(i, found.contacts[i], found.depths[i]);
   }
+  json bodies = json::array();
+  for (const wrench& b : found.on_body) {
+    bodies.push_back({{"force", command::to_json(b.force)}, {"torque", command::to_json(b.torque)}});
+  }
   const wrench& w = found.force.on_probe_w;
   out.document = {{"contacts", std::move(contacts)},
                   {"force", command::to_json(w.force)},
                   {"torque", command::to_json(w.torque)},
+                  {"bodies", std::move(bodies)},
                   {"centre_of_mass", command::to_json(found.centre_of_mass_w)},
                   {"stiffness", found.force.stiffness.m},
                   {"backend", options.render.backend},
@@ -118,10 +126,10 @@ answer report(const query_command& options, any_renderer& feel, const tick& foun
 result<answer> query(const query_command& options, const common_options& common) {
   const result<pose> T_wa = read_pose("--probe-pose", options.probe_pose);
   if (!T_wa) return T_wa.error();
-  const result<pose> T_wb = read_pose("--fixed-pose", options.fixed_pose);
+  const result<std::vector<pose>> T_wb = read_fixed_poses(options.fixed_poses, options.fixed.size());
   if (!T_wb) return T_wb.error();
   if (const result<void> ok = check(options.render); !ok) return ok.error();
-  result<scene> bodies = load_scene(options.probe, {options.fixed}, options.render.allow_scale_mismatch);
+  result<scene> bodies = load_scene(options.probe, options.fixed, options.render.allow_scale_mismatch);
   if (!bodies) return bodies.error();
   result<any_renderer> made = make_chosen_renderer(std::move(bodies).value(), options.render);
   if (!made) return made.error();
@@ -129,7 +137,7 @@ result<answer> query(const query_command& options, const common_options& common)
   const std::shared_ptr<gpu_use> gpu = gpu_use_of(*made);
   if (gpu && !common.quiet) warn(*gpu);
   tick found;
-  const status answered = made->step({*T_wa, {&*T_wb, 1}}, found);
+  const status answered = made->step({*T_wa, *T_wb}, found);
   if (answered == status::backend_failed && gpu) return gpu_failed(*gpu);
   if (answered != status::ok && answered != status::capacity_reached) {
     return error{error_code::unsupported, std::string("the contact could not be computed at these poses (") +
@@ -145,13 +153,17 @@ void add_query(command_line& line) {
   CLI::App& sub = line.add("query", "Compute contacts and the wrench at given poses",
                            [o](const common_options& common) { return query(*o, common); });
   sub.add_option("--probe", o->probe, "Textured model that moves (.glb)")->required();
-  sub.add_option("--fixed", o->fixed, "Textured model that stays (.glb)")->required();
+  sub.add_option("--fixed", o->fixed, "Textured model that stays (.glb); may be given several times")
+      ->required()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub.add_option("--probe-pose", o->probe_pose, "Pose of the probe in the world, \"x y z qx qy qz qw\" (m)")
       ->required()
       ->check(pose_form_error, "POSE");
-  sub.add_option("--fixed-pose", o->fixed_pose, "Pose of the fixed body in the world")
+  sub.add_option("--fixed-pose", o->fixed_poses, "Pose of each fixed body, in their order; the origin by default")
       ->check(pose_form_error, "POSE")
-      ->capture_default_str();
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_render_options(sub, o->render, {"least-motion", "window"});
 }
 

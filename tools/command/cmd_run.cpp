@@ -55,6 +55,10 @@ result<void> check_options(const run_command& options) {
     return error{error_code::invalid_argument,
                  "--friction is of support planes: leave it out, or use --contacts planes"};
   }
+  if (!options.moves.empty() && formulation_name(options.render) != "planes") {
+    return error{error_code::invalid_argument,
+                 "--move is for support planes, which go with their bodies: leave it out, or use --contacts planes"};
+  }
   const double longest_recorded_s = most_recorded_ticks / options.device_rate_hz;
   if (!options.record_device.empty() && options.seconds.value_or(usual_seconds) > longest_recorded_s) {
     return error{error_code::invalid_argument, "--record-device holds " + brief(longest_recorded_s) +
@@ -125,6 +129,24 @@ result<std::optional<pose>> start_of_handle(const run_command& options, const fe
   return std::optional(*T_dh);
 }
 
+// The motions of --move, and where their bodies begin.
+result<void> read_moves(const run_command& options, std::vector<pose>& T_wb, std::vector<body_script>& out) {
+  for (const std::string& text : options.moves) {
+    result<body_script> move = body_script::read(text, options.fixed.size());
+    if (!move) return move.error();
+    for (const body_script& other : out) {
+      if (other.body() != move->body()) continue;
+      return error{error_code::invalid_argument,
+                   "--move names body " + std::to_string(move->body() + 1) + " twice: one motion for each body"};
+    }
+    T_wb[move->body()] = move->begins_at(T_wb[move->body()]);
+    out.push_back(std::move(move).value());
+  }
+  if (out.size() <= most_moving_bodies) return {};
+  return error{error_code::limit_exceeded,
+               "--move is for " + std::to_string(most_moving_bodies) + " bodies at the most"};
+}
+
 // The first tick on a GPU compiles; the session shall not wait for that. Afterwards the thread of the contact loop
 // takes the context.
 result<void> make_ready(any_renderer& feel, const gpu_use& gpu, const given_poses& poses) {
@@ -167,6 +189,8 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (!poses) return poses.error();
   result<session_files> files = session_files::open(options);
   if (!files) return files.error();
+  std::vector<body_script> moves;
+  if (const result<void> read = read_moves(options, poses->T_wb, moves); !read) return read.error();
   session_rescue rescue;
   driver_watch watch;
   // These see the device's end, too.
@@ -237,6 +261,7 @@ result<answer> run_session(const run_command& options, const common_options& com
        .placement = {poses->T_wb, shape.centre_of_mass},
        .device = std::move(device),
        .control = control,
+       .moves = std::move(moves),
        .clock = clock_of(options) == "real" ? session_clock::real_time : session_clock::virtual_time,
        .seconds =
            options.seconds.value_or(felt.replay ? felt.replay->seconds(periods_of(options).device_ns) : usual_seconds),
@@ -323,6 +348,12 @@ void add_run(command_line& line) {
          "Coefficients of friction on support planes, STATIC or STATIC,DYNAMIC: 0.6,0.4; by default those of the "
          "models' materials, or none")
       ->check(friction_error, "MU[,MU]");
+  sub.add_option("--move", o->moves,
+                 "How a fixed body moves: conveyor=SPEED[,WAY] (m/s, m), pendulum=DEGREES,SECONDS, turntable=RPM, or "
+                 "FILE.csv of poses; N: in front for the N-th body; may be given several times")
+      ->check(body_script_error, "MOTION")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   sub.add_option(
          "--clock", o->clock,
          "virtual: reproducible, as fast as it goes, the default of the simulated device and of a replay; real: two "

@@ -29,6 +29,7 @@ struct run_command {
   double contact_rate_hz = 1000.0;
   std::optional<double> coupling_n_per_m, coupling_n_m_per_rad;  // what fits device and contacts
   std::string friction;                                          // see friction_of(); empty: none
+  std::vector<std::string> moves;                                // see body_script::read()
   std::string clock;                                             // empty: what fits the device
   std::string firmware;
   driver_choice drivers;

@@ -188,7 +188,8 @@ answer report(const run_command& options, const session_findings& found) {
                   {"lookup", lookup_json(options.render)},
                   {"coupling", command::to_json(coupling, probe)},
                   {"friction", friction_json(options)},
-                  {"surfaces", surfaces_json(surfaces)}};
+                  {"surfaces", surfaces_json(surfaces)},
+                  {"moves", options.moves}};
   out.document.update(summary.to_json());
   out.document["contact_loop"] = loop_json(options.contact_rate_hz, ended.contact, contact);
   out.document["rate_check"] = rate ? command::to_json(*rate) : json();
@@ -222,6 +223,7 @@ answer report(const run_command& options, const session_findings& found) {
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (surfaces[i]) out.text += row("surfaces", printable(file_stem(options.fixed[i])) + ": " + to_text(*surfaces[i]));
   }
+  for (const std::string& move : options.moves) out.text += row("moves", printable(move));
   out.text += row("contact loop", loop_text(options.contact_rate_hz, ended.contact, contact, real_time));
   out.text += row("device loop", loop_text(options.device_rate_hz, ended.device, device, real_time));
   out.text += row("rates", rates_text(ended.rates));

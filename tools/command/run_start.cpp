@@ -21,20 +21,27 @@ std::int64_t steady_ns() {
 
 }  // namespace
 
-result<given_poses> read_poses(const run_command& options) {
-  if (options.fixed_poses.size() > options.fixed.size()) {
+result<std::vector<pose>> read_fixed_poses(const std::vector<std::string>& texts, std::size_t count) {
+  if (texts.size() > count) {
     return error{error_code::invalid_argument, "there are more --fixed-pose than --fixed: give at most one for each"};
   }
-  given_poses out{std::nullopt, std::vector<pose>(options.fixed.size())};
+  std::vector<pose> out(count);
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const result<pose> T_wb = read_pose("--fixed-pose", texts[i]);
+    if (!T_wb) return T_wb.error();
+    out[i] = *T_wb;
+  }
+  return out;
+}
+
+result<given_poses> read_poses(const run_command& options) {
+  result<std::vector<pose>> T_wb = read_fixed_poses(options.fixed_poses, options.fixed.size());
+  if (!T_wb) return T_wb.error();
+  given_poses out{std::nullopt, std::move(T_wb).value()};
   if (!options.probe_pose.empty()) {
     const result<pose> T_wa = read_pose("--probe-pose", options.probe_pose);
     if (!T_wa) return T_wa.error();
     out.T_wa = *T_wa;
-  }
-  for (std::size_t i = 0; i < options.fixed_poses.size(); ++i) {
-    const result<pose> T_wb = read_pose("--fixed-pose", options.fixed_poses[i]);
-    if (!T_wb) return T_wb.error();
-    out.T_wb[i] = *T_wb;
   }
   return out;
 }

@@ -18,6 +18,10 @@ struct given_poses {
   std::vector<pose> T_wb;
 };
 
+/// Poses of `count` fixed bodies, in their order; the origin where none is given.
+/// @return invalid_argument
+[[nodiscard]] result<std::vector<pose>> read_fixed_poses(const std::vector<std::string>& texts, std::size_t count);
+
 /// @return invalid_argument
 [[nodiscard]] result<given_poses> read_poses(const run_command& options);
 

@@ -20,29 +20,6 @@
 namespace asperity::command {
 namespace {
 
-// A renderer with a stopwatch around it, so that no tick has to read a clock itself.
-class timed_renderer {
- public:
-  timed_renderer(any_renderer feel, std::vector<double>& seconds) : feel_(std::move(feel)), seconds_(&seconds) {}
-
-  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
-    const double begin = cpu_seconds();
-    const status s = feel_.step(at, out);
-    const double taken = cpu_seconds() - begin;
-    taken_ += taken;
-    if (seconds_->size() < seconds_->capacity()) seconds_->push_back(taken);
-    return s;
-  }
-
-  /// Time in step() since the last call.
-  [[nodiscard]] double take_taken() noexcept { return std::exchange(taken_, 0.0); }
-
- private:
-  any_renderer feel_;
-  std::vector<double>* seconds_;
-  double taken_ = 0.0;
-};
-
 struct keep_last {
   session_record* last;
   void operator()(const session_record& record) const noexcept { *last = record; }
@@ -70,6 +47,28 @@ void keep_fault(const output_gate& gate, std::int64_t origin_ns, session_outcome
   for (std::size_t i = 0; i < gate.flight().size(); ++i) out.last_ticks.push_back(gate.flight()[i]);
   for (flight_entry& e : out.last_ticks) e.time_ns -= origin_ns;
 }
+
+// Tells a session where its bodies are.
+class told_bodies {
+ public:
+  told_bodies(const std::vector<body_script>& moves, const scene_placement& placement)
+      : moves_(&moves), T_wb_(placement.T_wb) {}
+
+  template <class Session>
+  void tell(Session& session, std::int64_t now_ns, std::int64_t origin_ns) const {
+    if (moves_->empty()) return;
+    moving_bodies told;
+    told.time_ns = now_ns;
+    for (const body_script& m : *moves_) {
+      static_cast<void>(told.list.push_back(m.at(1e-9 * static_cast<double>(now_ns - origin_ns), T_wb_[m.body()])));
+    }
+    session.move_bodies(told);
+  }
+
+ private:
+  const std::vector<body_script>* moves_;
+  std::vector<pose> T_wb_;
+};
 
 // When the device ticks of a virtual session are, in its own time and on the clock.
 class tick_times {
@@ -110,23 +109,35 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
   const std::uint64_t device_ticks = times.ticks();
   const double contact_ticks = setup.seconds * 1e9 / static_cast<double>(periods.contact_ns);
   out.device.seconds.reserve(device_ticks);
-  out.contact.seconds.reserve(static_cast<std::size_t>(std::ceil(contact_ticks)) + 1);
+  const std::size_t contact_room = static_cast<std::size_t>(std::ceil(contact_ticks)) + 1;
+  out.contact.seconds.reserve(contact_room);
 
   session_record last;
   const virtual_schedule schedule{.start_ns = times.origin_ns(),
                                   .device_period_ns = periods.device_ns,
                                   .contact_period_ns = periods.contact_ns,
                                   .contact_one_period_late = setup.contact_one_period_late};
-  virtual_session session(timed_renderer(std::move(setup.feel), out.contact.seconds), setup.placement, dev,
-                          setup.control, schedule, keep_last{&last});
+  virtual_session session(std::move(setup.feel), setup.placement, dev, setup.control, schedule, keep_last{&last});
+  const told_bodies bodies(setup.moves, setup.placement);
   std::optional<error> failed;
   std::exception_ptr thrown;
-  const auto step = [&] {
+  // Neither loop reads a clock itself.
+  const auto seconds_of = [](auto&& run) {
     const double begin = cpu_seconds();
+    run();
+    return cpu_seconds() - begin;
+  };
+  const auto step = [&] {
     if (const std::optional<std::int64_t> at_ns = times.at(session.device_ticks())) session.next_device_at(*at_ns);
     session.beat();
-    static_cast<void>(session.step());
-    const double taken = cpu_seconds() - begin - session.contact().renderer().take_taken();
+    bodies.tell(session, session.now_ns(), times.origin_ns());
+    for (bool ran = true; ran;) {
+      const std::uint64_t before = session.contact().computed();
+      const double taken = seconds_of([&] { ran = session.step_contact(); });
+      const bool kept = session.contact().computed() != before && out.contact.seconds.size() < contact_room;
+      if (kept) out.contact.seconds.push_back(taken);
+    }
+    const double taken = seconds_of([&] { static_cast<void>(session.step()); });
     if (out.device.seconds.size() < device_ticks) out.device.seconds.push_back(taken);
     if (failed) return;
     last.time_ns -= times.origin_ns();
@@ -242,6 +253,8 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   };
   const rescue_line line(rescue, take_records);
   const memory_lock locked;
+  const told_bodies bodies(setup.moves, setup.placement);
+  const std::int64_t began_ns = real_session<any_renderer, any_device>::clock_ns();
   const auto begin = std::chrono::steady_clock::now();
   bool reported = !setup.on_start;
   threads_set_up = 0;
@@ -250,6 +263,7 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     drain();
     session.beat();
+    bodies.tell(session, decltype(session)::clock_ns(), began_ns);
     if (!reported && threads_set_up == 2) {
       setup.on_start(grants_of(locked));
       reported = true;

@@ -12,6 +12,7 @@
 #include "asperity/control/real_time_thread.hpp"
 #include "asperity/device/any_device.hpp"
 #include "asperity/render/any_renderer.hpp"
+#include "body_script.hpp"
 #include "driver_guard.hpp"
 #include "progress.hpp"
 
@@ -50,6 +51,7 @@ struct session_setup {
   scene_placement placement{};
   any_device device;  ///< open and not armed; a simulated or recorded one where the clock is virtual
   control_settings control{};
+  std::vector<body_script> moves{};  ///< of bodies that do not stand where the placement puts them
   session_clock clock = session_clock::virtual_time;
   double seconds = 3.0;
   loop_periods periods{};

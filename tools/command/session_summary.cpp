@@ -84,6 +84,7 @@ void session_summary::add(const session_record& tick) noexcept {
   hand_force_.add(tick.on_hand_d.force);
   hand_torque_.add(tick.on_hand_d.torque);
   delivered_j_ = tick.delivered_j;
+  from_bodies_j_ = tick.from_bodies_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
   wall_.add(tick);
   vibration_.observe(tick.time_ns, tick.T_dh, tick.on_hand_d);
@@ -103,7 +104,10 @@ json session_summary::to_json() const {
           {"hand_force", range_json(hand_force_)},
           {"hand_torque", range_json(hand_torque_)},
           {"energy",
-           {{"delivered_to_hand", delivered_j_}, {"largest_surplus", surplus_max_j_}, {"guarded_ticks", guarded_}}},
+           {{"delivered_to_hand", delivered_j_},
+            {"from_bodies", from_bodies_j_},
+            {"largest_surplus", surplus_max_j_},
+            {"guarded_ticks", guarded_}}},
           {"wall", wall_.to_json()},
           {"vibration", vibration_json(vibration_.report(), device_period_ns_)}};
 }
@@ -121,6 +125,7 @@ std::string session_summary::to_text() const {
   out += row("torque on the hand", range_text(hand_torque_, "mN m", 1e3));
   out += row("energy", brief(1e3 * delivered_j_) + " mJ to the hand, surplus at most " + brief(1e3 * surplus_max_j_) +
                            " mJ; the guard acted in " + std::to_string(guarded_) + " ticks");
+  if (from_bodies_j_ != 0.0) out += row("moving bodies", "gave " + brief(1e3 * from_bodies_j_) + " mJ to the probe");
   out += row("vibration at rest", vibration_text(vibration_));
   return out;
 }

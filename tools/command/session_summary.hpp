@@ -58,6 +58,7 @@ class session_summary {
   double depth_max_m_ = 0.0;
   vector_range probe_force_, probe_torque_, hand_force_, hand_torque_;
   double delivered_j_ = 0.0;
+  double from_bodies_j_ = 0.0;
   double surplus_max_j_ = 0.0;
   std::uint64_t guarded_ = 0;
   vibration_monitor vibration_;

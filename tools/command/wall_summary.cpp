@@ -15,7 +15,7 @@ struct flag_words {
   const char* change;
 };
 
-constexpr std::array<flag_words, 6> words{{
+constexpr std::array<flag_words, wall_summary::flags> words{{
     {tick_flag::beyond_field, "beyond_field", "the probe was deeper than the depth fields can answer",
      "press less, or raise the contact rate"},
     {tick_flag::passed, "passed", "the probe went half way through a body or out on its far side",
@@ -28,6 +28,8 @@ constexpr std::array<flag_words, 6> words{{
      "lower the coupling's stiffness"},
     {tick_flag::friction_left_out, "friction_left_out", "more bodies were pressed than can have friction at once",
      "touch fewer bodies at once"},
+    {tick_flag::body_lost, "body_lost", "a moving body was told of too late, or not as a motion, and stood still",
+     "tell of it ten times a second or more often, with poses of unit quaternions"},
 }};
 
 std::string first_text(std::int64_t first_ns) { return brief(1e-9 * static_cast<double>(first_ns)) + " s"; }

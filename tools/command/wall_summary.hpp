@@ -13,6 +13,8 @@ namespace asperity::command {
 /// Counts the flags of device ticks. Constant size.
 class wall_summary {
  public:
+  static constexpr std::size_t flags = 7;
+
   void add(const session_record& tick) noexcept;
 
   /// Null where no tick had a support plane: other contacts are not watched.
@@ -27,7 +29,7 @@ class wall_summary {
     std::int64_t first_ns = 0;
   };
 
-  std::array<count, 6> counts_{};
+  std::array<count, flags> counts_{};
   bool has_planes_ = false;
   double overlap_max_m_ = 0.0;
 };

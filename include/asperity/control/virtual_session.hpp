@@ -46,17 +46,24 @@ class virtual_session {
   /// Runs up to the next device tick and through it. @return that tick's status
   /// @rt as safe as renderer and device
   status step() noexcept {
-    while (next_contact_ns_ <= next_device_ns_) {
-      if (schedule_.contact_one_period_late) contact_.publish();
-      contact_status_ = contact_.compute(next_contact_ns_);
-      if (!schedule_.contact_one_period_late) contact_.publish();
-      next_contact_ns_ += schedule_.contact_period_ns;
-      ++contact_ticks_;
-    }
+    while (step_contact()) continue;
     const status s = device_.tick(next_device_ns_);
     next_device_ns_ += schedule_.device_period_ns;
     ++device_ticks_;
     return s;
+  }
+
+  /// Runs the next contact tick, where one comes before the next device tick. For whoever times the two loops apart:
+  /// step() runs those that are left. @return whether there was one
+  /// @rt as safe as the renderer
+  bool step_contact() noexcept {
+    if (next_contact_ns_ > next_device_ns_) return false;
+    if (schedule_.contact_one_period_late) contact_.publish();
+    contact_status_ = contact_.compute(next_contact_ns_);
+    if (!schedule_.contact_one_period_late) contact_.publish();
+    next_contact_ns_ += schedule_.contact_period_ns;
+    ++contact_ticks_;
+    return true;
   }
 
   /// Runs every device tick before until_ns. @return the last status
