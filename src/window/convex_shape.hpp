@@ -10,7 +10,6 @@
 #include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
 #include "asperity/model/coarse_mesh.hpp"
-#include "asperity/model/convex_piece.hpp"
 #include "asperity/model/textured_model.hpp"
 #include "window/mesh_features.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "asperity/model/convex_piece.hpp"
+#include "asperity/model/coarse_mesh.hpp"
 #include "asperity/model/triangle_mesh.hpp"
 #include "bake/stage_monitor.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "asperity/core/status.hpp"
-#include "asperity/model/convex_piece.hpp"
+#include "asperity/model/coarse_mesh.hpp"
 #include "asperity/model/triangle_mesh.hpp"
 #include "bake/stage_monitor.hpp"
 

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 
-#include "asperity/control/felt_bodies.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/virtual_coupling.hpp"

@@ -9,7 +9,6 @@
 
 #include "asperity/control/carried_contact.hpp"
 #include "asperity/control/contact_solver.hpp"
-#include "asperity/control/felt_bodies.hpp"
 #include "asperity/control/friction.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/moving_bodies.hpp"

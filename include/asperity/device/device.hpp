@@ -25,7 +25,6 @@
 
 #include "asperity/core/status.hpp"
 #include "asperity/device/capabilities.hpp"
-#include "asperity/device/command.hpp"
 #include "asperity/device/device_state.hpp"
 #include "asperity/device/sample.hpp"
 

@@ -13,7 +13,6 @@
 #include "asperity/core/export.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/device/capabilities.hpp"
-#include "asperity/device/command.hpp"
 #include "asperity/device/device_state.hpp"
 #include "asperity/device/driver_abi.h"
 #include "asperity/device/sample.hpp"

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "asperity/device/capabilities.hpp"
-#include "asperity/device/command.hpp"
 #include "asperity/device/flight_recorder.hpp"
 #include "asperity/device/gate_function.hpp"
+#include "asperity/device/sample.hpp"
 
 namespace asperity {
 

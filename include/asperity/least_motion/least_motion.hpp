@@ -11,7 +11,6 @@
 #include "asperity/least_motion/least_motion_settings.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/force_model.hpp"
-#include "asperity/render/reported_contacts.hpp"
 
 namespace asperity {
 

@@ -1,4 +1,4 @@
-// The low-resolution geometry that collision detection and the depth windows work on.
+// The low-resolution geometry that collision detection and the depth windows work on, and its convex pieces.
 #pragma once
 
 #include <array>
@@ -37,5 +37,18 @@ struct coarse_mesh {
 [[nodiscard]] inline vec3 area_normal(const std::array<vec3, 3>& c) noexcept {
   return glm::cross(c[1] - c[0], c[2] - c[0]);
 }
+
+/// Convex hull of a connected set of coarse triangles. Every coarse triangle belongs to exactly one piece.
+/// A piece may be flat (a single triangle is common in concave areas): then `hull` triangulates the convex polygon on
+/// the outward side only.
+struct convex_piece {
+  std::vector<vec3> vertices;  ///< hull vertices, body frame, metres
+  std::vector<std::array<std::uint32_t, 3>>
+      hull;                              ///< hull faces: indices into vertices, counter-clockwise from outside
+  std::vector<std::uint32_t> triangles;  ///< coarse triangles that this piece covers
+  bool flat = false;                     ///< all vertices in one plane within the decomposition's tolerance
+
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(vertices, hull, triangles); }
+};
 
 }  // namespace asperity

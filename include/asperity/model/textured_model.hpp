@@ -12,7 +12,6 @@
 #include "asperity/core/status.hpp"
 #include "asperity/model/bake_report.hpp"
 #include "asperity/model/coarse_mesh.hpp"
-#include "asperity/model/convex_piece.hpp"
 #include "asperity/model/haptic_texture.hpp"
 #include "asperity/model/mass_properties.hpp"
 #include "asperity/model/material.hpp"

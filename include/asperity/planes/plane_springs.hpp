@@ -9,7 +9,6 @@
 #include "asperity/core/status.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/force_model.hpp"
-#include "asperity/render/reported_contacts.hpp"
 
 namespace asperity {
 

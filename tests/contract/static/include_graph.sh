@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # include_graph.sh ROOT: which room includes which, by the sources, against the table in docs/explanation/architecture.md.
 # Fails for an include that the table does not allow, for a room that it does not list, for a cycle, and where
-# asperity/asperity.hpp brings more than 71 headers.
+# asperity/asperity.hpp brings more than 70 headers.
 set -euo pipefail
 cd "$1"
 
@@ -55,6 +55,6 @@ declare -A seen=()
 brought asperity/asperity.hpp
 count=$((${#seen[@]} - 1))
 [[ $count -gt 30 ]] || { echo "asperity.hpp seems to bring only $count headers: the search is broken"; exit 1; }
-[[ $count -le 71 ]] || { echo "asperity.hpp brings $count headers of ours, more than 71"; exit 1; }
+[[ $count -le 70 ]] || { echo "asperity.hpp brings $count headers of ours, more than 70"; exit 1; }
 echo "asperity.hpp brings $count headers of ours"
 echo "$(wc -l <<< "$found") includes between $(awk '{ print $1 }' <<< "$found" | sort -u | wc -l) rooms, no cycle"

@@ -22,6 +22,7 @@
 
 #include "support/sanitizers.hpp"
 #include "unit/control/analytic_wall.hpp"
+#include "unit/control/plane_bodies.hpp"
 
 namespace {
 
@@ -58,6 +59,37 @@ TEST(real_session, runs_both_threads_and_comes_to_rest) {
   EXPECT_TRUE(session.device().gate().at_rest());
   EXPECT_EQ(session.device().gate().fault(), gate_fault::stopped);
   EXPECT_EQ(dev.state(), device_state::ready);
+}
+
+// An application tells where a body is and takes what it feels, while both loops run.
+TEST(real_session, takes_moving_bodies_from_another_thread) {
+  simulated_settings hand = touching_hand();
+  hand.motion.T_dh.position.z = 0.011;  // a millimetre above the touch
+  simulated_device dev(hand);
+  ASSERT_TRUE(dev.open() && dev.arm());
+  real_session<test_support::plane_body, simulated_device> session(test_support::block_on_plane(),
+                                                                   {{pose{}}, vec3(0.0)}, dev, control_settings{});
+  session.start();
+  constexpr double speed_m_per_s = 0.1;
+  const std::int64_t begin_ns = decltype(session)::clock_ns();
+  bool was_pressed = false;
+  double told_m = 0.0;
+  // Until it is pressed, and ten seconds at the most: how long a machine takes is its own affair.
+  for (int i = 0; i < 5000 && !(was_pressed && i > 200); ++i) {
+    moving_bodies told;
+    told.time_ns = decltype(session)::clock_ns();
+    told_m = speed_m_per_s * 1e-9 * static_cast<double>(told.time_ns - begin_ns);
+    static_cast<void>(
+        told.list.push_back({0, {quat(1, 0, 0, 0), {told_m, 0.0, 0.0}}, {{speed_m_per_s, 0.0, 0.0}, {}}}));
+    session.move_bodies(told);
+    was_pressed = was_pressed || session.felt().on(0).force.z < -0.1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  session.stop();
+  EXPECT_TRUE(was_pressed);
+  const double seen_m = session.contact().placement().T_wb[0].position.x;
+  EXPECT_GT(seen_m, 0.0);
+  EXPECT_LE(seen_m, told_m + 0.11 * speed_m_per_s);  // guessed for a tenth of a second at the most, after the last news
 }
 
 TEST(real_session, stops_when_it_is_destroyed_and_when_it_never_ran) {

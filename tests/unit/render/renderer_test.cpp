@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "asperity/planes/near_samples.hpp"
-#include "asperity/render/reported_contacts.hpp"
+#include "asperity/render/force_model.hpp"
 
 namespace {
 

@@ -9,7 +9,6 @@
 
 #include "asperity/render/collision_finder.hpp"
 #include "asperity/render/force_model.hpp"
-#include "asperity/render/reported_contacts.hpp"
 #include "asperity/window/convex_piece_finder.hpp"
 
 namespace asperity::baselines {
