@@ -32,6 +32,21 @@ struct tick {
   depth_work work{};                      ///< what it took
 };
 
+namespace detail {
+
+/// From what each body does to the probe, about c_A, to what it feels itself, about its own centre of mass; in place.
+/// @rt safe
+inline std::span<const wrench> as_felt_by_bodies(std::span<wrench> by_body, const vec3& c_a_w, const scene& bodies,
+                                                 const scene_pose& at) noexcept {
+  for (std::size_t b = 0; b < by_body.size(); ++b) {
+    if (is_zero(by_body[b])) continue;
+    by_body[b] = -1.0 * transport(by_body[b], c_a_w, at.T_wb[b] * bodies.fixed[b]->mass.centre_of_mass);
+  }
+  return by_body;
+}
+
+}  // namespace detail
+
 /// Feels the contact between a probe and fixed bodies: collision finder, depth backend and force model in a row.
 ///
 ///     auto made = asperity::make_renderer(scene);            // the default policies
@@ -92,7 +107,7 @@ class basic_renderer {
     out.contacts = report.contacts;
     out.depths = report.depths;
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
-    out.on_body = on_bodies(report.by_body, out.centre_of_mass_w, at);
+    out.on_body = detail::as_felt_by_bodies(report.by_body, out.centre_of_mass_w, scene_, at);
     out.dropped_contacts = found_.dropped();
     if constexpr (reports_known_motion<Depth>) out.known = depth_.known();
     if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
@@ -152,16 +167,6 @@ class basic_renderer {
   struct nothing {
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return 0; }
   };
-
-  // From what each body does to the probe, about c_A, to what it feels itself, about its own centre of mass.
-  [[nodiscard]] std::span<const wrench> on_bodies(std::span<wrench> by_body, const vec3& c_a_w,
-                                                  const scene_pose& at) const noexcept {
-    for (std::size_t b = 0; b < by_body.size(); ++b) {
-      if (is_zero(by_body[b])) continue;
-      by_body[b] = -1.0 * transport(by_body[b], c_a_w, at.T_wb[b] * scene_.fixed[b]->mass.centre_of_mass);
-    }
-    return by_body;
-  }
 
   asperity::scene scene_;
   [[no_unique_address]] Finder finder_;
