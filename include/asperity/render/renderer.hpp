@@ -1,6 +1,7 @@
 // The entry point: three policies, one call per tick.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
 #include <span>
