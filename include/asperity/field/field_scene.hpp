@@ -19,6 +19,7 @@ struct field_settings {
   double margin_m = 0.0;                  ///< of the grid around the body; automatic: 4 % of its diagonal
   std::size_t most_nodes = 4'000'000;     ///< of the smooth part; 4 bytes each
   std::size_t relief_bytes = 40'000'000;  ///< about how much memory the relief may take
+  unsigned threads = 0;  ///< that make it; 0: as many as the machine has. Fields are the same to the bit
 
   friend bool operator==(const field_settings&, const field_settings&) = default;
 };
