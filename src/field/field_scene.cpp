@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "asperity/field/field_body.hpp"
 #include "field/make_body_field.hpp"
 #include "field/surface_samples.hpp"
+#include "field/threads.hpp"
 #include "model/surface_index.hpp"
 
 namespace asperity {
@@ -17,17 +20,26 @@ result<field_body> make_field_body(const textured_model& model, const field_body
     return error{error_code::invalid_argument,
                  "field settings: sample_pitch_m must be a finite length, or 0 for automatic"};
   }
-  result<body_field> field = make_body_field(model, settings.field);
-  if (!field) return field.error();
   constexpr double of_the_diagonal = 0.003;
   const double pitch_m =
       settings.sample_pitch_m > 0.0 ? settings.sample_pitch_m : of_the_diagonal * model.box.diagonal();
-  const detail::surface_index index(model);
-  std::vector<field_sample> samples = detail::surface_samples(model, index, pitch_m).make();
-  if (samples.empty()) {
+  if (const result<void> ok = check_field_model(model, settings.field); !ok) return ok.error();
+  const unsigned threads = detail::resolve_threads(settings.field.threads);
+  std::optional<result<body_field>> field;
+  sample_tree samples;
+  detail::for_each_task(2, threads, [&](std::size_t task) {
+    if (task == 0) {
+      field = make_body_field(model, settings.field);
+    } else {
+      const detail::surface_index index(model);
+      samples = sample_tree(detail::surface_samples(model, index, pitch_m).make(), threads);
+    }
+  });
+  if (!*field) return field->error();
+  if (samples.samples().empty()) {
     return error{error_code::bad_texture, "the model " + model.name + " has no texel that holds a surface point"};
   }
-  return field_body{std::move(field).value(), sample_tree(std::move(samples))};
+  return field_body{std::move(*field).value(), std::move(samples)};
 }
 
 std::size_t field_scene::heap_bytes() const noexcept {
@@ -50,29 +62,35 @@ result<void> check_field_scene(const scene& bodies, const field_scene* made) {
 
 result<field_scene> make_field_scene(const scene& bodies, const field_body_settings& settings) {
   if (!bodies.probe) return error{error_code::invalid_argument, "the scene has no probe: give it a textured model"};
-  const auto make = [&](const model_ptr& model) -> result<field_body_ptr> {
+  // Models that appear several times are made once.
+  std::vector<model_ptr> models{bodies.probe};
+  for (const model_ptr& model : bodies.fixed) {
     if (!model) return error{error_code::invalid_argument, "the scene has a fixed body without a model"};
-    result<field_body> made = make_field_body(*model, settings);
-    if (!made) return made.error();
-    return field_body_ptr(std::make_shared<const field_body>(std::move(made).value()));
-  };
-  field_scene out;
-  result<field_body_ptr> probe = make(bodies.probe);
-  if (!probe) return probe.error();
-  out.probe = std::move(probe).value();
-  for (std::size_t b = 0; b < bodies.fixed.size(); ++b) {
-    const auto same =
-        std::find(bodies.fixed.begin(), bodies.fixed.begin() + static_cast<std::ptrdiff_t>(b), bodies.fixed[b]);
-    const auto at = static_cast<std::size_t>(same - bodies.fixed.begin());
-    if (bodies.fixed[b] == bodies.probe) {
-      out.fixed.push_back(out.probe);
-    } else if (at < b) {
-      out.fixed.push_back(out.fixed[at]);
+    if (std::find(models.begin(), models.end(), model) == models.end()) models.push_back(model);
+  }
+  // Each gets more threads than its share, because one that is done leaves the machine to the others.
+  const unsigned threads = detail::resolve_threads(settings.field.threads);
+  const auto at_once = static_cast<unsigned>(std::min<std::size_t>(threads, models.size()));
+  field_body_settings of_each = settings;
+  of_each.field.threads = threads > 1 ? std::min(threads, (2 * threads + at_once - 1) / at_once) : 1;
+  std::vector<field_body_ptr> made(models.size());
+  std::vector<std::optional<error>> failed(models.size());
+  detail::for_each_task(models.size(), threads, [&](std::size_t i) {
+    result<field_body> body = make_field_body(*models[i], of_each);
+    if (body) {
+      made[i] = std::make_shared<const field_body>(std::move(body).value());
     } else {
-      result<field_body_ptr> made = make(bodies.fixed[b]);
-      if (!made) return made.error();
-      out.fixed.push_back(std::move(made).value());
+      failed[i] = body.error();
     }
+  });
+  for (const std::optional<error>& e : failed) {
+    if (e) return *e;
+  }
+  field_scene out;
+  out.probe = made[0];
+  for (const model_ptr& model : bodies.fixed) {
+    out.fixed.push_back(
+        made[static_cast<std::size_t>(std::find(models.begin(), models.end(), model) - models.begin())]);
   }
   return out;
 }

@@ -13,6 +13,7 @@
 #include "asperity/field/coarse_grid.hpp"
 #include "field/fine_surface.hpp"
 #include "field/inside_columns.hpp"
+#include "field/threads.hpp"
 
 namespace asperity::detail {
 
@@ -40,42 +41,31 @@ namespace asperity::detail {
 /// Distances by sweeping: nodes beside a triangle measure it, all others the triangles nearest to their neighbours.
 class distance_sweep {
  public:
-  distance_sweep(std::span<const fine_triangle> surface, const coarse_grid& grid)
+  distance_sweep(std::span<const fine_triangle> surface, const coarse_grid& grid, unsigned threads)
       : surface_(surface),
         grid_(grid),
+        threads_(threads),
         pitch_(static_cast<float>(grid.pitch_m)),
         nearest_(grid.nodes[0] * grid.nodes[1] * grid.nodes[2], none),
         distance_(nearest_.size(), 1.75F * pitch_) {
-    around_.reserve(surface.size());
-    for (const fine_triangle& t : surface) {
-      const vec3 m = (t[0] + t[1] + t[2]) / 3.0, n = area_normal(t);
-      const double length = std::sqrt(glm::dot(n, n));
-      double r2 = 0.0;
-      for (const vec3& p : t) r2 = std::max(r2, glm::dot(p - m, p - m));
-      around_.push_back({glm::vec3(m - grid.low), 1.0001F * static_cast<float>(std::sqrt(r2)),
-                         length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0F)});
-    }
+    around_.resize(surface.size());
+    beside_.resize(surface.size());
+    for_each_part(surface.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        around_[i] = disc_around(surface[i]);
+        beside_[i] = nodes_beside(surface[i]);
+      }
+    });
   }
 
-  /// Measures each triangle from the nodes in its box, a pitch wider: exact within a pitch of the surface.
+  /// Measures each triangle from the nodes in its box, a pitch wider: exact within a pitch of the surface. A thread has
+  /// some layers of nodes for itself and asks about all triangles in their order, so that each node is asked in it.
   void ask_beside() {
-    for (std::uint32_t t = 0; t < surface_.size(); ++t) {
-      const fine_triangle& f = surface_[t];
-      const vec3 low = (glm::min(f[0], glm::min(f[1], f[2])) - grid_.low) / grid_.pitch_m - 1.0;
-      const vec3 high = (glm::max(f[0], glm::max(f[1], f[2])) - grid_.low) / grid_.pitch_m + 1.0;
-      std::array<std::size_t, 3> first{}, end{};
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int axis = static_cast<int>(k);
-        first[k] = static_cast<std::size_t>(std::max(0.0, std::ceil(low[axis])));
-        end[k] = static_cast<std::size_t>(
-            std::clamp(std::floor(high[axis]) + 1.0, 0.0, static_cast<double>(grid_.nodes[k])));
-      }
-      for (std::size_t k = first[2]; k < end[2]; ++k) {
-        for (std::size_t j = first[1]; j < end[1]; ++j) {
-          for (std::size_t i = first[0]; i < end[0]; ++i) ask(grid_.at(i, j, k), place(i, j, k), t);
-        }
-      }
-    }
+    const std::size_t parts = std::min<std::size_t>(grid_.nodes[2], threads_ > 1 ? std::size_t{2} * threads_ : 1);
+    for_each_task(parts, threads_, [&](std::size_t part) {
+      ask_beside(part_begin(grid_.nodes[2], parts, part), part_begin(grid_.nodes[2], parts, part + 1));
+    });
+    beside_ = std::vector<node_box>();
   }
 
   /// Hands the nearest triangles on, by the distance of their middles alone: from neighbour to neighbour along all
@@ -109,8 +99,63 @@ class distance_sweep {
   /// the six neighbours alone are wrong by some micrometres: good enough for gaps, but not for depths.
   /// @param votes of vote_inside()
   void ask_around(std::span<const std::int8_t> votes) {
+    for_each_part(grid_.nodes[2], threads_, [&](std::size_t begin, std::size_t end) { ask_around(votes, begin, end); });
+  }
+
+  /// Gives the distances their signs and hands them over. @param votes of vote_inside()
+  [[nodiscard]] std::vector<float> finish(std::span<const std::int8_t> votes) {
+    for_each_part(distance_.size(), threads_, [&](std::size_t begin, std::size_t end) { sign(votes, begin, end); });
+    return std::move(distance_);
+  }
+
+ private:
+  static constexpr std::uint32_t none = 0xffffffffU;
+  struct disc {  // around a triangle; from the grid's first node
+    glm::vec3 middle;
+    float radius;
+    glm::vec3 n;
+  };
+  struct node_box {  // beside a triangle
+    std::array<std::uint32_t, 3> first, end;
+  };
+
+  [[nodiscard]] disc disc_around(const fine_triangle& t) const noexcept {
+    const vec3 m = (t[0] + t[1] + t[2]) / 3.0, n = area_normal(t);
+    const double length = std::sqrt(glm::dot(n, n));
+    double r2 = 0.0;
+    for (const vec3& p : t) r2 = std::max(r2, glm::dot(p - m, p - m));
+    return {glm::vec3(m - grid_.low), 1.0001F * static_cast<float>(std::sqrt(r2)),
+            length > 0.0 ? glm::vec3(n / length) : glm::vec3(0.0F)};
+  }
+
+  [[nodiscard]] node_box nodes_beside(const fine_triangle& f) const noexcept {
+    const vec3 low = (glm::min(f[0], glm::min(f[1], f[2])) - grid_.low) / grid_.pitch_m - 1.0;
+    const vec3 high = (glm::max(f[0], glm::max(f[1], f[2])) - grid_.low) / grid_.pitch_m + 1.0;
+    node_box out{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int axis = static_cast<int>(k);
+      const auto most = static_cast<double>(grid_.nodes[k]);
+      out.first[k] = static_cast<std::uint32_t>(std::clamp(std::ceil(low[axis]), 0.0, most));
+      out.end[k] = static_cast<std::uint32_t>(std::clamp(std::floor(high[axis]) + 1.0, 0.0, most));
+    }
+    return out;
+  }
+
+  void ask_beside(std::size_t first_layer, std::size_t end_layer) noexcept {
+    for (std::uint32_t t = 0; t < surface_.size(); ++t) {
+      const node_box& in = beside_[t];
+      const std::size_t end = std::min<std::size_t>(in.end[2], end_layer);
+      for (std::size_t k = std::max<std::size_t>(in.first[2], first_layer); k < end; ++k) {
+        for (std::size_t j = in.first[1]; j < in.end[1]; ++j) {
+          for (std::size_t i = in.first[0]; i < in.end[0]; ++i) ask(grid_.at(i, j, k), place(i, j, k), t);
+        }
+      }
+    }
+  }
+
+  void ask_around(std::span<const std::int8_t> votes, std::size_t first_layer, std::size_t end_layer) noexcept {
     const auto [nx, ny, nz] = grid_.nodes;
-    for (std::size_t k = 0; k < nz; ++k) {
+    for (std::size_t k = first_layer; k < end_layer; ++k) {
       for (std::size_t j = 0; j < ny; ++j) {
         for (std::size_t i = 0; i < nx; ++i) {
           const std::size_t node = grid_.at(i, j, k);
@@ -140,9 +185,8 @@ class distance_sweep {
     }
   }
 
-  /// Gives the distances their signs and hands them over. @param votes of vote_inside()
-  [[nodiscard]] std::vector<float> finish(std::span<const std::int8_t> votes) {
-    for (std::size_t n = 0; n < distance_.size(); ++n) {
+  void sign(std::span<const std::int8_t> votes, std::size_t begin, std::size_t end) noexcept {
+    for (std::size_t n = begin; n < end; ++n) {
       bool inside = votes[n] > 0;
       if (votes[n] == 0 && nearest_[n] != none) {
         const fine_triangle& t = surface_[nearest_[n]];
@@ -152,16 +196,7 @@ class distance_sweep {
       }
       if (!inside) distance_[n] = -distance_[n];
     }
-    return std::move(distance_);
   }
-
- private:
-  static constexpr std::uint32_t none = 0xffffffffU;
-  struct disc {  // around a triangle; from the grid's first node
-    glm::vec3 middle;
-    float radius;
-    glm::vec3 n;
-  };
 
   /// From the grid's first node.
   [[nodiscard]] glm::vec3 place(std::size_t i, std::size_t j, std::size_t k) const noexcept {
@@ -251,21 +286,30 @@ class distance_sweep {
 
   std::span<const fine_triangle> surface_;
   const coarse_grid& grid_;
+  unsigned threads_;
   float pitch_;
   std::vector<std::uint32_t> nearest_;  // triangle; within a pitch of the surface from the beginning
   std::vector<float> distance_;
   std::vector<disc> around_;
+  std::vector<node_box> beside_;
   std::vector<std::uint32_t> handed_;           // triangles, while they are handed on,
   std::array<std::vector<float>, 3> middle_{};  // their middles, from the grid's first node,
   std::vector<float> square_;                   // and the distances of these, squared; below zero: known already
 };
 
 /// Fills a grid with signed distances to a surface, positive inside. @param crossings of the grid's lines
-inline void fill_distance(std::span<const fine_triangle> surface, const axis_crossings& crossings, coarse_grid& grid) {
-  const std::vector<std::int8_t> votes = vote_inside(crossings, grid);
-  distance_sweep sweep(surface, grid);
-  sweep.ask_beside();
-  sweep.hand_on();
+inline void fill_distance(std::span<const fine_triangle> surface, const axis_crossings& crossings, coarse_grid& grid,
+                          unsigned threads) {
+  std::vector<std::int8_t> votes;
+  distance_sweep sweep(surface, grid, threads);
+  for_each_task(2, threads, [&](std::size_t task) {
+    if (task == 0) {
+      sweep.ask_beside();
+      sweep.hand_on();
+    } else {
+      votes = vote_inside(crossings, grid);
+    }
+  });
   sweep.ask_around(votes);
   grid.value = sweep.finish(votes);
 }

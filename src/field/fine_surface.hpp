@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "asperity/model/textured_model.hpp"
+#include "field/threads.hpp"
 
 namespace asperity::detail {
 
@@ -20,11 +22,14 @@ using fine_triangle = std::array<vec3, 3>;
   return is_finite(p) ? p : coarse_b;
 }
 
-/// Cuts the coarse triangles until no edge is longer than `edge_m`, then moves every corner onto the fine surface.
-///
-/// Edges alone decide where to cut, so two neighbours cut their common edge in the same place, and only the texture's
-/// own seams leave gaps. A sliver is cut along its length only.
-[[nodiscard]] inline std::vector<fine_triangle> cut_fine_surface(const textured_model& model, double edge_m) {
+/// Coarse triangles from one to before another.
+struct triangle_range {
+  std::size_t begin = 0, end = 0;
+};
+
+/// Does for some of the coarse triangles what cut_fine_surface() does for all.
+[[nodiscard]] inline std::vector<fine_triangle> cut_triangles(const textured_model& model, const triangle_range& which,
+                                                              double edge_m) {
   struct corner {
     vec3 p;
     vec2 uv;
@@ -34,7 +39,7 @@ using fine_triangle = std::array<vec3, 3>;
   const auto corner_at = [&](const vec3& p, const vec2& uv) { return corner{p, uv, fine_point(model.texture, uv, p)}; };
   std::vector<fine_triangle> out;
   std::vector<part> waiting;
-  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+  for (std::size_t t = which.begin; t < which.end; ++t) {
     const auto whole = corners(model.mesh, t);
     const auto& uv = model.mesh.triangles[t].uv;
     waiting.push_back({corner_at(whole[0], uv[0]), corner_at(whole[1], uv[1]), corner_at(whole[2], uv[2])});
@@ -76,10 +81,24 @@ using fine_triangle = std::array<vec3, 3>;
   return out;
 }
 
-/// Calls visit(point) for points of the fine surface about `step_m` apart, spread evenly over every coarse triangle.
+/// Cuts the coarse triangles until no edge is longer than `edge_m`, then moves every corner onto the fine surface.
+///
+/// Edges alone decide where to cut, so two neighbours cut their common edge in the same place, and only the texture's
+/// own seams leave gaps. A sliver is cut along its length only.
+[[nodiscard]] inline std::vector<fine_triangle> cut_fine_surface(const textured_model& model, double edge_m,
+                                                                 unsigned threads = 1) {
+  const std::size_t count = model.mesh.triangles.size(), parts = parts_for(count, threads);
+  std::vector<std::vector<fine_triangle>> made(parts);
+  for_each_task(parts, threads, [&](std::size_t i) {
+    made[i] = cut_triangles(model, {part_begin(count, parts, i), part_begin(count, parts, i + 1)}, edge_m);
+  });
+  return joined(std::move(made));
+}
+
+/// Calls visit(point) for points of the fine surface about `step_m` apart, spread evenly over coarse triangles.
 template <class Visit>
-void for_each_fine_point(const textured_model& model, double step_m, Visit&& visit) {
-  for (std::size_t t = 0; t < model.mesh.triangles.size(); ++t) {
+void for_each_fine_point(const textured_model& model, const triangle_range& which, double step_m, Visit&& visit) {
+  for (std::size_t t = which.begin; t < which.end; ++t) {
     const auto c = corners(model.mesh, t);
     const auto& uv = model.mesh.triangles[t].uv;
     // Rows along the longest edge: a sliver gets one row, not thousands.

@@ -7,10 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "asperity/field/coarse_grid.hpp"
 #include "field/fine_surface.hpp"
+#include "field/threads.hpp"
 
 namespace asperity::detail {
 
@@ -25,8 +27,8 @@ struct line_crossing {
 /// Crossings of the lines of nodes along x, y and z with a surface.
 using axis_crossings = std::array<std::vector<line_crossing>, 3>;
 
-/// Crossings of all lines of a grid, in order along each line. Line c * nodes[b] + b for the axes a, b, c in turn.
-[[nodiscard]] inline axis_crossings cross_lines(std::span<const fine_triangle> surface, const coarse_grid& grid) {
+/// Crossings of the lines of a grid with a part of a surface, triangle by triangle.
+[[nodiscard]] inline axis_crossings cross_part(std::span<const fine_triangle> surface, const coarse_grid& grid) {
   axis_crossings out;
   const double per_pitch = 1.0 / grid.pitch_m;
   for (const fine_triangle& t : surface) {
@@ -56,11 +58,27 @@ using axis_crossings = std::array<std::vector<line_crossing>, 3>;
       }
     }
   }
-  for (std::vector<line_crossing>& along : out) {
-    std::sort(along.begin(), along.end(), [](const line_crossing& x, const line_crossing& y) {
+  return out;
+}
+
+/// Crossings of all lines of a grid, in order along each line. Line c * nodes[b] + b for the axes a, b, c in turn.
+[[nodiscard]] inline axis_crossings cross_lines(std::span<const fine_triangle> surface, const coarse_grid& grid,
+                                                unsigned threads) {
+  const std::size_t parts = parts_for(surface.size(), threads);
+  std::vector<axis_crossings> made(parts);
+  for_each_task(parts, threads, [&](std::size_t i) {
+    const std::size_t begin = part_begin(surface.size(), parts, i), end = part_begin(surface.size(), parts, i + 1);
+    made[i] = cross_part(surface.subspan(begin, end - begin), grid);
+  });
+  axis_crossings out;
+  for_each_task(out.size(), threads, [&](std::size_t a) {
+    std::vector<std::vector<line_crossing>> lists(parts);
+    for (std::size_t i = 0; i < parts; ++i) lists[i] = std::move(made[i][a]);
+    out[a] = joined(std::move(lists));
+    std::sort(out[a].begin(), out[a].end(), [](const line_crossing& x, const line_crossing& y) {
       return x.line != y.line ? x.line < y.line : x.place < y.place;
     });
-  }
+  });
   return out;
 }
 

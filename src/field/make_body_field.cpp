@@ -12,6 +12,7 @@
 #include "field/fit_relief.hpp"
 #include "field/inside_columns.hpp"
 #include "field/quick_read.hpp"
+#include "field/threads.hpp"
 #include "model/surface_index.hpp"
 #include "model/texture_scale.hpp"
 
@@ -91,23 +92,29 @@ void lay_relief(body_field& out, const bounds& box, const field_settings& settin
 }
 
 /// Measures slopes at every second point of the fine surface, and above and below it.
-[[nodiscard]] slope_boxes measure_slopes(const relief_fit& fit, const body_field& of) {
+[[nodiscard]] slope_boxes measure_slopes(const relief_fit& fit, const body_field& of, unsigned threads) {
   constexpr std::array<double, 11> off_surface{0.0, -0.4, 0.2, -0.9, 0.7, -1.5, 1.3, -2.2, 2.1, -3.0, 3.0};  // pitches
   static_assert(off_surface.back() == body_field::slopes_to);
-  slope_boxes out(of.smooth);
-  std::size_t n = 0;
-  fit.for_each_foot([&](const vec3& foot_b, const vec3& inwards) {
-    if (++n % 2 == 0) return;
-    const vec3 p_b = foot_b + off_surface[n / 2 % off_surface.size()] * of.smooth.pitch_m * inwards;
-    const coarse_reading at = quick_read<quick_part::bend>(of.smooth, p_b).at;
-    out.add(p_b, at.slope + of.relief(p_b, at).slope);
+  // Boxes for each part, because a point's block may be any thread's; not more than memory is there for.
+  const std::size_t parts = std::min(8U, threads);
+  std::vector<slope_boxes> boxes(parts);
+  for_each_task(parts, threads, [&](std::size_t part) {
+    boxes[part] = slope_boxes(of.smooth);
+    const auto add = [&](std::size_t n, const vec3& foot_b, const vec3& inwards) {
+      if (n % 2 != 0) return;
+      const vec3 p_b = foot_b + off_surface[n / 2 % off_surface.size()] * of.smooth.pitch_m * inwards;
+      const coarse_reading at = quick_read<quick_part::bend>(of.smooth, p_b).at;
+      boxes[part].add(p_b, at.slope + of.relief(p_b, at).slope);
+    };
+    fit.for_each_foot(part_begin(fit.points(), parts, part), part_begin(fit.points(), parts, part + 1), add);
   });
-  return out;
+  for (std::size_t i = 1; i < parts; ++i) boxes[0].add(boxes[i]);
+  return std::move(boxes[0]);
 }
 
 }  // namespace
 
-result<body_field> make_body_field(const textured_model& model, const field_settings& settings) {
+result<void> check_field_model(const textured_model& model, const field_settings& settings) {
   for (const double length : {settings.pitch_m, settings.relief_pitch_m, settings.margin_m}) {
     if (!(length >= 0.0 && std::isfinite(length))) {
       return error{error_code::invalid_argument,
@@ -118,7 +125,6 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
     return error{error_code::invalid_argument,
                  "field settings: most_nodes must be 10000 or more, relief_bytes 100000 or more"};
   }
-  constexpr double piece_per_pitch = 0.75;  // longest edge of the pieces that distances are measured to
   const std::string& name = model.name;
   if (model.texture.width == 0 || model.texture.height == 0) {
     return error{error_code::bad_texture, "model \"" + name + "\" has no haptic texture; bake it first"};
@@ -128,14 +134,24 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
   if (model.mesh.triangles.empty() || !(extent > 0.0) || !std::isfinite(extent)) {
     return error{error_code::bad_mesh, "model \"" + name + "\" has no surface, or its box has no extent"};
   }
+  return {};
+}
+
+result<body_field> make_body_field(const textured_model& model, const field_settings& settings) {
+  if (const result<void> ok = check_field_model(model, settings); !ok) return ok.error();
+  constexpr double piece_per_pitch = 0.75;  // longest edge of the pieces that distances are measured to
+  const std::string& name = model.name;
+  const unsigned threads = resolve_threads(settings.threads);
+  const vec3 size = model.box.high - model.box.low;
+  const double extent = std::max({size.x, size.y, size.z});
 
   body_field out;
   const double usual = extent / 96.0;
-  std::vector<detail::fine_triangle> surface = detail::cut_fine_surface(model, piece_per_pitch * usual);
+  std::vector<detail::fine_triangle> surface = detail::cut_fine_surface(model, piece_per_pitch * usual, threads);
   const bounds box = box_of(surface);
   detail::coarse_grid measured;
   lay_smooth(measured, box, {.margin_m = settings.margin_m}, usual);
-  detail::axis_crossings crossings = detail::cross_lines(surface, measured);
+  detail::axis_crossings crossings = detail::cross_lines(surface, measured, threads);
   out.thickness_m = detail::measure_thickness(crossings, measured);
   double pitch = settings.pitch_m;
   if (!(pitch > 0.0)) {
@@ -153,10 +169,10 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
   out.thinnest_resolved_m = 3.0 * pitch;
   if (pitch != measured.pitch_m) {
     surface = std::vector<detail::fine_triangle>();  // gives its memory back, as = {} does not
-    surface = detail::cut_fine_surface(model, piece_per_pitch * pitch);
-    crossings = detail::cross_lines(surface, out.smooth);
+    surface = detail::cut_fine_surface(model, piece_per_pitch * pitch, threads);
+    crossings = detail::cross_lines(surface, out.smooth, threads);
   }
-  detail::fill_distance(surface, crossings, out.smooth);
+  detail::fill_distance(surface, crossings, out.smooth, threads);
   crossings = {};
 
   if (std::none_of(out.smooth.value.begin(), out.smooth.value.end(), [](float d) { return d > 0.0F; })) {
@@ -169,18 +185,23 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
   lay_relief(out, box, settings, texel, area_m2);
   surface = std::vector<detail::fine_triangle>();
   const double step_m = 0.95 * out.fine.pitch_m;
-  detail::relief_fit fit(out.fine, out, 1.1 * area_m2 / (step_m * step_m), 1e-6 * model.box.diagonal());
-  detail::for_each_fine_point(model, step_m, [&](const vec3& p_b) { fit.add(p_b); });
-  fit.solve();
+  detail::relief_fit fit(out.fine, out, 1e-6 * model.box.diagonal(), threads);
+  detail::for_each_task(2, threads, [&](std::size_t task) {
+    if (task == 0) {
+      fit.take_points(model, step_m, 1.1 * area_m2 / (step_m * step_m));
+      fit.solve();
+    } else {
+      out.most_third = detail::third_bounds(out.smooth);
+    }
+  });
   for (const detail::relief_bricks::brick& b : out.fine.bricks) {
     for (const float c : b) {
       out.lowest_relief_m = std::min(out.lowest_relief_m, static_cast<double>(c));
       out.highest_relief_m = std::max(out.highest_relief_m, static_cast<double>(c));
     }
   }
-  out.most_third = detail::third_bounds(out.smooth);
   out.most_relief = detail::relief_bounds(out.fine);
-  out.slopes = measure_slopes(fit, out);
+  out.slopes = measure_slopes(fit, out, threads);
   return out;
 }
 

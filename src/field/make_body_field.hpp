@@ -9,6 +9,10 @@
 
 namespace asperity {
 
+/// Says what keeps a field from being made of a model, before it is tried.
+/// @return invalid_argument | bad_texture | bad_mesh
+[[nodiscard]] result<void> check_field_model(const textured_model& model, const field_settings& settings);
+
 /// Makes the depth field of a model. Takes a fraction of a second, and allocates; not for a tick.
 /// @return invalid_argument where a setting is out of range; bad_texture where the model has no texture; bad_mesh where
 ///         it has no surface, extent or inside; limit_exceeded where the body is too thin for the nodes that it may

@@ -19,6 +19,7 @@ struct field_settings {
   double margin_m = 0.0;                  ///< of the grid around the body; automatic: 4 % of its diagonal
   std::size_t most_nodes = 4'000'000;     ///< of the smooth part; 4 bytes each
   std::size_t relief_bytes = 40'000'000;  ///< about how much memory the relief may take
+  unsigned threads = 0;                   ///< that make it, the same to the bit; 0: as many as the machine has
 
   friend bool operator==(const field_settings&, const field_settings&) = default;
 };
@@ -49,7 +50,8 @@ struct field_scene {
 /// @param made of the bodies, or nullptr
 [[nodiscard]] ASPERITY_API result<void> check_field_scene(const scene& bodies, const field_scene* made);
 
-/// Makes the field and the samples of every body of a scene; a model that appears several times is made once.
+/// Makes the field and the samples of every body of a scene; a model that appears several times is made once. Starts
+/// threads, which have ended when it returns.
 /// @return invalid_argument | bad_mesh | bad_texture
 [[nodiscard]] ASPERITY_API result<field_scene> make_field_scene(const scene& bodies,
                                                                 const field_body_settings& settings = {});

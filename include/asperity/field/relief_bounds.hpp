@@ -24,8 +24,8 @@ class relief_bounds {
     if (of.index.empty()) return;
     level first{of.bricks_along, std::vector<float>(of.index.size(), 0.0F)};
     for (std::size_t i = 0; i < of.index.size(); ++i) {
-      const auto& nodes = of.bricks[of.index[i]];
-      first.most[i] = std::max(0.0F, *std::max_element(nodes.begin(), nodes.end()));
+      if (of.index[i] == 0) continue;  // zeros, at nearly all places
+      for (const float c : of.bricks[of.index[i]]) first.most[i] = std::max(first.most[i], c);
     }
     levels_.push_back(std::move(first));
     while (levels_.back().most.size() > 1) levels_.push_back(halved(levels_.back()));
@@ -60,6 +60,8 @@ class relief_bounds {
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(levels_); }
 
+  friend bool operator==(const relief_bounds&, const relief_bounds&) = default;
+
  private:
   struct level {
     std::array<std::size_t, 3> along{};
@@ -69,6 +71,7 @@ class relief_bounds {
       return (z * along[1] + y) * along[0] + x;
     }
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(most); }
+    friend bool operator==(const level&, const level&) = default;
   };
 
   [[nodiscard]] static level halved(const level& of) {

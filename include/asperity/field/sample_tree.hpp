@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "asperity/core/export.hpp"
 #include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
 
@@ -47,13 +48,9 @@ class sample_tree {
 
   sample_tree() = default;
 
-  /// @param samples  positions finite   @pre fewer than 2^31
-  explicit sample_tree(std::vector<field_sample> samples) : samples_(std::move(samples)) {
-    if (samples_.empty()) return;
-    balls_.reserve(2 * samples_.size() / (leaf_samples / 2) + 1);
-    build(0, samples_.size());
-    balls_.shrink_to_fit();
-  }
+  /// @param samples  positions finite   @param threads  that build it; 0: as many as the machine has
+  /// @pre fewer than 2^31
+  ASPERITY_API explicit sample_tree(std::vector<field_sample> samples, unsigned threads = 1);
 
   [[nodiscard]] std::span<const field_sample> samples() const noexcept { return samples_; }
 
@@ -118,6 +115,8 @@ class sample_tree {
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(samples_, balls_); }
 
  private:
+  class builder;
+
   // Depth-first layout: the left child follows its parent, `right` is 0 for a leaf.
   struct ball {
     glm::vec3 centre_b{0.0F}, axis_b{0.0F, 0.0F, 1.0F};
@@ -132,84 +131,6 @@ class sample_tree {
   template <class Visit>
   void visit_leaf(const ball& b, Visit& visit) const noexcept {
     visit(b.in_double(), std::span<const field_sample>(samples_).subspan(b.first, b.count));
-  }
-
-  void build(std::size_t first, std::size_t count) {
-    const std::span<field_sample> part = std::span(samples_).subspan(first, count);
-    glm::vec3 low = part[0].position_b, high = low;
-    for (const field_sample& s : part) {
-      low = glm::min(low, s.position_b);
-      high = glm::max(high, s.position_b);
-    }
-    const std::size_t self = balls_.size();
-    balls_.push_back(around(part, 0.5F * (low + high)));
-    balls_.back().first = static_cast<std::uint32_t>(first);
-    balls_.back().count = static_cast<std::uint32_t>(count);
-    if (count <= leaf_samples) return;
-    const glm::vec3 size = high - low;
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    // Ties by the other axes: the layout must not depend on the standard library's sort.
-    std::sort(part.begin(), part.end(), [axis](const field_sample& a, const field_sample& c) {
-      const glm::vec3 &p = a.position_b, &q = c.position_b;
-      for (int i = 0; i < 3; ++i) {
-        const int x = (axis + i) % 3;
-        if (p[x] != q[x]) return p[x] < q[x];
-      }
-      return false;
-    });
-    const std::size_t half = count / 2;
-    build(first, half);
-    balls_[self].right = static_cast<std::uint32_t>(balls_.size());
-    build(first + half, count - half);
-  }
-
-  // Rounding a radius down would leave a sample outside, so both extents are rounded up.
-  [[nodiscard]] static ball around(std::span<const field_sample> part, const glm::vec3& middle_b) noexcept {
-    ball out;
-    out.axis_b = glm::vec3(thinnest(part, vec3(middle_b)));
-    double bottom = 1e30, top = -1e30;
-    for (const field_sample& s : part) {
-      const double z = glm::dot(vec3(s.position_b) - vec3(middle_b), vec3(out.axis_b));
-      bottom = std::min(bottom, z);
-      top = std::max(top, z);
-    }
-    out.centre_b = glm::vec3(vec3(middle_b) + 0.5 * (bottom + top) * vec3(out.axis_b));
-    double far = 0.0, off = 0.0;
-    for (const field_sample& s : part) {
-      const vec3 d = vec3(s.position_b) - vec3(out.centre_b);
-      far = std::max(far, glm::length(d));
-      off = std::max(off, std::fabs(glm::dot(d, vec3(out.axis_b))));
-    }
-    out.radius_m = std::nextafter(static_cast<float>(far), 1e30F);
-    out.half_m = std::nextafter(static_cast<float>(off), 1e30F);
-    return out;
-  }
-
-  // The direction along which samples spread least, by the power method on the trace of their covariance less the
-  // covariance. A direction that is not quite the best makes bounds a little wider, not wrong.
-  [[nodiscard]] static vec3 thinnest(std::span<const field_sample> part, const vec3& middle_b) noexcept {
-    mat3 rest(0.0);
-    vec3 sum(0.0);
-    double trace = 1e-30;
-    for (const field_sample& s : part) {
-      const vec3 d = vec3(s.position_b) - middle_b;
-      sum += d;
-      rest -= glm::outerProduct(d, d);
-      trace += glm::dot(d, d);
-    }
-    const double per_sample = 1.0 / static_cast<double>(part.size());
-    rest += per_sample * glm::outerProduct(sum, sum);
-    trace -= per_sample * glm::dot(sum, sum);
-    for (int k = 0; k < 3; ++k) rest[k][k] += trace;
-    constexpr int steps = 20;
-    vec3 axis(0.48, 0.6, 0.64);
-    for (int i = 0; i < steps; ++i) {
-      const vec3 next = rest * axis;
-      const double squared = glm::dot(next, next);
-      if (!(squared > 0.0)) break;
-      axis = next / std::sqrt(squared);
-    }
-    return axis;
   }
 
   std::vector<field_sample> samples_;

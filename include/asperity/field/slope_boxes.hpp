@@ -41,6 +41,14 @@ class slope_boxes {
     in.high = glm::max(in.high, glm::vec3(slope));
   }
 
+  /// Adds what was measured at other points of the same grid.
+  void add(const slope_boxes& others) noexcept {
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      blocks_[i].low = glm::min(blocks_[i].low, others.blocks_[i].low);
+      blocks_[i].high = glm::max(blocks_[i].high, others.blocks_[i].high);
+    }
+  }
+
   /// How much a slope within radius_m of a point can differ from this one; infinity where a block has
   /// none, and for radii of more than two cells.
   /// @rt safe: 27 boxes at most
@@ -72,10 +80,13 @@ class slope_boxes {
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(blocks_); }
 
+  friend bool operator==(const slope_boxes&, const slope_boxes&) = default;
+
  private:
   /// Of points in a block; empty while low is above high.
   struct slopes {
     glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+    friend bool operator==(const slopes&, const slopes&) = default;
   };
 
   [[nodiscard]] std::size_t place(std::size_t x, std::size_t y, std::size_t z) const noexcept {

@@ -69,11 +69,14 @@ class third_bounds {
     return bytes;
   }
 
+  friend bool operator==(const third_bounds&, const third_bounds&) = default;
+
  private:
   /// Blocks of a side of 2, 4, ... cells. A number holds for its block and half a block around it.
   struct level {
     std::array<std::size_t, 3> along{};
     std::vector<float> most_per_m2;
+    friend bool operator==(const level&, const level&) = default;
   };
 
   [[nodiscard]] static level coarser(const level& of) {

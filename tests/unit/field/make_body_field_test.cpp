@@ -76,7 +76,7 @@ TEST(MakeBodyField, ThePointsOfAFitReachEveryCorner) {
       one.triangles = {{turn, (turn + 1) % 3, (turn + 2) % 3}};
       const textured_model model = make_charted_model(one, 64, [](const vec3& p) { return p; });
       std::array<double, 3> nearest{1.0, 1.0, 1.0};
-      detail::for_each_fine_point(model, step, [&](const vec3& p) {
+      detail::for_each_fine_point(model, {0, model.mesh.triangles.size()}, step, [&](const vec3& p) {
         for (std::size_t k = 0; k < 3; ++k) nearest[k] = std::min(nearest[k], glm::length(p - one.positions[k]));
       });
       for (const double d : nearest) EXPECT_LE(d, 1.5 * step);
