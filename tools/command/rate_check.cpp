@@ -83,13 +83,6 @@ rate_check check_rate(any_renderer& feel, const scene_placement& placement, cons
   return out;
 }
 
-json to_json(const rate_check& checked) {
-  return {{"tick_time", to_json(checked.tick)},
-          {"processor_p99", checked.processor_p99_s},
-          {"kept", checked.kept},
-          {"kept_rate", checked.kept_rate_hz ? json(*checked.kept_rate_hz) : json()}};
-}
-
 std::string advice_for(std::optional<double> kept_rate_hz) {
   return (kept_rate_hz ? "use --contact-rate " + brief(*kept_rate_hz) + ", or" : std::string("use")) +
          " coarser models";

@@ -1,13 +1,13 @@
 // Whether this machine keeps the rate of a contact loop: a short look before a session.
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "asperity/control/contact_loop.hpp"
 #include "asperity/control/control_settings.hpp"
 #include "asperity/render/any_renderer.hpp"
-#include "cli.hpp"
 #include "statistics.hpp"
 
 namespace asperity::command {
@@ -35,7 +35,7 @@ struct rate_check {
 [[nodiscard]] rate_check check_rate(any_renderer& feel, const scene_placement& placement, const pose& touch_T_wa,
                                     const control_settings& control, const loop_periods& periods);
 
-[[nodiscard]] json to_json(const rate_check& checked);
+[[nodiscard]] nlohmann::ordered_json to_json(const rate_check& checked);
 /// One line: what a tick takes, whether the rate is kept, and where it is not, what to do.
 [[nodiscard]] std::string to_text(const rate_check& checked);
 /// What to do where a rate is not kept: "use --contact-rate 400, or coarser models".

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <vector>
 
-#include "cli.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -34,9 +35,7 @@ struct time_summary {
   return s;
 }
 
-[[nodiscard]] inline json to_json(const time_summary& s) {
-  return {{"count", s.count}, {"mean", s.mean_s}, {"p50", s.p50_s}, {"p99", s.p99_s}, {"max", s.max_s}};
-}
+[[nodiscard]] nlohmann::ordered_json to_json(const time_summary& s);
 
 [[nodiscard]] inline std::string to_text(const time_summary& s) {
   return "p50 " + time_text(s.p50_s) + ", p99 " + time_text(s.p99_s) + ", max " + time_text(s.max_s);

@@ -3,59 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <glm/common.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <sstream>
-#include <stdexcept>
 #include <utility>
 
-#include "asperity/bake/repair.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
+#include "law/oracle/real_bodies.hpp"
 #include "law/truth/made_or_thrown.hpp"
 #include "model/surface_index.hpp"
-#include "support/real_meshes.hpp"
 
 namespace asperity::truth {
-namespace {
-
 namespace fs = std::filesystem;
 
-struct scan {
-  const char *name, *file;
-  bool has_holes;
-};
-constexpr std::array<scan, 3> scans{{{"igea", "igea.ply", false},
-                                     {"rocker-arm", "rocker-arm.obj", false},
-                                     {"stanford-bunny", "stanford-bunny.obj", true}}};
-
-// As its bake took it: at the scale that the bake told, its holes closed.
-triangle_mesh load_scan(const scan& of) {
-  const fs::path bake_report_path = fs::path(ASPERITY_TEST_MODELS_DIR) / "real" / (std::string(of.name) + ".json");
-  std::ifstream in(bake_report_path);
-  std::ostringstream text;
-  if (!(text << in.rdbuf())) {
-    throw std::runtime_error("there is no " + bake_report_path.string() + "; ctest -R real_models makes it");
-  }
-  triangle_mesh full = made_or_thrown(io::load_mesh(test_support::real_mesh_folder() / of.file));
-  const double scale = nlohmann::json::parse(text.str()).at("scale");
-  for (vec3& p : full.positions) p *= scale;
-  if (of.has_holes) {
-    if (const auto closed = bake::close_holes(full); !closed) throw std::runtime_error(closed.error().message);
-  }
-  return full;
-}
-
-}  // namespace
-
-std::string why_without_scans() {
-  for (const scan& s : scans) {
-    if (std::string why = test_support::why_without(s.file); !why.empty()) return why;
-  }
-  return "";
-}
+std::string why_without_scans() { return oracle::why_without_real_meshes(); }
 
 field_body_ptr built_field_body(const textured_model& model, const field_body_settings& settings) {
   return std::make_shared<const field_body>(made_or_thrown(make_field_body(model, settings)));
@@ -64,14 +25,18 @@ field_body_ptr built_field_body(const textured_model& model, const field_body_se
 const truth_body& get_body(const std::string& name) {
   static std::map<std::string, truth_body> read;
   if (const auto known = read.find(name); known != read.end()) return known->second;
-  const fs::path folder = ASPERITY_TEST_MODELS_DIR;
   truth_body out;
   out.name = name;
-  const auto found = std::find_if(scans.begin(), scans.end(), [&](const scan& s) { return name == s.name; });
-  const bool is_scan = found != scans.end();
-  out.full = is_scan ? load_scan(*found) : made_or_thrown(io::load_mesh(folder / (name + ".ply")));
-  out.model = std::make_shared<const textured_model>(
-      made_or_thrown(io::load_textured_model((is_scan ? folder / "real" : folder) / (name + ".glb"))));
+  if (std::find(scan_names.begin(), scan_names.end(), name) != scan_names.end()) {
+    const oracle::original_and_bake& scan = oracle::load_real_body(name);
+    out.full = scan.full;
+    out.model = scan.model;
+  } else {
+    const fs::path folder = ASPERITY_TEST_MODELS_DIR;
+    out.full = made_or_thrown(io::load_mesh(folder / (name + ".ply")));
+    out.model =
+        std::make_shared<const textured_model>(made_or_thrown(io::load_textured_model(folder / (name + ".glb"))));
+  }
   out.field = built_field_body(*out.model);
   return read[name] = std::move(out);
 }
