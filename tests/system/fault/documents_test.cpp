@@ -183,7 +183,7 @@ TEST_P(query_document, is_the_contract) {
       {"query", "--probe", block(), "--fixed", block(), "--probe-pose", "0 0 0.0198 0 0 0 1", "--contacts", GetParam()},
       "asperity.query/1");
   expect_keys(d, {"schema", "contacts", "force", "torque", "centre_of_mass", "stiffness", "formulation", "backend",
-                  "gradient_scheme", "lookup", "status", "dropped_contacts", "units"});
+                  "bodies", "gradient_scheme", "lookup", "status", "dropped_contacts", "units"});
   EXPECT_EQ(d["formulation"], GetParam());
   EXPECT_EQ(d["gradient_scheme"], std::string(GetParam()) == "least-motion" ? "exact" : "soft");
   EXPECT_EQ(d["backend"], "cpu");
@@ -192,12 +192,16 @@ TEST_P(query_document, is_the_contract) {
   expect_numbers(d["torque"], 3);
   expect_numbers(d["centre_of_mass"], 3);
   expect_numbers(d["stiffness"], 36);
+  ASSERT_EQ(d["bodies"].size(), 1U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(d["bodies"][0]["force"][i], -d["force"][i].get<double>());
+  expect_numbers(d["bodies"][0]["torque"], 3);
   ASSERT_FALSE(d["contacts"].empty());
   for (const json& c : d["contacts"]) {
-    expect_keys(c, {"p_a", "p_b", "n_ab", "centre", "u", "half_size", "separation", "depth", "soft_depth", "gradient",
-                    "witness", "samples", "flags"});
+    expect_keys(c, {"body", "p_a", "p_b", "n_ab", "centre", "u", "half_size", "separation", "depth", "soft_depth",
+                    "gradient", "witness", "samples", "flags"});
     for (const char* key : {"p_a", "p_b", "n_ab", "centre", "u", "witness"}) expect_numbers(c[key], 3);
     expect_numbers(c["gradient"], 6);
+    EXPECT_EQ(c["body"], 0);
     EXPECT_TRUE(c["flags"].is_array());
     EXPECT_TRUE(c["samples"].is_number_unsigned());
     // The gradient's component along n is 1 exactly.
@@ -328,17 +332,51 @@ TEST_F(documents, run) {
   const json d = expect_document({"run", "--probe", block(), "--fixed", block(), "--seconds", "0.8", "--record",
                                   path("session.csv"), "--plot", path("session.svg")},
                                  "asperity.run/1");
-  expect_keys(d, {"schema",       "formulation",      "probe",        "fixed",
-                  "start",        "device",           "clock",        "motion",
-                  "seed",         "seconds",          "backend",      "gradient_scheme",
-                  "grid",         "lookup",           "contacts",     "max_depth",
-                  "probe_force",  "probe_torque",     "hand_force",   "hand_torque",
-                  "energy",       "contact_loop",     "device_loop",  "tick_time_is",
-                  "memory",       "rejected_samples", "lost_records", "fault",
-                  "fault_record", "interrupted",      "recording",    "plot",
-                  "units",        "device_recording", "replay",       "real_time",
-                  "signal",       "driver_fault",     "rates",        "vibration",
-                  "wall",         "coupling",         "rate_check",   "friction",
+  expect_keys(d, {"schema",
+                  "formulation",
+                  "probe",
+                  "fixed",
+                  "start",
+                  "device",
+                  "clock",
+                  "motion",
+                  "moves",
+                  "seed",
+                  "seconds",
+                  "backend",
+                  "gradient_scheme",
+                  "grid",
+                  "lookup",
+                  "contacts",
+                  "max_depth",
+                  "probe_force",
+                  "probe_torque",
+                  "hand_force",
+                  "hand_torque",
+                  "energy",
+                  "contact_loop",
+                  "device_loop",
+                  "tick_time_is",
+                  "memory",
+                  "rejected_samples",
+                  "lost_records",
+                  "fault",
+                  "fault_record",
+                  "interrupted",
+                  "recording",
+                  "plot",
+                  "units",
+                  "device_recording",
+                  "replay",
+                  "real_time",
+                  "signal",
+                  "driver_fault",
+                  "rates",
+                  "vibration",
+                  "wall",
+                  "coupling",
+                  "rate_check",
+                  "friction",
                   "surfaces"});
   for (const char* loop : {"contact_loop", "device_loop"}) {
     expect_keys(d[loop], {"rate", "ticks", "idle", "late", "skipped", "over_period", "kept", "tick_time"});
@@ -377,9 +415,9 @@ TEST_F(documents, run_with_support_planes) {
   const json d = expect_document(above, "asperity.run/1");
   EXPECT_EQ(d["formulation"], "planes");
   expect_keys(d["wall"], {"largest_overlap", "beyond_field", "passed", "not_held", "planes_left_out", "unbalanced",
-                          "friction_left_out"});
+                          "friction_left_out", "body_lost"});
   for (const char* flag :
-       {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out"}) {
+       {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out", "body_lost"}) {
     EXPECT_EQ(d["wall"][flag]["ticks"], 0) << flag;
     EXPECT_TRUE(d["wall"][flag]["first"].is_null()) << flag;
   }

@@ -68,7 +68,8 @@ class ImageFuzz : public testing::TestWithParam<image_format> {
   void SetUp() override {
     ASSERT_EQ(::getrlimit(RLIMIT_AS, &before_), 0);
     rlimit lower = before_;
-    lower.rlim_cur = std::min<rlim_t>(before_.rlim_max, rlim_t{2} << 30);
+    // Beside what the program has mapped before: threads of earlier tests have left heaps of their own.
+    lower.rlim_cur = std::min<rlim_t>(before_.rlim_max, peak_memory::mapped_bytes() + (rlim_t{2} << 30));
     if (peak_memory().works()) ::setrlimit(RLIMIT_AS, &lower);
   }
   void TearDown() override { ::setrlimit(RLIMIT_AS, &before_); }

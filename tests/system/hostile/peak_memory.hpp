@@ -30,6 +30,8 @@ class peak_memory {
     const std::size_t peak = status_bytes("VmHWM");
     return peak > at_begin_ ? peak - at_begin_ : 0;
   }
+  /// Address space in use, bytes; 0 where the system does not tell.
+  [[nodiscard]] static std::size_t mapped_bytes() { return status_bytes("VmSize"); }
   /// False where the system does not tell, and under a sanitizer, whose heap keeps what was freed.
   [[nodiscard]] bool works() const { return works_ && !sanitized; }
 
