@@ -8,6 +8,7 @@ struct wrench;
 struct scene;
 struct scene_pose;
 struct textured_model;
+struct field_body;
 
 struct tick;
 struct contact;

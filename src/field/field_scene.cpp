@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "asperity/field/field_body.hpp"
+#include "asperity/field/packed_field.hpp"
 #include "field/make_body_field.hpp"
+#include "field/model_digest.hpp"
 #include "field/surface_samples.hpp"
 #include "field/threads.hpp"
 #include "model/surface_index.hpp"
@@ -39,16 +41,19 @@ result<field_body> make_field_body(const textured_model& model, const field_body
   if (samples.samples().empty()) {
     return error{error_code::bad_texture, "the model " + model.name + " has no texel that holds a surface point"};
   }
-  return field_body{std::move(*field).value(), std::move(samples)};
+  return field_body{std::move(*field).value(), std::move(samples), without_threads(settings),
+                    detail::model_digest(model)};
 }
 
+std::size_t memory_bytes(const field_body& body) noexcept { return sizeof body + body.heap_bytes(); }
+
 std::size_t field_scene::heap_bytes() const noexcept {
-  std::size_t bytes = asperity::heap_bytes(fixed) + sizeof(field_body) + probe->heap_bytes();
+  std::size_t bytes = asperity::heap_bytes(fixed) + memory_bytes(*probe);
   for (auto b = fixed.begin(); b != fixed.end(); ++b) {
     const bool counted = *b == probe || std::find(fixed.begin(), b, *b) != b;
-    if (!counted) bytes += sizeof(field_body) + (*b)->heap_bytes();
+    if (!counted) bytes += memory_bytes(**b);
   }
-  return bytes;
+  return bytes - kept_by_models_bytes;
 }
 
 result<void> check_field_scene(const scene& bodies, const field_scene* made) {
@@ -76,6 +81,10 @@ result<field_scene> make_field_scene(const scene& bodies, const field_body_setti
   std::vector<field_body_ptr> made(models.size());
   std::vector<std::optional<error>> failed(models.size());
   detail::for_each_task(models.size(), threads, [&](std::size_t i) {
+    if (const field_body_ptr& kept = models[i]->field; kept && is_made_of(*kept, *models[i], settings)) {
+      made[i] = kept;
+      return;
+    }
     result<field_body> body = make_field_body(*models[i], of_each);
     if (body) {
       made[i] = std::make_shared<const field_body>(std::move(body).value());
@@ -87,6 +96,9 @@ result<field_scene> make_field_scene(const scene& bodies, const field_body_setti
     if (e) return *e;
   }
   field_scene out;
+  for (std::size_t i = 0; i < made.size(); ++i) {
+    if (made[i] == models[i]->field) out.kept_by_models_bytes += memory_bytes(*made[i]);
+  }
   out.probe = made[0];
   for (const model_ptr& model : bodies.fixed) {
     out.fixed.push_back(

@@ -15,12 +15,6 @@
 namespace asperity {
 namespace {
 
-/// How many balls a branch of so many samples has.
-std::size_t balls_of(std::size_t samples) noexcept {
-  if (samples <= sample_tree::leaf_samples) return 1;
-  return 1 + balls_of(samples / 2) + balls_of(samples - samples / 2);
-}
-
 /// A sample's place, and which one it is.
 struct numbered_place {
   glm::vec3 at;

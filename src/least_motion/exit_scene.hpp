@@ -10,6 +10,7 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
+#include "field/threads.hpp"
 #include "least_motion/field_bounds.hpp"
 #include "least_motion/kept_relief.hpp"
 #include "least_motion/make_moving_shape.hpp"
@@ -43,18 +44,19 @@ struct exit_scene {
   exit_body_ptr probe;
   std::vector<exit_body_ptr> fixed;
 
-  /// Allocates; for a tenth of a second a body and more for long notches, not for a tick.   @pre all bodies of made are
-  /// there
-  explicit exit_scene(const field_scene& made) : probe(std::make_shared<const exit_body>(made.probe)) {
+  /// Allocates; for a tenth of a second a body and more for long notches, not for a tick. Starts threads, which have
+  /// ended when it returns.   @pre all bodies of made are there
+  explicit exit_scene(const field_scene& made) {
+    std::vector<field_body_ptr> bodies{made.probe};
     for (const field_body_ptr& b : made.fixed) {
-      const auto same = std::find_if(fixed.begin(), fixed.end(), [&](const exit_body_ptr& f) { return f->body == b; });
-      if (b == made.probe) {
-        fixed.push_back(probe);
-      } else if (same != fixed.end()) {
-        fixed.push_back(exit_body_ptr(*same));
-      } else {
-        fixed.push_back(std::make_shared<const exit_body>(b));
-      }
+      if (std::find(bodies.begin(), bodies.end(), b) == bodies.end()) bodies.push_back(b);
+    }
+    std::vector<exit_body_ptr> ready(bodies.size());
+    detail::for_each_task(bodies.size(), detail::resolve_threads(0),
+                          [&](std::size_t i) { ready[i] = std::make_shared<const exit_body>(bodies[i]); });
+    probe = ready[0];
+    for (const field_body_ptr& b : made.fixed) {
+      fixed.push_back(ready[static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), b) - bodies.begin())]);
     }
   }
 

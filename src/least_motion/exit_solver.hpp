@@ -67,10 +67,11 @@ class exit_solver {
   void add_up(std::span<wrench> by_body) noexcept;
   // Adds the spring's pull, at the deepest sample, for a way out that did not settle: the bed's push, which equals the
   // pull in balance, may be anything there.
-  void pull_out(const way_out& w, std::span<wrench> by_body) noexcept;
-  // Adds to the wrench, and to what one body does.
-  void push(const wrench& part, std::uint32_t body, std::span<wrench> by_body) noexcept {
+  void pull_out(way_out& w, std::span<wrench> by_body) noexcept;
+  // Adds to the wrench, to the part of a way out, and to what one body does.
+  void push(const wrench& part, way_out& by, std::uint32_t body, std::span<wrench> by_body) noexcept {
     wrench_ += part;
+    by.on_probe_w += part;
     if (body < by_body.size()) by_body[body] += part;
   }
 

@@ -29,7 +29,8 @@ void exit_solver::add_up(std::span<wrench> by_body) noexcept {
   unsettled_stiffness_ = {};
   mixed_stiffness stiffness(springs_);
   const std::uint32_t of_deepest = posed().meeting_of(finder_.deepest()).body;
-  for (const way_out& w : finder_.ways()) {
+  for (way_out& w : finder_.ways()) {
+    w.on_probe_w = {};
     if (!(w.weight > 0.0)) continue;
     bed_patch& patch = finder_.gathered_at(w.moved());
     const double share = w.weight;
@@ -55,20 +56,20 @@ void exit_solver::add_up(std::span<wrench> by_body) noexcept {
       for (int i = 0; i < 3; ++i) by_pose += (-turned_slope[i]) * about.centre_by_pose[i];
       const double push_n = bed_.push_n(d.value_m);
       pushed_n += push_n * d.slope;
-      push(to_wrench((-share * push_n) * by_pose), posed().meeting_of(m).body, by_body);
+      push(to_wrench((-share * push_n) * by_pose), w, posed().meeting_of(m).body, by_body);
       own.add(bed_.rise_n_per_m(d.value_m), push_n, {by_pose, d.slope, d.hessian_per_m, arm, rest, lever, of_probe});
     });
     const double turned = -0.5 * share * rule_.stiffness_n_per_m * glm::dot(w.turn_w, w.turn_w);
-    push(to_wrench(turned * about.arm_squared_by_pose), of_deepest, by_body);
+    push(to_wrench(turned * about.arm_squared_by_pose), w, of_deepest, by_body);
     own.add_pivot(about, rule_.stiffness_n_per_m, w.turn_w, pushed_n);
     stiffness.add(share, own);
   }
   stiffness_ = stiffness.sum() + unsettled_stiffness_;
 }
 
-void exit_solver::pull_out(const way_out& w, std::span<wrench> by_body) noexcept {
+void exit_solver::pull_out(way_out& w, std::span<wrench> by_body) noexcept {
   const vec3 pull_n = (w.weight * springs_.one) * w.z_w, lever = posed().lever_w(finder_.deepest());
-  push({pull_n, glm::cross(lever, pull_n)}, posed().meeting_of(finder_.deepest()).body, by_body);
+  push({pull_n, glm::cross(lever, pull_n)}, w, posed().meeting_of(finder_.deepest()).body, by_body);
   const double length = glm::length(w.z_w);
   if (!(length > 0.0)) return;
   const vec3 along = w.z_w / length;
@@ -122,8 +123,12 @@ least_motion::~least_motion() = default;
 status least_motion::accumulate(const scene_pose& at, const near_samples&, std::span<const near_plane>,
                                 force_report& out) noexcept {
   solver_->solve(at, out.by_body);
-  report_ways();
-  out = {{solver_->on_probe_w(), solver_->stiffness()}, reported_.contacts(), reported_.depths(), out.by_body};
+  const std::size_t parts = report_ways(out.by_contact);
+  out = {{solver_->on_probe_w(), solver_->stiffness()},
+         reported_.contacts(),
+         reported_.depths(),
+         out.by_body,
+         out.by_contact.first(parts)};
   return solver_->hit().any() ? status::capacity_reached : status::ok;
 }
 
@@ -134,11 +139,15 @@ std::size_t least_motion::heap_bytes() const noexcept {
   return sizeof(exits::exit_solver) + solver_->heap_bytes() + asperity::heap_bytes(reported_);
 }
 
-void least_motion::report_ways() noexcept {
+std::size_t least_motion::report_ways(std::span<wrench> by_contact) noexcept {
   reported_.clear();
+  bool all = true;
   for (const exits::way_out& w : solver_->ways()) {
     const double pushed_n = glm::length(w.bed.gradient.linear);
-    if (!(w.weight > 0.0 && pushed_n > 0.0) || w.touching.empty()) continue;
+    if (!(w.weight > 0.0 && pushed_n > 0.0) || w.touching.empty()) {
+      all = all && is_zero(w.on_probe_w);
+      continue;
+    }
     const exits::mark* deepest = w.touching.begin();
     for (const exits::mark& m : w.touching) {
       if (m.depth_m > deepest->depth_m) deepest = &m;
@@ -159,8 +168,10 @@ void least_motion::report_ways() noexcept {
     c.window.n_ab_w = n_ab_w;
     c.window.u_w = any_orthogonal(n_ab_w);
     c.window.v_w = glm::cross(n_ab_w, c.window.u_w);
-    if (!reported_.add(c, d)) return;
+    if (!reported_.add(c, d)) return 0;
+    if (c.id < by_contact.size()) by_contact[c.id] = w.on_probe_w;
   }
+  return all ? std::min(by_contact.size(), reported_.size()) : 0;
 }
 
 }  // namespace asperity

@@ -61,6 +61,7 @@ class way_finder {
   }
 
   [[nodiscard]] const ways_out& ways() const noexcept { return ways_; }
+  [[nodiscard]] ways_out& ways() noexcept { return ways_; }
   [[nodiscard]] const mark& deepest() const noexcept { return deepest_; }  ///< at the pose as given
   [[nodiscard]] double deepest_m() const noexcept { return deepest_m_; }   ///< of it; 0 where nothing overlaps
   [[nodiscard]] const exit_limits_hit& hit() const noexcept { return hit_; }

@@ -38,6 +38,7 @@ struct way_out {
   bool settled = true;             ///< false: the iteration ended before it came to rest
   bool looked_beside = false;      ///< descents from beside it were made
   fixed_vector<mark, 8> touching;  ///< the deepest samples there
+  wrench on_probe_w{};             ///< its part of what the probe feels, about c_A; set once all have their weights
 
   [[nodiscard]] motion moved() const noexcept { return {z_w, turn_w}; }
   /// Cost as seen from y, J.

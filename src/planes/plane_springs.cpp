@@ -45,7 +45,7 @@ result<void> check(const plane_spring_settings& s) {
 
 status plane_springs::accumulate(const scene_pose&, const near_samples&, std::span<const near_plane> planes,
                                  force_report& out) noexcept {
-  out = {.by_body = out.by_body};
+  out = {.by_body = out.by_body, .by_contact = out.by_contact};
   reported_.clear();
   for (const near_plane& deepest : deepest_of_each(planes, settings_.same_direction)) {
     const support_plane& p = deepest.plane;
@@ -66,11 +66,13 @@ status plane_springs::accumulate(const scene_pose&, const near_samples&, std::sp
     if (!(p.depth_m > 0.0)) continue;
     const wrench push = to_wrench((-settings_.stiffness_n_per_m * p.depth_m) * p.gradient);
     out.force.on_probe_w += push;
+    if (c.id < out.by_contact.size()) out.by_contact[c.id] = push;
     if (p.body < out.by_body.size()) out.by_body[p.body] += push;
     add_outer(out.force.stiffness, -settings_.stiffness_n_per_m, p.gradient);
   }
   out.contacts = reported_.contacts();
   out.depths = reported_.depths();
+  out.by_contact = out.by_contact.first(std::min(out.by_contact.size(), reported_.size()));
   return status::ok;
 }
 

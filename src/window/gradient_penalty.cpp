@@ -1,5 +1,6 @@
 #include "asperity/window/gradient_penalty.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -18,7 +19,7 @@ double pressed_m(const penetration& p, depth_value value) noexcept {
 
 status gradient_penalty::accumulate(const scene_pose&, const contact_set& contacts, std::span<const penetration> depths,
                                     force_report& out) const noexcept {
-  out = {.by_body = out.by_body};
+  out = {.by_body = out.by_body, .by_contact = out.by_contact};
   const detail::direction_sameness sameness(settings_.same_direction_rad, settings_.other_direction_rad);
   const auto depth = [this](const penetration& p) noexcept { return pressed_m(p, settings_.value); };
   const auto share_mass = [&](const penetration& p) noexcept { return p.area_m2 * depth(p) * depth(p); };
@@ -40,6 +41,7 @@ status gradient_penalty::accumulate(const scene_pose&, const contact_set& contac
     const wrench push = to_wrench(-k * depth(p) * p.gradient);
     sum.on_probe_w += push;
     if (list[i].body < out.by_body.size()) out.by_body[list[i].body] += push;
+    if (i < out.by_contact.size()) out.by_contact[i] = push;
     add_outer(sum.stiffness, -k, p.gradient);
     sum.stiffness += -k * depth(p) * p.curvature;
   }
@@ -47,7 +49,8 @@ status gradient_penalty::accumulate(const scene_pose&, const contact_set& contac
   for (const double x : sum.stiffness.m) {
     if (!std::isfinite(x)) return status::not_finite;
   }
-  out = {sum, list, depths.first(list.size()), out.by_body};
+  out = {sum, list, depths.first(list.size()), out.by_body,
+         out.by_contact.first(std::min(out.by_contact.size(), list.size()))};
   return status::ok;
 }
 

@@ -39,16 +39,6 @@ namespace asperity::bake {
 [[nodiscard]] inline double to_float32(double x) noexcept { return asperity::round_to_float32(x); }
 [[nodiscard]] inline vec3 to_float32(const vec3& v) noexcept { return asperity::round_to_float32(v); }
 
-[[nodiscard]] inline bounds bounds_of(std::span<const vec3> points) noexcept {
-  if (points.empty()) return {};
-  bounds box{points.front(), points.front()};
-  for (const vec3& p : points) {
-    box.low = glm::min(box.low, p);
-    box.high = glm::max(box.high, p);
-  }
-  return box;
-}
-
 /// Point of the segment ab nearest to p.
 [[nodiscard]] inline vec3 closest_on_segment(const vec3& p, const vec3& a, const vec3& b) noexcept {
   const vec3 d = b - a;

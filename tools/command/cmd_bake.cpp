@@ -7,6 +7,7 @@
 
 #include "asperity/bake/bake.hpp"
 #include "asperity/bake/repair.hpp"
+#include "asperity/field/field_body.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "bake_document.hpp"
@@ -40,6 +41,7 @@ struct bake_command {
   std::optional<std::size_t> pieces;
   bool keep_uvs = false;
   bool close_holes = false;
+  bool without_field = false;
   std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
   std::shared_ptr<relief_options> relief = std::make_shared<relief_options>();
 };
@@ -124,7 +126,18 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   result<textured_model> model =
       drawing && !settings.relief ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
   if (!model) return model.error();
+  *model = io::as_saved(std::move(*model));
   model->surface = std::move(surface);
+  if (!options.without_field) {
+    if (!enter("field", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
+    result<field_body> field = make_field_body(*model, {.field = {.threads = options.threads}});
+    if (field) {
+      model->field = std::make_shared<const field_body>(std::move(*field));
+    } else {
+      remarks.push_back("no depth field is kept, and only --contacts window can render the model: " +
+                        field.error().message);
+    }
+  }
 
   json picture;
   if (drawing) {
@@ -181,6 +194,8 @@ void add_bake(command_line& line) {
       ->check(CLI::Range(1, 1000000));
   add_relief_options(sub, o->relief);
   sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
+  sub.add_flag("--without-field", o->without_field,
+               "Keep no depth field in the file, which is then about half as large; every load makes it anew");
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
       ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");

@@ -90,6 +90,9 @@ answer report(const query_command& options, any_renderer& feel, const tick& foun
   json contacts = json::array();
   for (std::size_t i = 0; i < found.contacts.size(); ++i) {
     contacts.push_back(contact_json(found.contacts[i], found.depths[i]));
+    const bool known = i < found.by_contact.size();
+    contacts.back()["force"] = known ? command::to_json(found.by_contact[i].force) : json();
+    contacts.back()["torque"] = known ? command::to_json(found.by_contact[i].torque) : json();
     if (const auto most_m = depth_at_most_m(feel, i)) contacts.back()["depth_at_most"] = *most_m;
     out.text += contact_text(i, found.contacts[i], found.depths[i]);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "asperity/field/field_body.hpp"
 #include "material_option.hpp"
 #include "text.hpp"
 
@@ -77,6 +78,23 @@ std::string quality_text(const textured_model& model, const bake_quality& q) {
   return out;
 }
 
+json to_json(const field_body& body) {
+  return {{"memory", memory_bytes(body)},
+          {"pitch", body.field.smooth.pitch_m},
+          {"relief_pitch", body.field.fine.pitch_m},
+          {"thickness", body.field.thickness_m > 0.0 ? json(body.field.thickness_m) : json()},
+          {"samples", body.samples.samples().size()}};
+}
+
+// "16 MB, smooth part every 1.2 mm, relief every 0.2 mm, 119827 samples; thinnest parts 2.1 mm"
+std::string to_text(const field_body& body) {
+  std::string out = memory_text(memory_bytes(body)) + ", smooth part every " + length_text(body.field.smooth.pitch_m) +
+                    ", relief every " + length_text(body.field.fine.pitch_m) + ", " +
+                    std::to_string(body.samples.samples().size()) + " samples";
+  if (body.field.thickness_m > 0.0) out += "; thinnest parts " + length_text(body.field.thickness_m);
+  return out;
+}
+
 }  // namespace
 
 json describe(const textured_model& model) {
@@ -113,6 +131,7 @@ json describe(const textured_model& model) {
         {"peak_to_valley", r.peak_to_valley_m},
         {"max_displacement", r.max_displacement_m}}},
       {"material", model.surface ? to_json(*model.surface) : json()},
+      {"field", model.field ? to_json(*model.field) : json()},
       {"memory", memory_bytes(model)},
   };
   if (r.quality) add_quality(*r.quality, out);
@@ -145,6 +164,7 @@ std::string describe_text(const textured_model& model) {
   const vec3& c = model.mass.centre_of_mass;
   out += row("centre of mass", length_text(c.x) + ", " + length_text(c.y) + ", " + length_text(c.z));
   if (model.surface) out += row("material", to_text(*model.surface));
+  out += row("depth field", model.field ? to_text(*model.field) : "none kept; every load makes it");
   out += row("memory", memory_text(memory_bytes(model)));
   return out;
 }

@@ -1,10 +1,13 @@
 // Textured model from .glb: guard, then the extension, then the model check.
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "asperity/field/packed_field.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "asperity/model/validate.hpp"
 #include "file_bytes.hpp"
@@ -221,6 +224,16 @@ bake_report read_report(const json_object& from) {
   return report;
 }
 
+/// The field that the bake made; nothing where the file keeps none, or one of another version or model.
+field_body_ptr read_field(const gltf_document& document, const json_object& from, const textured_model& model) {
+  if (from.whole("version") != packed_field_version) return nullptr;
+  const std::string_view bytes = document.view_bytes(from.index("bufferView", document.geometry().bufferViews.size()));
+  result<field_body> body = unpack_field(std::as_bytes(std::span(bytes)));
+  if (!body) throw rejection{body.error().code, from.path() + ": " + body.error().message};
+  if (!is_made_of(*body, model, body->made_with)) return nullptr;
+  return std::make_shared<const field_body>(std::move(*body));
+}
+
 /// The physics material of the colliders on the nodes that place this mesh; nothing where none has one.
 std::optional<material> read_surface(const json_object& root, std::size_t mesh) {
   std::optional<std::size_t> named;
@@ -262,16 +275,8 @@ textured_model read_model(const gltf_document& document) {
   model.pieces = read_pieces(document, haptic.object("pieces"), model.mesh);
   model.report = read_report(haptic.object("report"));
   model.surface = read_surface(root, m);
+  if (haptic.has("field")) model.field = read_field(document, haptic.object("field"), model);
   return model;
-}
-
-bounds bounds_of(const std::vector<vec3>& positions) {
-  bounds box{positions.front(), positions.front()};
-  for (const vec3& p : positions) {
-    box.low = glm::min(box.low, p);
-    box.high = glm::max(box.high, p);
-  }
-  return box;
 }
 
 result<textured_model> read_checked(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {

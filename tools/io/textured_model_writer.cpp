@@ -8,9 +8,11 @@
 #include <string>
 #include <tiny_gltf.h>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "asperity/core/float32.hpp"
+#include "asperity/field/packed_field.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "asperity/model/validate.hpp"
 #include "file_bytes.hpp"
@@ -31,8 +33,8 @@ std::string as_utf8(const std::string& name) {
   return json::parse(json(name).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
 }
 
-/// The model that the file will hold: positions and texture coordinates as float32, its name as UTF-8.
-textured_model as_in_file(textured_model model) {
+/// Positions and texture coordinates as float32, the name as UTF-8.
+textured_model rounded(textured_model model) {
   model.name = as_utf8(model.name);
   if (model.surface) model.surface->name = as_utf8(model.surface->name);
   for (vec3& p : model.mesh.positions) p = round_to_float32(p);
@@ -204,7 +206,7 @@ void add_surface(const material& surface, tinygltf::Node& node, glb_builder& glb
 }
 
 result<void> write(const textured_model& given, const std::filesystem::path& file) {
-  const textured_model model = as_in_file(given);
+  const textured_model model = rounded(given);
   // What is written must load again, so it passes the same check first.
   if (const auto valid = validate(model); !valid) {
     return fault(valid.error().code, file, "is not written: " + valid.error().message);
@@ -242,6 +244,12 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
         "is not written: a convex piece has a hull vertex that is no vertex of the coarse mesh; bake it again");
   }
   haptic["report"] = value(report_object(model.report));
+  if (model.field && is_made_of(*model.field, model, model.field->made_with)) {
+    object field;
+    field["version"] = value(static_cast<int>(packed_field_version));
+    field["bufferView"] = value(glb.add_view(pack_field(*model.field)));
+    haptic["field"] = value(std::move(field));
+  }
   mesh.extensions[extension::name] = value(std::move(haptic));
   glb.model.extensionsUsed.emplace_back(extension::name);
 
@@ -270,6 +278,13 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
 
 result<void> save_textured_model(const textured_model& model, const std::filesystem::path& file) {
   return without_exceptions(file, [&] { return write(model, file); });
+}
+
+textured_model as_saved(textured_model model) {
+  textured_model out = rounded(std::move(model));
+  out.mass = compute_mass_properties(out.mesh);
+  out.box = bounds_of(out.mesh.positions);
+  return out;
 }
 
 }  // namespace asperity::io

@@ -65,7 +65,7 @@ std::optional<error> fault_of(const textured_model& model, const picture_options
       return error{error_code::invalid_argument, name + " has coordinates that are not finite: mend the mesh"};
     }
   }
-  const bounds box = bake::bounds_of(options.original->positions);
+  const bounds box = bounds_of(options.original->positions);
   const double full = box.diagonal();
   const double coarse = model.box.diagonal();
   if (!(full > 0.8 * coarse && full < 1.25 * coarse)) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "asperity/core/export.hpp"
 #include "asperity/core/memory.hpp"
@@ -16,6 +17,8 @@ namespace asperity {
 struct field_body {
   body_field field;
   sample_tree samples;
+  field_body_settings made_with{};  ///< without the threads, on which it does not depend
+  std::uint64_t of_model = 0;       ///< tells whether a model is the one that it was made of: is_made_of()
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(field, samples); }
 };

@@ -32,17 +32,21 @@ struct field_body_settings {
   friend bool operator==(const field_body_settings&, const field_body_settings&) = default;
 };
 
-struct body_field;
-struct field_body;
+/// The settings on which a field depends.
+[[nodiscard]] inline field_body_settings without_threads(field_body_settings settings) noexcept {
+  settings.field.threads = 0;
+  return settings;
+}
 
-/// A body, see field/field_body.hpp: shared and never changed, like the model it was made of.
-using field_body_ptr = std::shared_ptr<const field_body>;
+struct body_field;
 
 /// One per body, in the order of the scene.
 struct field_scene {
   field_body_ptr probe;
   std::vector<field_body_ptr> fixed;
+  std::size_t kept_by_models_bytes = 0;  ///< of these, which memory_bytes() of the models counts
 
+  /// Without what the models keep.
   [[nodiscard]] ASPERITY_API std::size_t heap_bytes() const noexcept;
 };
 
@@ -50,8 +54,9 @@ struct field_scene {
 /// @param made of the bodies, or nullptr
 [[nodiscard]] ASPERITY_API result<void> check_field_scene(const scene& bodies, const field_scene* made);
 
-/// Makes the field and the samples of every body of a scene; a model that appears several times is made once. Starts
-/// threads, which have ended when it returns.
+/// The field and the samples of every body of a scene: those that its model keeps, where they were made of it with these
+/// settings, and otherwise made now, once for a model that appears several times. Starts threads, which have ended when
+/// it returns.
 /// @return invalid_argument | bad_mesh | bad_texture
 [[nodiscard]] ASPERITY_API result<field_scene> make_field_scene(const scene& bodies,
                                                                 const field_body_settings& settings = {});

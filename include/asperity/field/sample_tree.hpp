@@ -17,6 +17,10 @@
 
 namespace asperity {
 
+namespace detail {
+class field_parts;
+}
+
 /// A point of a body's fine surface, and the directions that the coarse surface looks to there: one on a face, a fan on
 /// an edge, a cone on a vertex. Body frame.
 struct field_sample {
@@ -76,6 +80,11 @@ class sample_tree {
 
   /// How many balls are numbered.
   [[nodiscard]] std::size_t balls() const noexcept { return balls_.size(); }
+  /// How many a tree of so many samples has.
+  [[nodiscard]] static constexpr std::size_t balls_of(std::size_t samples) noexcept {
+    if (samples == 0) return 0;
+    return samples <= leaf_samples ? 1 : 1 + balls_of(samples / 2) + balls_of(samples - samples / 2);
+  }
 
   /// Calls look(branch), which answers a branch_answer, from the largest ball down, and visit(sample_ball, samples) for
   /// the leaves of the balls that it takes. A leaf that it leaves open is not visited. The order is the tree's own.
@@ -116,6 +125,7 @@ class sample_tree {
 
  private:
   class builder;
+  friend class detail::field_parts;  // reads and writes trees
 
   // Depth-first layout: the left child follows its parent, `right` is 0 for a leaf.
   struct ball {

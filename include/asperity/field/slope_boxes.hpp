@@ -14,6 +14,8 @@
 
 namespace asperity::detail {
 
+class field_parts;
+
 /// A box around the slopes at the points of each block of two cells a side of a grid. Measured, not proved: a slope that
 /// no point had is not in it. Made once, beside the field; never changed.
 class slope_boxes {
@@ -83,6 +85,8 @@ class slope_boxes {
   friend bool operator==(const slope_boxes&, const slope_boxes&) = default;
 
  private:
+  friend class field_parts;  // reads and writes boxes
+
   /// Of points in a block; empty while low is above high.
   struct slopes {
     glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};

@@ -58,7 +58,8 @@ class ASPERITY_API least_motion {
   [[nodiscard]] std::size_t heap_bytes() const noexcept;
 
  private:
-  void report_ways() noexcept;
+  // One contact for each way out. @return how many of by_contact are known: as many as contacts, or none
+  std::size_t report_ways(std::span<wrench> by_contact) noexcept;
 
   least_motion_settings settings_;
   std::unique_ptr<exits::exit_solver> solver_;

@@ -8,6 +8,7 @@
 // - It reports contacts as a description of the force, one depth for each. The spans live until the next call.
 // - Whoever calls gives room for what each fixed body does to the probe (force_report::by_body), zero everywhere. A model
 //   that knows it adds it up there, the sum being the net wrench; one that does not leaves the report without the room.
+// - The same for what each reported contact does (force_report::by_contact): as many as contacts, or none.
 // - The answer depends on the arguments alone. A model keeps memory from call to call, and no more.
 // - Nothing in accumulate() allocates, locks, throws, prints or reads a clock.
 // - capacity_reached says that the wrench is usable and lacks something; what is neither that nor ok leaves a zero.
@@ -46,6 +47,7 @@ struct force_report {
   std::span<const contact> contacts{};    ///< for reports: who pushes, where and which way
   std::span<const penetration> depths{};  ///< one per contact
   std::span<wrench> by_body{};            ///< on the probe by each fixed body, about c_A, world axes; empty: not known
+  std::span<wrench> by_contact{};         ///< the same by each of the contacts
 };
 
 /// Base of a force model's `policy_tag`: naming it says "I keep the contract above".

@@ -20,12 +20,13 @@ namespace asperity {
 
 /// What one tick found. The spans point into the renderer and live until its next step.
 struct tick {
-  contact_force force{};                  ///< on the probe; zero where the status is not ok or capacity_reached
-  vec3 centre_of_mass_w{0.0};             ///< c_A, the point the torque is about
-  std::span<const contact> contacts;      ///< what the force model reports
-  std::span<const penetration> depths;    ///< one per contact
-  std::size_t dropped_contacts = 0;       ///< contacts that did not fit: raise contact_limits
-  std::span<const wrench> on_body;        ///< on each fixed body, about its own centre of mass; empty: not known
+  contact_force force{};                ///< on the probe; zero where the status is not ok or capacity_reached
+  vec3 centre_of_mass_w{0.0};           ///< c_A, the point the torque is about
+  std::span<const contact> contacts;    ///< what the force model reports
+  std::span<const penetration> depths;  ///< one per contact
+  std::span<const wrench> by_contact;  ///< on the probe by each contact, about c_A: the force's parts; empty: not known
+  std::size_t dropped_contacts = 0;    ///< contacts that did not fit: raise contact_limits
+  std::span<const wrench> on_body;     ///< on each fixed body, about its own centre of mass; empty: not known
   std::span<const support_plane> planes;  ///< gaps included; empty where the depth backend knows none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
   known_motion known{};                   ///< how far the probe may move on what the planes tell
@@ -76,7 +77,8 @@ class basic_renderer {
         force_(std::move(force)),
         found_(limits),
         readings_(limits.readings()),
-        by_body_(scene_.fixed.size()) {
+        by_body_(scene_.fixed.size()),
+        by_contact_(reported_by(limits)) {
     if constexpr (reports_planes_nearby<Depth>) at_.T_wb.resize(scene_.fixed.size());
   }
 
@@ -99,14 +101,17 @@ class basic_renderer {
     const std::span<reading_type> readings = std::span(readings_).first(found_.size());
     if (const status s = depth_.measure(at, found_, readings); s != status::ok) return s;
     std::fill(by_body_.begin(), by_body_.end(), wrench{});
+    std::fill(by_contact_.begin(), by_contact_.end(), wrench{});
     force_report report;
     report.by_body = by_body_;
+    report.by_contact = by_contact_;
     const status felt = force_.accumulate(at, found_, readings, report);
     if (felt != status::ok && felt != status::capacity_reached) return felt;
     if (!is_finite(report.force.on_probe_w)) return status::not_finite;
     out.force = report.force;
     out.contacts = report.contacts;
     out.depths = report.depths;
+    if (report.by_contact.size() == report.contacts.size()) out.by_contact = report.by_contact;
     out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
     out.on_body = detail::as_felt_by_bodies(report.by_body, out.centre_of_mass_w, scene_, at);
     out.dropped_contacts = found_.dropped();
@@ -150,8 +155,8 @@ class basic_renderer {
         return 0;
       }
     };
-    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, by_body_, at_) + held(finder_) + held(depth_) +
-           held(force_);
+    return sizeof *this + heap_bytes(scene_.fixed, found_, readings_, by_body_, by_contact_, at_) + held(finder_) +
+           held(depth_) + held(force_);
   }
 
   [[nodiscard]] Finder& finder() noexcept { return finder_; }
@@ -169,13 +174,22 @@ class basic_renderer {
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return 0; }
   };
 
+  /// Most contacts that a force model reports.
+  [[nodiscard]] static std::size_t reported_by(const limits_type& limits) noexcept {
+    if constexpr (requires { limits.contacts; }) {
+      return std::max(limits.contacts, reported_contacts::most);
+    } else {
+      return reported_contacts::most;
+    }
+  }
+
   asperity::scene scene_;
   [[no_unique_address]] Finder finder_;
   [[no_unique_address]] Depth depth_;
   [[no_unique_address]] Force force_;
   found_type found_;
   std::vector<reading_type> readings_;
-  std::vector<wrench> by_body_;
+  std::vector<wrench> by_body_, by_contact_;
   [[no_unique_address]] std::conditional_t<reports_planes_nearby<Depth>, kept_poses, nothing> at_;
 };
 

@@ -122,6 +122,7 @@ TYPED_TEST_P(RendererContract, TellsWhatEachBodyFeels) {
   typename TestFixture::poses draw("renderer contract, bodies");
   any_renderer feel = TypeParam::make(this->bodies());
   std::array<int, 2> felt{};
+  int several = 0;
   const auto centre_w = [&](std::size_t b, const pose& T_wb) {
     return T_wb * this->bodies().fixed[b]->mass.centre_of_mass;
   };
@@ -137,6 +138,17 @@ TYPED_TEST_P(RendererContract, TellsWhatEachBodyFeels) {
     const double size_n = glm::length(t.force.on_probe_w.force);
     EXPECT_LE(glm::length(sum.force), 1e-12 * size_n);
     EXPECT_LE(glm::length(sum.torque), 1e-12 * size_n);
+    // Its contacts are its parts too, and the parts of a body's contacts are that body's where it says so.
+    ASSERT_EQ(t.by_contact.size(), t.contacts.size());
+    wrench parts = -1.0 * t.force.on_probe_w;
+    double parts_n = 0.0;
+    for (const wrench& w : t.by_contact) {
+      parts += w;
+      parts_n += glm::length(w.force);
+    }
+    EXPECT_LE(glm::length(parts.force), 1e-12 * parts_n);
+    EXPECT_LE(glm::length(parts.torque), 1e-12 * parts_n);
+    several += t.contacts.size() > 1 ? 1 : 0;
     // Each alone: the other is out of reach.
     for (std::size_t b = 0; b < 2; ++b) {
       std::vector<pose> apart = fixed;
@@ -151,6 +163,7 @@ TYPED_TEST_P(RendererContract, TellsWhatEachBodyFeels) {
   }
   EXPECT_GE(felt[0], 3);
   EXPECT_GE(felt[1], 3);
+  std::printf("  contacts: several at once in %d of 20 ticks\n", several);
 }
 
 TYPED_TEST_P(RendererContract, StiffnessIsSymmetricAndNegativeSemidefinite) {

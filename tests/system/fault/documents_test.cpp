@@ -70,11 +70,32 @@ TEST_F(documents, bake_and_inspect_report_the_same) {
   // The file keeps positions in single precision.
   EXPECT_NEAR(seen["size"]["diagonal"], baked["size"]["diagonal"], 1e-8);
   EXPECT_NEAR(seen["mass_properties"]["volume"], baked["mass_properties"]["volume"], 1e-11);
-  // Texels are most of a model.
+  // Texels are most of a model, but for its field.
   const double texels = 12.0 * seen["texture"]["width"].get<double>() * seen["texture"]["height"].get<double>();
-  EXPECT_GT(seen["memory"], texels);
-  EXPECT_LT(seen["memory"], 1.5 * texels);
+  const double but_field = seen["memory"].get<double>() - seen["field"]["memory"].get<double>();
+  EXPECT_GT(but_field, texels);
+  EXPECT_LT(but_field, 1.5 * texels);
   EXPECT_EQ(seen["warnings"], json::array());
+
+  expect_keys(seen["field"], {"memory", "pitch", "relief_pitch", "thickness", "samples"});
+  EXPECT_EQ(seen["field"], baked["field"]);
+  EXPECT_GT(seen["field"]["samples"], 1000);
+  const json without = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
+                                        "128", "-o", path("bare.glb"), "--without-field"},
+                                       "asperity.bake/1");
+  EXPECT_TRUE(without["field"].is_null());
+  EXPECT_TRUE(expect_document({"inspect", path("bare.glb")}, "asperity.inspect/1")["field"].is_null());
+  EXPECT_LT(read("bare.glb").size(), read("brick.glb").size() / 2);
+  // The same answer, whether the field was kept or is made now.
+  const auto felt = [&](const std::string& model) {
+    return expect_document(
+        {"query", "--probe", path(model), "--fixed", path(model), "--probe-pose", "0 0 0.0198 0 0 0 1"},
+        "asperity.query/1");
+  };
+  const json by_kept = felt("brick.glb"), by_made = felt("bare.glb");
+  EXPECT_GT(std::abs(by_kept["force"][2].get<double>()), 0.01);
+  EXPECT_EQ(by_kept["force"], by_made["force"]);
+  EXPECT_EQ(by_kept["torque"], by_made["torque"]);
 }
 
 TEST_F(documents, pictures) {
@@ -196,10 +217,14 @@ TEST_P(query_document, is_the_contract) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(d["bodies"][0]["force"][i], -d["force"][i].get<double>());
   expect_numbers(d["bodies"][0]["torque"], 3);
   ASSERT_FALSE(d["contacts"].empty());
+  std::array<double, 3> felt{};
   for (const json& c : d["contacts"]) {
     expect_keys(c, {"body", "p_a", "p_b", "n_ab", "centre", "u", "half_size", "separation", "depth", "soft_depth",
-                    "gradient", "witness", "samples", "flags"});
-    for (const char* key : {"p_a", "p_b", "n_ab", "centre", "u", "witness"}) expect_numbers(c[key], 3);
+                    "gradient", "witness", "samples", "flags", "force", "torque"});
+    for (const char* key : {"p_a", "p_b", "n_ab", "centre", "u", "witness", "force", "torque"}) {
+      expect_numbers(c[key], 3);
+    }
+    for (std::size_t i = 0; i < 3; ++i) felt[i] += c["force"][i].get<double>();
     expect_numbers(c["gradient"], 6);
     EXPECT_EQ(c["body"], 0);
     EXPECT_TRUE(c["flags"].is_array());
@@ -209,6 +234,7 @@ TEST_P(query_document, is_the_contract) {
     for (std::size_t i = 0; i < 3; ++i) along += c["gradient"][i].get<double>() * c["n_ab"][i].get<double>();
     EXPECT_NEAR(along, 1.0, 1e-9);
   }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(felt[i], d["force"][i], 1e-9);
   // From the probe above to the body below. The least motion leans towards a flank of the ridges, by 0.17 rad with this
   // small texture.
   EXPECT_NEAR(d["contacts"][0]["n_ab"][2], -1.0, std::string(GetParam()) == "least-motion" ? 0.03 : 1e-6);

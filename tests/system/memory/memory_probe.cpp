@@ -66,6 +66,6 @@ int main(int argc, char** argv) {
   auto feel = asperity::make_renderer({probe, {fixed}});
   after = measure();
   if (!feel) return 1;
-  print("renderer", feel->memory_bytes(), feel->depth().heap_bytes(), before, after);
+  print("renderer", feel->memory_bytes(), feel->force().heap_bytes(), before, after);
   return 0;
 }

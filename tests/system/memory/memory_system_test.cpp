@@ -57,7 +57,7 @@ TEST_P(MemorySystem, AgreesWithTheReport) {
   }
 }
 
-TEST_P(MemorySystem, AReportThatForgetsTheTextureOrTheFinderDoesNot) {
+TEST_P(MemorySystem, AReportThatForgetsTheTextureOrTheForceModelDoesNot) {
   for (const auto& [what, m] : measured_) {
     EXPECT_GT(difference(m.reported - m.part, m.lent), bound) << what;
     EXPECT_GT(difference(m.reported - m.part, m.resident), bound) << what;

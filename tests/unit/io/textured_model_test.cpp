@@ -4,6 +4,7 @@
 #include <string>
 
 #include "asperity/core/float32.hpp"
+#include "asperity/field/packed_field.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "glb_editor.hpp"
@@ -189,6 +190,65 @@ TEST(TexturedModelFile, RefusesWhatIsNoGlb) {
   EXPECT_EQ(code(folder.path()), "io_failed");
   EXPECT_EQ(code(folder.file("empty.glb", "")), "bad_format");
   EXPECT_EQ(code(folder.file("text.glb", "{\"asset\":{\"version\":\"2.0\"}}")), "bad_format");
+}
+
+// A box as a file holds it, with the field of it, coarse to be made at once.
+textured_model box_with_field(const scratch_folder& folder) {
+  EXPECT_TRUE(
+      io::save_textured_model(make_textured_box({0.02, 0.03, 0.01}, 64, ridges(1e-3, 5e-3)), folder.file("bare.glb")));
+  textured_model model = io::load_textured_model(folder.file("bare.glb")).value();
+  EXPECT_EQ(model.field, nullptr);
+  field_body_settings settings;
+  settings.field.most_nodes = 20'000;
+  settings.sample_pitch_m = 2e-3;
+  model.field = std::make_shared<const field_body>(make_field_body(model, settings).value());
+  return model;
+}
+
+TEST(TexturedModelFile, KeepsTheFieldOfItsModel) {
+  const scratch_folder folder;
+  textured_model model = box_with_field(folder);
+  ASSERT_TRUE(io::save_textured_model(model, folder.file("m.glb")));
+  const textured_model back = io::load_textured_model(folder.file("m.glb")).value();
+  ASSERT_NE(back.field, nullptr);
+  EXPECT_TRUE(pack_field(*back.field) == pack_field(*model.field));
+  ASSERT_TRUE(io::save_textured_model(back, folder.file("again.glb")));
+  EXPECT_EQ(test_support::read_all(folder.file("again.glb")), test_support::read_all(folder.file("m.glb")));
+
+  // A field of another surface is not written.
+  model.texture.texels[10].x += 1e-4F;
+  ASSERT_TRUE(io::save_textured_model(model, folder.file("worn.glb")));
+  EXPECT_EQ(io::load_textured_model(folder.file("worn.glb")).value().field, nullptr);
+}
+
+TEST(TexturedModelFile, TakesNoFieldThatIsNotItsOwn) {
+  const scratch_folder folder;
+  ASSERT_TRUE(io::save_textured_model(box_with_field(folder), folder.file("m.glb")));
+  const test_support::glb_editor good(test_support::read_all(folder.file("m.glb")));
+  const auto loaded = [&](const test_support::glb_editor& edited) {
+    return io::load_textured_model(folder.file("edited.glb", edited.bytes()));
+  };
+  const std::size_t texels = test_support::glb_editor(good).haptic()["texture"]["bufferView"];
+  const std::size_t packed = test_support::glb_editor(good).haptic()["field"]["bufferView"];
+
+  test_support::glb_editor newer = good;  // its bytes are nobody's business then
+  newer.haptic()["field"] = {{"version", packed_field_version + 1}, {"bufferView", texels}};
+  ASSERT_TRUE(loaded(newer));
+  EXPECT_EQ(loaded(newer).value().field, nullptr);
+
+  test_support::glb_editor worn = good;
+  worn.put(texels, 3 * 70, 0.0203F);
+  ASSERT_TRUE(loaded(worn)) << loaded(worn).error().message;
+  EXPECT_EQ(loaded(worn).value().field, nullptr);
+
+  test_support::glb_editor damaged = good;
+  damaged.put(packed, 35, std::numeric_limits<float>::quiet_NaN());  // the first node of its grid
+  const auto refused = loaded(damaged);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, error_code::bad_format);
+  for (const char* word : {"edited.glb", "field", "a node of its grid", "bake the model again"}) {
+    EXPECT_NE(refused.error().message.find(word), std::string::npos) << refused.error().message;
+  }
 }
 
 }  // namespace

@@ -22,4 +22,9 @@ namespace asperity::io {
 /// @return io_failed | bad_mesh | bad_texture | invalid_argument | limit_exceeded
 [[nodiscard]] result<void> save_textured_model(const textured_model& model, const std::filesystem::path& file);
 
+/// The model that a file will hold, and that comes back from it: positions and texture coordinates rounded to float32,
+/// volume, centre of mass, inertia and box of these, its name as UTF-8. A field that the file should keep is made of
+/// this one. @pre it has vertices
+[[nodiscard]] textured_model as_saved(textured_model model);
+
 }  // namespace asperity::io
