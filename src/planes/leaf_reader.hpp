@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <utility>
 
@@ -18,6 +17,7 @@
 #include "field/quick_read.hpp"
 #include "field/quick_relief.hpp"
 #include "planes/ball_bound.hpp"
+#include "planes/facing.hpp"
 #include "planes/slope_spread.hpp"
 
 namespace asperity {
@@ -163,23 +163,17 @@ class leaf_reader {
   }
 
   [[nodiscard]] sample_depth exact(const field_sample& s) const noexcept {
-    // Half way through a body no way out is shorter than another: a sample there holds nothing.
-    constexpr double least_slope = 0.05;
     ++work_->exact;
     const field_reading d = in_y_->read(T_yx_ * vec3(s.position_b));
     const double squared = glm::dot(d.slope, d.slope);
-    if (!(squared > least_slope * least_slope)) return {};
-    const double facing = glm::dot(vec3(s.axis_b), rotation_xy_ * d.slope) / std::sqrt(squared);
-    const double sunk_m = sinking_m_ * (1.0 - facing_share(facing, static_cast<double>(s.cone_rad)));
+    if (!(squared > facing::least_slope * facing::least_slope)) return {};
+    const double cosine = glm::dot(vec3(s.axis_b), rotation_xy_ * d.slope) / std::sqrt(squared);
+    const double sunk_m = sinking_m_ * (1.0 - facing_share(cosine, static_cast<double>(s.cone_rad)));
     return {&s, d.value_m - sunk_m, d.slope};
   }
 
-  // How far a sample whose surface looks away from the direction that it would be pushed in may count: in full up to 35
-  // degrees beyond its cone, since relief leans, and not at all from 60 degrees on.
   [[nodiscard]] static double facing_share(double cosine, double cone_rad) noexcept {
-    constexpr double full_rad = 35.0 * std::numbers::pi / 180.0, none_rad = 60.0 * std::numbers::pi / 180.0;
-    const double full = std::cos(std::min(cone_rad + full_rad, std::numbers::pi));
-    const double none = std::cos(std::min(cone_rad + none_rad, std::numbers::pi));
+    const auto [full, none] = facing::cosines_of(cone_rad);
     return full > none ? smoothstep((cosine - none) / (full - none)) : 1.0;
   }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "asperity/core/memory.hpp"
+#include "planes/facing.hpp"
 #include "planes/first_met.hpp"
 #include "planes/known_branches.hpp"
 #include "planes/known_depths.hpp"
@@ -88,6 +89,7 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
       told_m_(reach_m),
+      sinking_m_(facing::sinking_m(of)),
       ways_(of.fixed.size()),
       watch_(std::make_unique<plane_watch>(*bodies_, of)),
       met_(std::make_unique<first_met>(trials_within(reach_m))),
@@ -96,10 +98,6 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       asked_at_(std::make_unique<vec6>()) {
   detail::reserve_resident(reported_, most);
   detail::reserve_resident(order_, most);
-  constexpr double of_the_diagonal = 0.03;
-  double smaller_m = of.probe->box.diagonal();
-  for (const model_ptr& b : of.fixed) smaller_m = std::min(smaller_m, b->box.diagonal());
-  sinking_m_ = of_the_diagonal * smaller_m;
   for (const field_sample& s : bodies_->probe->samples.samples()) {
     farthest_m_ = std::max(farthest_m_, glm::distance(vec3(s.position_b), centre_of_mass_a_));
   }

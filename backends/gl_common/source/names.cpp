@@ -85,6 +85,29 @@ owned_name make_name(const context_ptr& context, name_kind kind) {
   return {context, kind, name};
 }
 
+result<owned_name> make_buffer(const context_ptr& context, std::size_t bytes, const void* data,
+                               const std::string& what) {
+  const functions& gl = context->gl();
+  GLint64 largest = 0;
+  gl.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &largest);
+  if (bytes > static_cast<std::size_t>(largest)) {
+    return error{error_code::limit_exceeded, "OpenGL: " + what + " take " + std::to_string(bytes) +
+                                                 " bytes; a buffer of this device has at most " +
+                                                 std::to_string(largest)};
+  }
+  if (const result<void> r = context->take_memory(bytes, what); !r) return r.error();
+  static_cast<void>(take_errors(gl));
+  GLuint name = 0;
+  gl.GenBuffers(1, &name);
+  owned_name out(context, name_kind::buffer, name, bytes);
+  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, name);
+  gl.BufferData(GL_SHADER_STORAGE_BUFFER, static_cast<GLsizeiptr>(bytes), data,
+                data != nullptr ? GL_STATIC_DRAW : GL_DYNAMIC_COPY);
+  gl.BindBuffer(GL_SHADER_STORAGE_BUFFER, 0);
+  if (gl.GetError() != GL_NO_ERROR) return device_full(gl, what, bytes);
+  return out;
+}
+
 result<owned_name> make_texture(const context_ptr& context, GLenum internal_format, std::uint32_t width,
                                 std::uint32_t height, const std::string& what) {
   const functions& gl = context->gl();

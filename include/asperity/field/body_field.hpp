@@ -41,10 +41,13 @@ struct foot_and_fade {
 struct body_field {
   detail::coarse_grid smooth;
   detail::relief_bricks fine;
-  detail::third_bounds most_third;                       ///< of the smooth part
-  detail::relief_bounds most_relief;                     ///< of the fine part
-  detail::slope_boxes slopes;                            ///< of both, near the surface
-  static constexpr double slopes_to = 3.0;               ///< they were measured up to so many pitches off the surface
+  detail::third_bounds most_third;          ///< of the smooth part
+  detail::relief_bounds most_relief;        ///< of the fine part
+  detail::slope_boxes slopes;               ///< of both, near the surface
+  static constexpr double slopes_to = 3.0;  ///< they were measured up to so many pitches off the surface
+  static constexpr double fade_none = 0.4;  ///< |grad S|^2 above which relief counts in part, far from the surface
+  static constexpr double fade_full = 0.8;  ///< |grad S|^2 above which it counts in full
+  static constexpr double distance_slack = 0.25;         ///< largest error of swept distances, in pitches
   double lowest_relief_m = 0.0, highest_relief_m = 0.0;  ///< bounds of the relief; at most and at least 0
   double thickness_m = 0.0;          ///< of the thinnest parts of the body; 0 where no two walls face each other
   double thinnest_resolved_m = 0.0;  ///< parts thinner than this are blurred: three pitches of the smooth part
@@ -110,11 +113,6 @@ struct body_field {
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
     return asperity::heap_bytes(smooth, fine, most_third, most_relief, slopes);
   }
-
- private:
-  static constexpr double fade_none = 0.4;        // |grad S|^2 above which relief counts in part, far from the surface
-  static constexpr double fade_full = 0.8;        // |grad S|^2 above which it counts in full
-  static constexpr double distance_slack = 0.25;  // largest error of swept distances, in pitches
 };
 
 }  // namespace asperity

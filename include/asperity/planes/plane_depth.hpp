@@ -94,8 +94,8 @@ class ASPERITY_API plane_depth {
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
   double reach_m_;
-  double told_m_;           // of the last measure(): no gap beyond this is told
-  double sinking_m_ = 0.0;  // of a sample that looks away
+  double told_m_;     // of the last measure(): no gap beyond this is told
+  double sinking_m_;  // of a sample that looks away
   std::vector<support_plane> reported_;
   std::vector<std::uint32_t> order_;  // of patches
   // How the probe has moved from the tick before, seen from each body.

@@ -54,6 +54,10 @@ class owned_name {
 /// A vertex array, framebuffer or query: something without memory of its own.
 [[nodiscard]] owned_name make_name(const context_ptr& context, name_kind kind);
 
+/// A buffer of the device's own, for shaders. @param data `bytes` to fill it with, or nullptr: undefined
+[[nodiscard]] result<owned_name> make_buffer(const context_ptr& context, std::size_t bytes, const void* data,
+                                             const std::string& what);
+
 /// A texture without mip levels, read with texelFetch: nearest, clamped.
 /// @param internal_format  GL_RGBA32F, GL_RGBA16, GL_R32F, GL_DEPTH_COMPONENT16, GL_DEPTH_COMPONENT24 or
 /// GL_DEPTH_COMPONENT32F

@@ -21,17 +21,12 @@
 #include <memory>
 #include <span>
 
+#include "asperity/gl/arithmetic.hpp"
 #include "asperity/gl/context.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/window/window_depth_settings.hpp"
 
 namespace asperity::gl {
-
-enum class arithmetic : std::uint8_t {
-  automatic,         ///< double where shaders have it, single elsewhere (ES)
-  single_precision,  ///< quicker on cards for games, at the error that compute_depth states
-  double_precision,
-};
 
 /// Capacities and arithmetic of a compute_depth.
 struct compute_settings {

@@ -1,0 +1,36 @@
+// How far a sample counts whose surface looks away from the way that a field would push it in.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "asperity/model/scene.hpp"
+
+namespace asperity::facing {
+
+/// Half way through a body no way out is shorter than another: a sample where the field's slope is shorter holds nothing.
+inline constexpr double least_slope = 0.05;
+
+/// Cosines of the angle between a sample's axis and the slope: the sample counts in full from `full` on and not at all
+/// up to `none`.
+struct cosines {
+  double full = -1.0, none = -1.0;
+};
+
+/// In full up to 35 degrees beyond its cone, since relief leans, and not at all from 60 degrees on. @rt safe
+[[nodiscard]] inline cosines cosines_of(double cone_rad) noexcept {
+  constexpr double full_rad = 35.0 * std::numbers::pi / 180.0, none_rad = 60.0 * std::numbers::pi / 180.0;
+  return {std::cos(std::min(cone_rad + full_rad, std::numbers::pi)),
+          std::cos(std::min(cone_rad + none_rad, std::numbers::pi))};
+}
+
+/// By how much a sample of a scene sinks that does not count at all, m: see plane_depth.
+[[nodiscard]] inline double sinking_m(const scene& of) noexcept {
+  constexpr double of_the_diagonal = 0.03;
+  double smallest_m = of.probe->box.diagonal();
+  for (const model_ptr& b : of.fixed) smallest_m = std::min(smallest_m, b->box.diagonal());
+  return of_the_diagonal * smallest_m;
+}
+
+}  // namespace asperity::facing
