@@ -291,6 +291,12 @@ result<bench_of_backends> time_backends(const scene& bodies, const backend_bench
   out.gpu.device_bytes = model_bytes;
   out.patch_triangles = work->patch_a.size() + work->patch_b.size();
   for (candidate& c : *all) out.backends.push_back(std::move(c.times));
+  if (options.backend == "gl-occlusion") return out;
+  // A device of software takes as long for a pose as the processor, or longer.
+  result<std::vector<bench_of_planes>> planes =
+      time_planes(bodies, *context, facts.software ? 64 : 1024, options.repeats, options.seed, progress);
+  if (!planes) return planes.error();
+  out.planes = std::move(planes).value();
   return out;
 }
 

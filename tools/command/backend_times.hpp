@@ -9,6 +9,7 @@
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
 #include "gpu_use.hpp"
+#include "plane_times.hpp"
 #include "progress.hpp"
 
 namespace asperity::command {
@@ -43,6 +44,7 @@ struct bench_of_backends {
   gpu_use gpu;                      ///< its device_bytes: the models
   std::size_t patch_triangles = 0;  ///< of both patches of the contact that is repeated
   std::vector<backend_times> backends;
+  std::vector<bench_of_planes> planes;  ///< of the default renderer; none where only gl-occlusion is compared
 };
 
 /// Repeats the deepest contact at the first touch, and times all backends in turn, so that what else the machine does

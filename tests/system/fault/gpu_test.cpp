@@ -274,6 +274,19 @@ TEST_F(on_gpu, bench_compares_backends_in_one_run) {
   }
   EXPECT_EQ(seen, (std::set<std::string>{"cpu soft", "cpu central", "gl-compute soft", "gl-compute central",
                                          "gl-occlusion central"}));
+  ASSERT_EQ(d.at("planes").size(), 2U);
+  for (const json& p : d.at("planes")) {
+    const bool is_double = p.at("arithmetic") == "double";
+    EXPECT_EQ(p.at("sizes").size(), 3U);
+    for (const json& s : p.at("sizes")) EXPECT_GT(s.at("ratio_to_cpu"), 0.0);
+    EXPECT_EQ(p.at("too_deep_share"), 0.0);
+    EXPECT_LE(p.at("depth_difference_m"), is_double ? 1e-9 : 5e-6);
+    EXPECT_LE(p.at("force_difference_p99"), is_double ? 1e-6 : 1e-2);
+  }
+  EXPECT_EQ(document({"bench", "--probe", block(), "--fixed", block(), "--backend", "gl-occlusion", "--grid", "4",
+                      "--repeats", "1"})
+                .at("planes"),
+            json::array());
 }
 
 }  // namespace
