@@ -115,7 +115,7 @@ result<void> time_sizes(bench_of_planes& out, gl::plane_batch& batch, plane_rend
       timed.cpu_s.push_back(wall_seconds([&] { answered = one_by_one(feel, some, t, told); }));
       if (answered != status::ok) return not_answered(answered);
     }
-    timed.ratio = summarise(timed.gpu_s).p50 / summarise(timed.cpu_s).p50;
+    timed.ratio = summarise(timed.gpu_s).p50_s / summarise(timed.cpu_s).p50_s;
   }
   judge(out, planes, told);
   return {};
