@@ -135,13 +135,13 @@ result<std::vector<bench_of_planes>> time_planes(const scene& bodies, const gl::
 
   std::vector<bench_of_planes> both;
   for (const gl::arithmetic with : {gl::arithmetic::double_precision, gl::arithmetic::single_precision}) {
-    bench_of_planes out{.arithmetic = with == gl::arithmetic::double_precision ? "double" : "single", .sizes = {}};
+    const bool is_double = with == gl::arithmetic::double_precision;
+    if (is_double && !context->facts().double_precision) continue;
+    bench_of_planes out{.arithmetic = is_double ? "double" : "single", .sizes = {}};
     const std::size_t before = context->device_bytes();
     result<gl::plane_batch> batch = error{error_code::unsupported, ""};
     out.set_up_s = wall_seconds(
         [&] { batch = gl::plane_batch::make(context, bodies, shared, {.poses = poses, .arithmetic = with}); });
-    // OpenGL ES has no double precision.
-    if (!batch && batch.error().code == error_code::unsupported && both.empty() && out.arithmetic == "double") continue;
     if (!batch) return batch.error();
     out.device_bytes = context->device_bytes() - before;
     if (result<void> ok = time_sizes(out, *batch, *feel, drawn->all(), repeats, progress); !ok) return ok.error();

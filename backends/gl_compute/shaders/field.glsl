@@ -100,9 +100,10 @@ smooth_reading read_smooth(field_place y, rvec3 p) {
   if (beyond == rvec3(0.0)) return out_;
   // The relief ends with the grid, so that only value and slope count from here on.
   real away = length(beyond);
-  for (int a = 0; a < 3; ++a) {
-    if (beyond[a] != real(0.0)) out_.slope[a] = real(0.0);
-  }
+  // By name, not by index: NVIDIA's compiler does not link a write to an indexed component of a dvec3.
+  if (beyond.x != real(0.0)) out_.slope.x = real(0.0);
+  if (beyond.y != real(0.0)) out_.slope.y = real(0.0);
+  if (beyond.z != real(0.0)) out_.slope.z = real(0.0);
   out_.value -= away;
   out_.slope -= beyond / away;
   return out_;
