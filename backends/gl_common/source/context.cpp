@@ -193,7 +193,7 @@ result<void> context::take_memory(std::size_t bytes, const std::string& what) {
   return error{error_code::limit_exceeded, "OpenGL: " + what + " needs " + std::to_string(bytes) +
                                                " bytes of device memory; " + std::to_string(before) + " of at most " +
                                                std::to_string(memory_limit_bytes_) +
-                                               " are taken: raise the limit, or use smaller textures"};
+                                               " are taken: raise the limit, or use smaller textures or fewer contacts"};
 }
 
 current_scope::current_scope(context_ptr c) noexcept : context_(std::move(c)), state_(status::ok) {
