@@ -92,7 +92,7 @@ void lay_relief(body_field& out, const bounds& box, const field_settings& settin
 }
 
 /// Measures slopes at every second point of the fine surface, and above and below it.
-[[nodiscard]] slope_boxes measure_slopes(const relief_fit& fit, const body_field& of, unsigned threads) {
+[[nodiscard]] slope_boxes measure_slopes(const relief_points& points, const body_field& of, unsigned threads) {
   constexpr std::array<double, 11> off_surface{0.0, -0.4, 0.2, -0.9, 0.7, -1.5, 1.3, -2.2, 2.1, -3.0, 3.0};  // pitches
   static_assert(off_surface.back() == body_field::slopes_to);
   // Boxes for each part, because a point's block may be any thread's; not more than memory is there for.
@@ -106,7 +106,7 @@ void lay_relief(body_field& out, const bounds& box, const field_settings& settin
       const coarse_reading at = quick_read<quick_part::bend>(of.smooth, p_b).at;
       boxes[part].add(p_b, at.slope + of.relief(p_b, at).slope);
     };
-    fit.for_each_foot(part_begin(fit.points(), parts, part), part_begin(fit.points(), parts, part + 1), add);
+    points.for_each_foot(part_begin(points.points(), parts, part), part_begin(points.points(), parts, part + 1), add);
   });
   for (std::size_t i = 1; i < parts; ++i) boxes[0].add(boxes[i]);
   return std::move(boxes[0]);
@@ -185,11 +185,11 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
   lay_relief(out, box, settings, texel, area_m2);
   surface = std::vector<detail::fine_triangle>();
   const double step_m = 0.95 * out.fine.pitch_m;
-  detail::relief_fit fit(out.fine, out, 1e-6 * model.box.diagonal(), threads);
+  detail::relief_points points(out.fine, out);
   detail::for_each_task(2, threads, [&](std::size_t task) {
     if (task == 0) {
-      fit.take_points(model, step_m, 1.1 * area_m2 / (step_m * step_m));
-      fit.solve();
+      points.take(model, step_m, 1.1 * area_m2 / (step_m * step_m), threads);
+      detail::relief_fit(out.fine, points, 1e-6 * model.box.diagonal(), threads).solve();
     } else {
       out.most_third = detail::third_bounds(out.smooth);
     }
@@ -201,7 +201,7 @@ result<body_field> make_body_field(const textured_model& model, const field_sett
     }
   }
   out.most_relief = detail::relief_bounds(out.fine);
-  out.slopes = measure_slopes(fit, out, threads);
+  out.slopes = measure_slopes(points, out, threads);
   return out;
 }
 
