@@ -243,6 +243,7 @@ result<answer> run_session(const run_command& options, const common_options& com
   control.probe = found.probe = solid_probe(shape);
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
   control.coupling = found.coupling.settings;
+  control.velocity = velocity_of(options);
   if (formulation_name(options.render) == "planes") control.surfaces = surfaces_of(feel->scene());
   if (!options.friction.empty()) {
     control.friction = friction_of(options.friction).value_or(friction_settings{});
@@ -343,6 +344,11 @@ void add_run(command_line& line) {
                  "The same of the rotation (N m/rad); by default what the device can show, and 3 with other contacts")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1e-3, 1e3));
+  sub.add_option("--velocity", o->velocity,
+                 "Velocity of the handle for the coupling's damper: of its last poses, of a window of poses, which "
+                 "smooths an encoder's steps, or the device's own")
+      ->check(CLI::IsMember({"poses", "window", "device"}))
+      ->capture_default_str();
   sub.add_option(
          "--friction", o->friction,
          "Coefficients of friction on support planes, STATIC or STATIC,DYNAMIC: 0.6,0.4; by default those of the "

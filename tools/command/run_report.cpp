@@ -136,6 +136,22 @@ std::string thread_text(const thread_grants& t) {
   return out;
 }
 
+json velocity_json(const run_command& options, const session_summary& summary) {
+  return {{"asked", options.velocity},
+          {"device_ticks", summary.ticks_with(velocity_source::device)},
+          {"window_ticks", summary.ticks_with(velocity_source::window)},
+          {"refused", summary.velocity_refused()}};
+}
+
+// What was asked for and not had.
+std::string velocity_warning(const run_command& options, const session_summary& summary) {
+  const std::uint64_t missed = summary.ticks_with(velocity_source::window);
+  if (velocity_of(options) != velocity_source::device || missed == 0) return "";
+  return "  warning: the handle's velocity was that of a window of its poses in " + std::to_string(missed) +
+         " ticks: the device " +
+         (summary.velocity_refused() ? "told one that does not go with its poses" : "told none of its own") + "\n";
+}
+
 json friction_json(const run_command& options) {
   const std::optional<friction_settings> mu = friction_of(options.friction);
   if (!mu) return {};
@@ -187,6 +203,7 @@ answer report(const run_command& options, const session_findings& found) {
                   {"grid", grid_json(options.render)},
                   {"lookup", lookup_json(options.render)},
                   {"coupling", command::to_json(coupling, probe)},
+                  {"velocity", velocity_json(options, summary)},
                   {"friction", friction_json(options)},
                   {"surfaces", surfaces_json(surfaces)},
                   {"moves", options.moves}};
@@ -216,6 +233,7 @@ answer report(const run_command& options, const session_findings& found) {
              brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
              clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("coupling", to_text(coupling, probe));
+  if (velocity_of(options) != velocity_source::poses) out.text += row("velocity", "by " + options.velocity);
   if (const auto mu = friction_of(options.friction); mu && mu->any()) {
     out.text +=
         row("friction", brief(mu->static_coefficient) + " at rest, " + brief(mu->dynamic_coefficient) + " slipping");
@@ -240,6 +258,7 @@ answer report(const run_command& options, const session_findings& found) {
     out.text += "  warning: the probe never touched anything: lower it with --press or --probe-pose\n";
   out.text += summary.wall().warnings();
   out.text += summary.vibration_warning();
+  out.text += velocity_warning(options, summary);
   out.text += rate_warning(options, ended.contact, contact);
   if (ended.rates.lowest_scale < 1.0) out.text += late_warning(ended.rates);
   if (ended.lost_records > 0) {

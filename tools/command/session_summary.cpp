@@ -86,6 +86,8 @@ void session_summary::add(const session_record& tick) noexcept {
   delivered_j_ = tick.delivered_j;
   from_bodies_j_ = tick.from_bodies_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
+  ++velocity_ticks_[static_cast<std::size_t>(tick.velocity)];
+  velocity_refused_ = velocity_refused_ || tick.velocity_refused;
   wall_.add(tick);
   vibration_.observe(tick.time_ns, tick.T_dh, tick.on_hand_d);
   if (tick.guard_alpha_per_s > 0.0 || tick.guard_scale < 1.0) ++guarded_;

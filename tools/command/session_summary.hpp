@@ -1,6 +1,7 @@
 // What a session amounts to: ranges, energy and a picture.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -46,6 +47,11 @@ class session_summary {
   [[nodiscard]] const wall_summary& wall() const noexcept { return wall_; }
   [[nodiscard]] bool touched() const noexcept { return touching_ > 0; }
   [[nodiscard]] double mean_contacts() const noexcept;
+  /// How often the coupling's damper was given the velocity of this source.
+  [[nodiscard]] std::uint64_t ticks_with(velocity_source source) const noexcept {
+    return velocity_ticks_[static_cast<std::size_t>(source)];
+  }
+  [[nodiscard]] bool velocity_refused() const noexcept { return velocity_refused_; }
   [[nodiscard]] double largest_hand_force_n() const noexcept { return hand_force_.largest(); }
   [[nodiscard]] double largest_hand_torque_n_m() const noexcept { return hand_torque_.largest(); }
 
@@ -61,6 +67,8 @@ class session_summary {
   double from_bodies_j_ = 0.0;
   double surplus_max_j_ = 0.0;
   std::uint64_t guarded_ = 0;
+  std::array<std::uint64_t, 3> velocity_ticks_{};
+  bool velocity_refused_ = false;
   vibration_monitor vibration_;
   wall_summary wall_;
 };

@@ -49,6 +49,8 @@ struct control_settings {
   rate_limits rates{};      ///< how late the loops may be
   workspace_map map{};
   sample_check_settings samples{};
+  /// Of the handle, for the coupling's damper. With window and device an encoder's step is no blow.
+  velocity_source velocity = velocity_source::poses;
   gate_limits limits{.peak_force_n = 1e6,
                      .continuous_force_n = 1e6,
                      .force_slew_n_per_s = 1e6,

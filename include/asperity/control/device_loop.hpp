@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "asperity/control/control_settings.hpp"
@@ -27,6 +28,8 @@ namespace asperity {
 /// write, publish the probe's pose and what bodies felt, tell the observer.
 ///
 /// - The probe starts at the device's first good pose, at rest: no jump.
+/// - The coupling's damper is given the handle's velocity by its poses, by a window of them, or as the device tells it
+///   (control_settings::velocity). What a device tells is compared with its poses and believed only where it fits.
 /// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
 /// - A clock that steps back stands still for one tick; the loop's time, which the device and the record are given,
 ///   goes on from there and never goes back.
@@ -61,6 +64,7 @@ class device_loop {
         shared_(&shared),
         observer_(std::move(observer)),
         check_(settings.samples),
+        speed_(settings.velocity, dev.capabilities().position_resolution_m, dev.capabilities().rotation_resolution_rad),
         motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
         guard_(guard_for(settings.guard, dev.capabilities())),
         rates_(settings.rates, settings.ageing),
@@ -90,7 +94,10 @@ class device_loop {
     const wrench held = expired && goes_silent_ ? wrench{} : gate_.last();
     device_sample seen = last_seen_;
     const sample_verdict verdict = check_.judge(now_ns, device_->read(now_ns, seen), seen);
-    if (verdict == sample_verdict::accepted) last_seen_ = seen;
+    if (verdict == sample_verdict::accepted) {
+      last_seen_ = seen;
+      speed_.observe(seen);
+    }
     unobserved_s_ += static_cast<double>(gap_ns) * 1e-9;
 
     const bool accepted = verdict == sample_verdict::accepted;
@@ -154,6 +161,8 @@ class device_loop {
   /// Where the moving bodies are.
   [[nodiscard]] const body_follower& bodies() const noexcept { return bodies_; }
   [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
+  /// How fast the handle moves, and who says so.
+  [[nodiscard]] const handle_velocity& speed() const noexcept { return speed_; }
   [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
   [[nodiscard]] Observer& observer() noexcept { return observer_; }
   [[nodiscard]] Device& device() noexcept { return *device_; }
@@ -166,6 +175,7 @@ class device_loop {
   [[nodiscard]] bool clear_fault() noexcept {
     if (!gate_.clear()) return false;
     check_.restart();
+    speed_.restart();
     guard_.reset();
     rates_.restart();
     placed_ = false;
@@ -237,6 +247,14 @@ class device_loop {
 
   [[nodiscard]] pose pose_of_sample() const noexcept { return settings_.map.to_world(last_seen_.T_dh) * T_hc_; }
 
+  // Of the target at c_A; nothing where its way is to tell.
+  [[nodiscard]] std::optional<twist> velocity_of_sample(const pose& wanted_T_wc) const noexcept {
+    if (speed_.used() == velocity_source::poses) return std::nullopt;
+    twist v = settings_.map.to_world(speed_.velocity_d());
+    v.linear += glm::cross(v.angular, wanted_T_wc.position - settings_.map.to_world(last_seen_.T_dh).position);
+    return v;
+  }
+
   void place() noexcept {
     placed_ns_ = now_ns_;
     motion_.place(pose_of_sample());
@@ -250,7 +268,8 @@ class device_loop {
     const pose wanted_T_wc = accepted ? pose_of_sample() : motion_.target();
     const double part = part_allowed(motion_.way_to(wanted_T_wc), dt_s, rates);
     const double before_j = motion_.probe().energy().from_bodies_j;
-    const status s = motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front(), bodies_.ways());
+    const status s = motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front(), bodies_.ways(),
+                                  accepted ? velocity_of_sample(wanted_T_wc) : std::nullopt);
     unobserved_bodies_j_ += motion_.probe().energy().from_bodies_j - before_j;
     return s;
   }
@@ -300,6 +319,8 @@ class device_loop {
     r.guard_scale = guarded.scale;
     r.rate_scale = rates.scale;
     r.pulling = motion_.touched().pulling;
+    r.velocity = speed_.used();
+    r.velocity_refused = speed_.refused();
     r.sample = verdict;
     r.contact_status = contact.answer;
     r.probe_status = probe_status;
@@ -331,6 +352,7 @@ class device_loop {
   exchange* shared_;
   Observer observer_;
   sample_check check_;
+  handle_velocity speed_;
   probe_motion motion_;
   body_follower bodies_;
   passivity_guard guard_;

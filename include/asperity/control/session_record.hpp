@@ -35,6 +35,8 @@ struct session_record {
   double guard_scale = 1.0;         ///< factor that the guard put on the wrench
   double rate_scale = 1.0;          ///< factor that late loops put on the wrench
   bool pulling = false;             ///< the linear contact would have pulled and was set to zero
+  velocity_source velocity = velocity_source::poses;  ///< that the coupling's damper was given
+  bool velocity_refused = false;                      ///< the device told a velocity that does not go with its poses
   sample_verdict sample = sample_verdict::accepted;
   tick_flag flags = tick_flag::none;          ///< what planes did not answer, in this tick or in the 50 ms before it
   status contact_status = status::not_ready;  ///< the renderer's answer behind the contact in use

@@ -402,6 +402,7 @@ TEST_F(documents, run) {
                   "wall",
                   "coupling",
                   "rate_check",
+                  "velocity",
                   "friction",
                   "surfaces"});
   for (const char* loop : {"contact_loop", "device_loop"}) {
@@ -458,6 +459,15 @@ TEST_F(documents, run_with_support_planes) {
   EXPECT_EQ(deep["coupling"]["translation"]["stiffness"], 700.0);
   EXPECT_EQ(deep["coupling"]["translation"]["from"], "option");
   EXPECT_EQ(deep["coupling"]["rotation"]["from"], "device");
+  // The velocity of the handle, where another than that of its poses was asked for.
+  EXPECT_EQ(d["velocity"]["asked"], "poses");
+  arguments own = above;
+  own.insert(own.end(), {"--velocity", "device"});
+  const json told = expect_document(own, "asperity.run/1");
+  EXPECT_EQ(told["velocity"]["device_ticks"], told["device_loop"]["ticks"]);
+  EXPECT_EQ(told["velocity"]["window_ticks"], 0);
+  EXPECT_EQ(told["velocity"]["refused"], false);
+  EXPECT_LE(told["energy"]["largest_surplus"], 1e-5);
   // Friction, where it was asked for.
   EXPECT_TRUE(d["friction"].is_null());
   arguments rough = above;
