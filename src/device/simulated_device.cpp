@@ -229,6 +229,12 @@ void simulated_device::measure(std::int64_t now_ns) noexcept {
   newest_.velocity_d = then.plant.velocity_d;
   newest_.valid =
       sample_field::position | sample_field::rotation | sample_field::linear_velocity | sample_field::angular_velocity;
+  if (settings_.presses.empty()) return;
+  newest_.valid = newest_.valid | sample_field::buttons;
+  newest_.buttons = 0;
+  for (const scripted_press& p : settings_.presses) {
+    if (now_ns >= p.from_ns && now_ns < p.until_ns) newest_.buttons |= p.buttons;
+  }
 }
 
 pose simulated_device::quantised(const pose& T) const noexcept {

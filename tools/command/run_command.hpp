@@ -28,6 +28,8 @@ struct run_command {
   double device_rate_hz = 1000.0;
   double contact_rate_hz = 1000.0;
   std::optional<double> coupling_n_per_m, coupling_n_m_per_rad;  // what fits device and contacts
+  double scale = 1.0;                                            // metres of the world for a metre of the device
+  std::uint32_t clutch_button = 0;                               // 1 to 32; 0: none
   std::string velocity = "poses";                                // see velocity_source
   std::string friction;                                          // see friction_of(); empty: none
   std::vector<std::string> moves;                                // see body_script::read()
@@ -55,6 +57,11 @@ inline constexpr std::string_view replay_prefix = "replay:";
 /// Periods of the rates that were asked for, whole nanoseconds.
 [[nodiscard]] inline loop_periods periods_of(const run_command& options) {
   return {std::llround(1e9 / options.device_rate_hz), std::llround(1e9 / options.contact_rate_hz)};
+}
+
+/// The bit of a button that is counted from 1; none of 0.
+[[nodiscard]] constexpr std::uint32_t button_bit(std::uint32_t button) noexcept {
+  return button == 0 ? 0U : 1U << (button - 1U);
 }
 
 /// Where the coupling's damper takes the handle's velocity from.

@@ -136,6 +136,18 @@ std::string thread_text(const thread_grants& t) {
   return out;
 }
 
+json clutch_json(const run_command& options, const session_summary& summary) {
+  if (options.clutch_button == 0) return nullptr;
+  return {{"button", options.clutch_button},
+          {"told", summary.buttons_told()},
+          {"let_go", static_cast<double>(summary.ticks_let_go()) / options.device_rate_hz}};
+}
+
+std::string clutch_text(const run_command& options, const session_summary& summary) {
+  return "button " + std::to_string(options.clutch_button) + ", let go for " +
+         brief(static_cast<double>(summary.ticks_let_go()) / options.device_rate_hz) + " s";
+}
+
 json velocity_json(const run_command& options, const session_summary& summary) {
   return {{"asked", options.velocity},
           {"device_ticks", summary.ticks_with(velocity_source::device)},
@@ -203,6 +215,8 @@ answer report(const run_command& options, const session_findings& found) {
                   {"grid", grid_json(options.render)},
                   {"lookup", lookup_json(options.render)},
                   {"coupling", command::to_json(coupling, probe)},
+                  {"scale", options.scale},
+                  {"clutch", clutch_json(options, summary)},
                   {"velocity", velocity_json(options, summary)},
                   {"friction", friction_json(options)},
                   {"surfaces", surfaces_json(surfaces)},
@@ -233,6 +247,9 @@ answer report(const run_command& options, const session_findings& found) {
              brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
              clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("coupling", to_text(coupling, probe));
+  if (options.scale != 1.0)
+    out.text += row("scale", brief(options.scale) + " m of the world for a metre of the device");
+  if (options.clutch_button != 0) out.text += row("clutch", clutch_text(options, summary));
   if (velocity_of(options) != velocity_source::poses) out.text += row("velocity", "by " + options.velocity);
   if (const auto mu = friction_of(options.friction); mu && mu->any()) {
     out.text +=
@@ -259,6 +276,9 @@ answer report(const run_command& options, const session_findings& found) {
   out.text += summary.wall().warnings();
   out.text += summary.vibration_warning();
   out.text += velocity_warning(options, summary);
+  if (options.clutch_button != 0 && !summary.buttons_told()) {
+    out.text += "  warning: the device told nothing of its buttons: the clutch was not used\n";
+  }
   out.text += rate_warning(options, ended.contact, contact);
   if (ended.rates.lowest_scale < 1.0) out.text += late_warning(ended.rates);
   if (ended.lost_records > 0) {

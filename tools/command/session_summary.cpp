@@ -86,6 +86,8 @@ void session_summary::add(const session_record& tick) noexcept {
   delivered_j_ = tick.delivered_j;
   from_bodies_j_ = tick.from_bodies_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
+  if (tick.clutch_ratio == 0.0) ++let_go_ticks_;
+  buttons_told_ = buttons_told_ || tick.buttons_told;
   ++velocity_ticks_[static_cast<std::size_t>(tick.velocity)];
   velocity_refused_ = velocity_refused_ || tick.velocity_refused;
   wall_.add(tick);

@@ -51,6 +51,8 @@ class session_summary {
   [[nodiscard]] std::uint64_t ticks_with(velocity_source source) const noexcept {
     return velocity_ticks_[static_cast<std::size_t>(source)];
   }
+  [[nodiscard]] std::uint64_t ticks_let_go() const noexcept { return let_go_ticks_; }  ///< in full, by the clutch
+  [[nodiscard]] bool buttons_told() const noexcept { return buttons_told_; }
   [[nodiscard]] bool velocity_refused() const noexcept { return velocity_refused_; }
   [[nodiscard]] double largest_hand_force_n() const noexcept { return hand_force_.largest(); }
   [[nodiscard]] double largest_hand_torque_n_m() const noexcept { return hand_torque_.largest(); }
@@ -69,6 +71,8 @@ class session_summary {
   std::uint64_t guarded_ = 0;
   std::array<std::uint64_t, 3> velocity_ticks_{};
   bool velocity_refused_ = false;
+  std::uint64_t let_go_ticks_ = 0;
+  bool buttons_told_ = false;
   vibration_monitor vibration_;
   wall_summary wall_;
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -30,6 +31,8 @@ namespace asperity {
 /// - The probe starts at the device's first good pose, at rest: no jump.
 /// - The coupling's damper is given the handle's velocity by its poses, by a window of them, or as the device tells it
 ///   (control_settings::velocity). What a device tells is compared with its poses and believed only where it fits.
+/// - A clutch (control_settings::clutch) lets go of the probe while a button is held down. It goes over in a ramp, with
+///   motion and wrench in the same proportion, so that no step is felt and no energy made. The probe stays where it is.
 /// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
 /// - A clock that steps back stands still for one tick; the loop's time, which the device and the record are given,
 ///   goes on from there and never goes back.
@@ -64,6 +67,7 @@ class device_loop {
         shared_(&shared),
         observer_(std::move(observer)),
         check_(settings.samples),
+        clutch_(settings.map, settings.clutch),
         speed_(settings.velocity, dev.capabilities().position_resolution_m, dev.capabilities().rotation_resolution_rad),
         motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
         guard_(guard_for(settings.guard, dev.capabilities())),
@@ -94,13 +98,11 @@ class device_loop {
     const wrench held = expired && goes_silent_ ? wrench{} : gate_.last();
     device_sample seen = last_seen_;
     const sample_verdict verdict = check_.judge(now_ns, device_->read(now_ns, seen), seen);
-    if (verdict == sample_verdict::accepted) {
-      last_seen_ = seen;
-      speed_.observe(seen);
-    }
+    if (verdict == sample_verdict::accepted) last_seen_ = seen;
     unobserved_s_ += static_cast<double>(gap_ns) * 1e-9;
 
     const bool accepted = verdict == sample_verdict::accepted;
+    if (accepted) follow_handle(dt_s);
     if (accepted && !placed_) place();
     status probe_status = status::not_ready;
     guard_action guarded;
@@ -161,6 +163,8 @@ class device_loop {
   /// Where the moving bodies are.
   [[nodiscard]] const body_follower& bodies() const noexcept { return bodies_; }
   [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
+  /// Where the handle is in the world, and how much of it the probe has.
+  [[nodiscard]] const clutched_map& clutch() const noexcept { return clutch_; }
   /// How fast the handle moves, and who says so.
   [[nodiscard]] const handle_velocity& speed() const noexcept { return speed_; }
   [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
@@ -241,22 +245,35 @@ class device_loop {
     const wrench before = motion_.push_of(contact, bodies_.ways());
     if (!shared_->contacts.refresh()) return false;
     const wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
-    return glm::length(change.force) > rates_.limits().surprise_n ||
+    return settings_.map.scale * glm::length(change.force) > rates_.limits().surprise_n ||
            glm::length(change.torque) > rates_.limits().surprise_n_m;
   }
 
-  [[nodiscard]] pose pose_of_sample() const noexcept { return settings_.map.to_world(last_seen_.T_dh) * T_hc_; }
+  [[nodiscard]] pose pose_of_sample() const noexcept { return clutch_.T_wh() * T_hc_; }
+
+  // A handle that has let go of the probe, or takes it up again, does so where the probe is and without a pull.
+  void follow_handle(double dt_s) noexcept {
+    speed_.observe(last_seen_);
+    if (has_all(last_seen_.valid, sample_field::buttons)) buttons_ = last_seen_.buttons;
+    const clutch_settings& c = settings_.clutch;
+    const bool asked = c.by_application && shared_->let_go.load(std::memory_order_relaxed);
+    if (clutch_.follow(last_seen_.T_dh, asked || (buttons_ & c.buttons) != 0, dt_s) && placed_) {
+      clutch_.put(motion_.probe().state().T_wc * inverse(T_hc_));
+      motion_.put_target(pose_of_sample());
+    }
+  }
 
   // Of the target at c_A; nothing where its way is to tell.
   [[nodiscard]] std::optional<twist> velocity_of_sample(const pose& wanted_T_wc) const noexcept {
     if (speed_.used() == velocity_source::poses) return std::nullopt;
-    twist v = settings_.map.to_world(speed_.velocity_d());
-    v.linear += glm::cross(v.angular, wanted_T_wc.position - settings_.map.to_world(last_seen_.T_dh).position);
+    twist v = clutch_.to_world(speed_.velocity_d());
+    v.linear += glm::cross(v.angular, wanted_T_wc.position - clutch_.T_wh().position);
     return v;
   }
 
   void place() noexcept {
     placed_ns_ = now_ns_;
+    clutch_.take_up(last_seen_.T_dh);
     motion_.place(pose_of_sample());
     guard_.reset();
     placed_ = true;
@@ -290,8 +307,7 @@ class device_loop {
   }
 
   [[nodiscard]] wrench wrench_on_hand() const noexcept {
-    const pose T_wh = settings_.map.to_world(last_seen_.T_dh);
-    return settings_.map.to_device(motion_.on_hand_w(), motion_.target().position, T_wh.position);
+    return clutch_.to_device(motion_.on_hand_w(), motion_.target().position);
   }
 
   void report(std::int64_t now_ns, sample_verdict verdict, status probe_status, const guard_action& guarded,
@@ -319,6 +335,9 @@ class device_loop {
     r.guard_scale = guarded.scale;
     r.rate_scale = rates.scale;
     r.pulling = motion_.touched().pulling;
+    r.buttons = buttons_;
+    r.buttons_told = has_all(last_seen_.valid, sample_field::buttons);
+    r.clutch_ratio = clutch_.ratio();
     r.velocity = speed_.used();
     r.velocity_refused = speed_.refused();
     r.sample = verdict;
@@ -352,6 +371,7 @@ class device_loop {
   exchange* shared_;
   Observer observer_;
   sample_check check_;
+  clutched_map clutch_;
   handle_velocity speed_;
   probe_motion motion_;
   body_follower bodies_;
@@ -361,6 +381,7 @@ class device_loop {
   bool goes_silent_;  // the device puts out nothing once a command has expired
 
   device_sample last_seen_{};
+  std::uint32_t buttons_ = 0;  // as last told
   bool started_ = false;
   bool placed_ = false;
   std::int64_t placed_ns_ = 0;

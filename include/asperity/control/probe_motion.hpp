@@ -54,6 +54,9 @@ class probe_motion {
     caught_up_ = true;
   }
 
+  /// Puts the target there, with no way that the probe would be drawn along: what the coupling had stored is lost.
+  void put_target(const pose& target_T_wc) noexcept { target_T_wc_ = target_T_wc; }
+
   /// What the last contact did to the probe is forgotten; where the probe is, is not.
   void forget_contact() noexcept {
     touched_ = {};

@@ -35,6 +35,9 @@ struct session_record {
   double guard_scale = 1.0;         ///< factor that the guard put on the wrench
   double rate_scale = 1.0;          ///< factor that late loops put on the wrench
   bool pulling = false;             ///< the linear contact would have pulled and was set to zero
+  std::uint32_t buttons = 0;        ///< of the device, as last told; one bit per button
+  bool buttons_told = false;        ///< the sample in use says which buttons are held down
+  double clutch_ratio = 1.0;  ///< share of the handle's motion that the probe is given, and of its wrench the hand
   velocity_source velocity = velocity_source::poses;  ///< that the coupling's damper was given
   bool velocity_refused = false;                      ///< the device told a velocity that does not go with its poses
   sample_verdict sample = sample_verdict::accepted;

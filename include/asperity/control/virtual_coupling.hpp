@@ -88,7 +88,8 @@ class virtual_coupling {
 ///   was written for another hand.
 /// - The largest force should take a way that a hand can steer in: at least two millimetres of stretch (and 0.05 rad).
 /// A stiffness that the device does not state (0) leaves the coupling's default.
-/// @param scale workspace_map::scale; a device's K is K / scale^2 in the world, and its force F is F / scale
+/// @param scale workspace_map::scale; a device's K and B are K / scale^2 and B / scale^2 in the world, its force F is
+///              F / scale
 /// @pre rate_hz > 0, scale > 0
 [[nodiscard]] inline coupling_settings coupling_for(const device_capabilities& device, double rate_hz,
                                                     double scale = 1.0) noexcept {
@@ -102,6 +103,7 @@ class virtual_coupling {
     return peak > 0.0 ? std::min(stable, peak / least_way) : stable;
   };
   coupling_settings out;
+  out.max_damping_n_s_per_m /= scale * scale;
   if (device.max_stiffness_n_per_m > 0.0) {
     out.stiffness_n_per_m =
         bounded(device.max_stiffness_n_per_m, device.peak_force_n, least_stretch_m) / (scale * scale);

@@ -403,6 +403,8 @@ TEST_F(documents, run) {
                   "coupling",
                   "rate_check",
                   "velocity",
+                  "scale",
+                  "clutch",
                   "friction",
                   "surfaces"});
   for (const char* loop : {"contact_loop", "device_loop"}) {
@@ -468,6 +470,19 @@ TEST_F(documents, run_with_support_planes) {
   EXPECT_EQ(told["velocity"]["window_ticks"], 0);
   EXPECT_EQ(told["velocity"]["refused"], false);
   EXPECT_LE(told["energy"]["largest_surplus"], 1e-5);
+  // Motion scaling and a clutch, which the simulated hand uses for a fifth of the session.
+  EXPECT_EQ(d["scale"], 1.0);
+  EXPECT_TRUE(d["clutch"].is_null());
+  arguments large = session;
+  large.insert(large.end(), {"--scale", "5", "--clutch", "2", "--seconds", "1.5"});
+  const json scaled = expect_document(large, "asperity.run/1");
+  EXPECT_EQ(scaled["scale"], 5.0);
+  EXPECT_EQ(scaled["clutch"]["button"], 2);
+  EXPECT_EQ(scaled["clutch"]["told"], true);
+  EXPECT_NEAR(scaled["clutch"]["let_go"], 0.15, 0.01);  // of 0.3 s the second half, the first is the ramp
+  EXPECT_NEAR(scaled["coupling"]["translation"]["stiffness"], 60.0, 1e-9);
+  EXPECT_LE(scaled["energy"]["largest_surplus"], 1e-5);
+  EXPECT_EQ(scaled["fault"], "none");
   // Friction, where it was asked for.
   EXPECT_TRUE(d["friction"].is_null());
   arguments rough = above;

@@ -34,6 +34,13 @@ struct scripted_fault {
   std::int64_t until_ns = 0;  ///< not included
 };
 
+/// Buttons that the hand holds down, and when.
+struct scripted_press {
+  std::uint32_t buttons = 1;  ///< one bit per button
+  std::int64_t from_ns = 0;   ///< session clock
+  std::int64_t until_ns = 0;  ///< not included
+};
+
 /// The hand as a spring and damper to where it wants to be, and a tremor.
 struct hand_settings {
   double stiffness_n_per_m = 300.0;
@@ -80,6 +87,7 @@ struct simulated_settings {
   actuator_settings actuator{};
   device_capabilities capabilities = simulated_capabilities();
   std::vector<scripted_fault> faults{};
+  std::vector<scripted_press> presses{};  ///< empty: the device has no buttons
 };
 
 }  // namespace asperity
