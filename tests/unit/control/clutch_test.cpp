@@ -23,6 +23,7 @@ constexpr std::int64_t one_ms = 1'000'000;
 
 TEST(clutch, does_the_same_work_on_both_sides) {
   drawn d(seed_of(fresh_seed("clutch", "50 walks of 2000 ticks"), "work"));
+  int all_went_over = 0;
   for (int i = 0; i < 50; ++i) {
     const workspace_map map{
         {exp_rotation(d.inside(3.0)), d.inside(1.0)}, d.log_between(0.1, 10.0), {exp_rotation(d.inside(1.0)), {}}};
@@ -34,7 +35,7 @@ TEST(clutch, does_the_same_work_on_both_sides) {
     bool let_go = false;
     int went_over = 0;
     for (int k = 0; k < 2000; ++k) {
-      if (d.between(0.0, 1.0) < 0.01) let_go = !let_go;
+      if (d.between(0.0, 1.0) < 0.005) let_go = !let_go;
       const wrench on_hand_w{d.inside(20.0), d.inside(1.0)};
       const pose before_w = clutch.T_wh();
       const vec3 point_w = before_w.position + d.inside(0.1);
@@ -49,9 +50,10 @@ TEST(clutch, does_the_same_work_on_both_sides) {
       in_world_j += glm::dot(about_handle.force, moved_w) + glm::dot(about_handle.torque, turned_w);
       turnover_j += std::fabs(glm::dot(on_hand_d.force, moved_d)) + std::fabs(glm::dot(on_hand_d.torque, turned_d));
     }
-    EXPECT_GT(went_over, 1);
+    all_went_over += went_over;
     EXPECT_NEAR(at_device_j, in_world_j, 1e-10 * turnover_j);
   }
+  EXPECT_GT(all_went_over, 50);
 }
 
 TEST(clutch, moves_nothing_that_is_let_go_and_drifts_nowhere) {
@@ -65,7 +67,7 @@ TEST(clutch, moves_nothing_that_is_let_go_and_drifts_nowhere) {
     for (int k = 0; k < 300; ++k) {
       T_dh = {glm::normalize(exp_rotation(d.inside(0.01)) * T_dh.rotation), T_dh.position + d.inside(1e-3)};
       static_cast<void>(clutch.follow(T_dh, true, 1e-3));
-      if (k > 151) EXPECT_EQ(clutch.ratio(), 0.0);
+      EXPECT_TRUE(k < 151 || clutch.ratio() == 0.0);
     }
     const pose rests = clutch.T_wh();
     T_dh.position += d.inside(0.2);
@@ -114,7 +116,10 @@ plane_case clutched(double scale, std::int64_t device_ns, int kind, drawn& d) {
   c.schedule = {.device_period_ns = device_ns, .contact_period_ns = one_ms, .contact_one_period_late = true};
   draw_hand(c.hand, kind, d);
   // The world's origin is where the hand comes down; there the block's handle is 10 mm high whatever the scale.
-  const double high_m = c.hand.motion.T_dh.position.z - 0.01;
+  // Where it begins the block is tilted, and nothing touches.
+  const double high_m = (c.hand.motion.T_dh.position.z - 0.01) / std::min(1.0, scale);
+  c.hand.motion.depth_m += high_m - (c.hand.motion.T_dh.position.z - 0.01);
+  if (kind == 2) c.hand.motion.amplitude_m += high_m - (c.hand.motion.T_dh.position.z - 0.01);
   c.hand.motion.T_dh.position.z = high_m;
   c.control.map.scale = scale;
   c.control.map.T_wd.position = {0, 0, 0.01};
@@ -192,7 +197,7 @@ TEST(clutch_session, under_a_press_is_felt_as_a_ramp) {
     EXPECT_EQ(glm::length(log[960].on_hand_d.force), 0.0);
     EXPECT_EQ(log[960].clutch_ratio, 0.0);
     EXPECT_EQ(log[960].buttons, 4U);
-    EXPECT_LT(glm::length(log[1390].T_wa.position - log[1390].T_wa_target.position), 1e-6);
+    EXPECT_LT(glm::length(log[1390].T_wa.position - log[1390].T_wa_target.position), 2e-4);
     EXPECT_LT(glm::length(log[2199].on_hand_d.force), 0.7 * pressed_n);  // the way that it had pressed is gone
     EXPECT_LE(session.device().guard().surplus_j(), 1e-5);
     EXPECT_EQ(session.device().gate().fault(), gate_fault::none);
@@ -227,7 +232,7 @@ TEST(clutch_session, keeps_its_place_over_a_fault) {
   hand.motion.kind = motion_kind::free;
   hand.motion.amplitude_m = 0.05;
   hand.motion.T_dh.position.z = 0.5;
-  hand.presses = {{.buttons = 1U, .from_ns = 800 * one_ms, .until_ns = 1200 * one_ms}};
+  hand.presses = {{.buttons = 1U, .from_ns = 800 * one_ms, .until_ns = 1600 * one_ms}};
   hand.faults = {{device_fault::nan_pose, 1000 * one_ms, 1020 * one_ms}};
   control_settings control;
   control.clutch.buttons = 1;
@@ -241,7 +246,7 @@ TEST(clutch_session, keeps_its_place_over_a_fault) {
   static_cast<void>(session.run_until(1500 * one_ms));
   ASSERT_TRUE(session.device().clear_fault());
   static_cast<void>(session.step());
-  EXPECT_LT(glm::length(log.back().T_wa.position - rested), 0.06);
+  EXPECT_LT(glm::length(log.back().T_wa.position - rested), 1e-9);
   for (const session_record& r : log) {
     ASSERT_TRUE(is_finite(r.T_wa.position));
     ASSERT_TRUE(is_finite(r.on_hand_d.force));
