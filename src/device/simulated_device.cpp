@@ -173,10 +173,18 @@ void simulated_device::step() noexcept {
   const wrench put_out = put_out_ =
       actuator_.follow(plant_ns_ <= command_.valid_until_ns ? command_.on_hand : wrench{}, h);
 
-  const vec3 pull = g.stiffness_n_per_m * (hand.T_dh.position + tremor(t) - plant_.T_dh.position) +
-                    g.damping_n_s_per_m * hand.velocity_d.linear + put_out.force;
-  const vec3 turn = g.stiffness_n_m_per_rad * log_rotation(hand.T_dh.rotation * glm::conjugate(plant_.T_dh.rotation)) +
-                    g.damping_n_m_s_per_rad * hand.velocity_d.angular + put_out.torque;
+  vec3 pull = g.stiffness_n_per_m * (hand.T_dh.position + tremor(t) - plant_.T_dh.position) +
+              g.damping_n_s_per_m * hand.velocity_d.linear + put_out.force;
+  vec3 turn = g.stiffness_n_m_per_rad * log_rotation(hand.T_dh.rotation * glm::conjugate(plant_.T_dh.rotation)) +
+              g.damping_n_m_s_per_rad * hand.velocity_d.angular + put_out.torque;
+  const wrench held_by_hand{pull - put_out.force, turn - put_out.torque};
+  wrench weight{};
+  if (p.gravity_d != vec3(0.0)) {
+    weight.force = p.mass_kg * p.gravity_d;
+    weight.torque = glm::cross(plant_.T_dh.rotation * p.centre_h, weight.force);
+    pull += weight.force;
+    turn += weight.torque;
+  }
   const double b = g.damping_n_s_per_m + p.damping_n_s_per_m;
   const double br = g.damping_n_m_s_per_rad + p.damping_n_m_s_per_rad;
   const twist before = plant_.velocity_d;
@@ -185,7 +193,8 @@ void simulated_device::step() noexcept {
   v.angular = (p.inertia_kg_m2 * v.angular + h * turn) / (p.inertia_kg_m2 + h * br);
   plant_.T_dh.position += h * v.linear;
   plant_.T_dh.rotation = glm::normalize(exp_rotation(h * v.angular) * plant_.T_dh.rotation);
-  book(h, before, put_out, {pull - put_out.force, turn - put_out.torque});
+  energy_.by_weight_j += h * (glm::dot(weight.force, v.linear) + glm::dot(weight.torque, v.angular));
+  book(h, before, put_out, held_by_hand);
 
   plant_ns_ += plant_step_ns;
   past_next_ = (past_next_ + 1) % past_size;

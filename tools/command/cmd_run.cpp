@@ -104,8 +104,14 @@ result<void> open_device(const run_command& options, const scene& bodies, felt_d
   if (felt.replay) {
     felt.device.emplace(felt.replay->device());
   } else if (is_simulated(options)) {
-    felt.device.emplace(
-        simulated_device({.seed = options.seed, .motion = motion_of(options, bodies), .presses = presses_of(options)}));
+    // A simulated handle has the weight that is to be held up.
+    plant_settings plant;
+    if (const std::optional<weight_settings> w = weight_of(options.weight)) {
+      plant.gravity_d = w->mass_kg / plant.mass_kg * w->gravity_d;
+      plant.centre_h = w->centre_h;
+    }
+    felt.device.emplace(simulated_device(
+        {.seed = options.seed, .motion = motion_of(options, bodies), .plant = plant, .presses = presses_of(options)}));
     return felt.device->open();
   } else {
     {
@@ -258,6 +264,8 @@ result<answer> run_session(const run_command& options, const common_options& com
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
   control.coupling = found.coupling.settings;
   control.velocity = velocity_of(options);
+  control.weight = weight_of(options.weight).value_or(weight_settings{});
+  if (const result<void> fits = check(control.weight, device.capabilities()); !fits) return fits.error();
   if (formulation_name(options.render) == "planes") control.surfaces = surfaces_of(feel->scene());
   if (!options.friction.empty()) {
     control.friction = friction_of(options.friction).value_or(friction_settings{});
@@ -369,6 +377,10 @@ void add_run(command_line& line) {
                  "Button, 1 to 32, that lets go of the probe while it is held down; the simulated hand holds it for a "
                  "fifth of the session")
       ->check(CLI::Range(1, 32));
+  sub.add_option(
+         "--weight", o->weight,
+         "Weight of the handle that the motors hold up: its mass (kg), and its centre in the handle's frame (m)")
+      ->check(weight_error, "KG[,X,Y,Z]");
   sub.add_option("--velocity", o->velocity,
                  "Velocity of the handle for the coupling's damper: of its last poses, of a window of poses, which "
                  "smooths an encoder's steps, or the device's own")

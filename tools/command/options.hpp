@@ -1,6 +1,7 @@
 // Checks of option values that CLI11 does not have. Each returns an empty string, or what is wrong.
 #pragma once
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -11,6 +12,7 @@
 #include <string_view>
 
 #include "asperity/control/friction.hpp"
+#include "asperity/control/passivity_guard.hpp"
 
 namespace asperity::command {
 
@@ -52,6 +54,28 @@ namespace asperity::command {
 [[nodiscard]] inline std::string friction_error(const std::string& text) {
   if (friction_of(text)) return {};
   return "'" + text + "' is not STATIC or STATIC,DYNAMIC with 10 >= STATIC >= DYNAMIC >= 0";
+}
+
+/// Mass of a handle and, after commas, its centre of mass in the handle's frame: KG or KG,X,Y,Z.
+[[nodiscard]] inline std::optional<weight_settings> weight_of(const std::string& text) {
+  std::array<double, 4> numbers{};
+  std::size_t count = 0;
+  std::string_view rest = text;
+  for (bool more = true; more; ++count) {
+    if (count == numbers.size()) return std::nullopt;
+    const auto [end, failed] = std::from_chars(rest.data(), rest.data() + rest.size(), numbers[count]);
+    if (failed != std::errc() || !std::isfinite(numbers[count])) return std::nullopt;
+    rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+    more = !rest.empty();
+    if (more && rest.front() != ',') return std::nullopt;
+    if (more) rest.remove_prefix(1);
+  }
+  if ((count != 1 && count != 4) || !(numbers[0] > 0.0)) return std::nullopt;
+  return weight_settings{.mass_kg = numbers[0], .centre_h = {numbers[1], numbers[2], numbers[3]}};
+}
+[[nodiscard]] inline std::string weight_error(const std::string& text) {
+  if (weight_of(text)) return {};
+  return "'" + text + "' is not KG or KG,X,Y,Z with a mass above zero";
 }
 
 /// A whole number, zero or larger, that fits 64 bits.

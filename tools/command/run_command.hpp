@@ -30,6 +30,7 @@ struct run_command {
   std::optional<double> coupling_n_per_m, coupling_n_m_per_rad;  // what fits device and contacts
   double scale = 1.0;                                            // metres of the world for a metre of the device
   std::uint32_t clutch_button = 0;                               // 1 to 32; 0: none
+  std::string weight;                                            // see weight_of(); empty: none
   std::string velocity = "poses";                                // see velocity_source
   std::string friction;                                          // see friction_of(); empty: none
   std::vector<std::string> moves;                                // see body_script::read()

@@ -148,6 +148,12 @@ std::string clutch_text(const run_command& options, const session_summary& summa
          brief(static_cast<double>(summary.ticks_let_go()) / options.device_rate_hz) + " s";
 }
 
+json weight_json(const run_command& options) {
+  const std::optional<weight_settings> w = weight_of(options.weight);
+  if (!w) return nullptr;
+  return {{"mass", w->mass_kg}, {"centre", command::to_json(w->centre_h)}};
+}
+
 json velocity_json(const run_command& options, const session_summary& summary) {
   return {{"asked", options.velocity},
           {"device_ticks", summary.ticks_with(velocity_source::device)},
@@ -217,6 +223,7 @@ answer report(const run_command& options, const session_findings& found) {
                   {"coupling", command::to_json(coupling, probe)},
                   {"scale", options.scale},
                   {"clutch", clutch_json(options, summary)},
+                  {"weight", weight_json(options)},
                   {"velocity", velocity_json(options, summary)},
                   {"friction", friction_json(options)},
                   {"surfaces", surfaces_json(surfaces)},
@@ -250,6 +257,9 @@ answer report(const run_command& options, const session_findings& found) {
   if (options.scale != 1.0)
     out.text += row("scale", brief(options.scale) + " m of the world for a metre of the device");
   if (options.clutch_button != 0) out.text += row("clutch", clutch_text(options, summary));
+  if (const auto w = weight_of(options.weight)) {
+    out.text += row("weight", brief(1e3 * w->mass_kg) + " g of the handle, held by the motors");
+  }
   if (velocity_of(options) != velocity_source::poses) out.text += row("velocity", "by " + options.velocity);
   if (const auto mu = friction_of(options.friction); mu && mu->any()) {
     out.text +=

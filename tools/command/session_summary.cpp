@@ -84,6 +84,7 @@ void session_summary::add(const session_record& tick) noexcept {
   hand_force_.add(tick.on_hand_d.force);
   hand_torque_.add(tick.on_hand_d.torque);
   delivered_j_ = tick.delivered_j;
+  raised_j_ = tick.raised_j;
   from_bodies_j_ = tick.from_bodies_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
   if (tick.clutch_ratio == 0.0) ++let_go_ticks_;
@@ -110,6 +111,8 @@ json session_summary::to_json() const {
           {"energy",
            {{"delivered_to_hand", delivered_j_},
             {"from_bodies", from_bodies_j_},
+            {"of_weight", raised_j_},
+            {"of_weight", raised_j_},
             {"largest_surplus", surplus_max_j_},
             {"guarded_ticks", guarded_}}},
           {"wall", wall_.to_json()},

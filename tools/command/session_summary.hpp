@@ -73,6 +73,7 @@ class session_summary {
   bool velocity_refused_ = false;
   std::uint64_t let_go_ticks_ = 0;
   bool buttons_told_ = false;
+  double raised_j_ = 0.0;
   vibration_monitor vibration_;
   wall_summary wall_;
 };

@@ -45,8 +45,9 @@ struct control_settings {
   /// begins to do in a period of a slow loop takes more.
   double least_gaps_m = 1e-3;
   guard_settings guard{};
-  contact_ageing ageing{};  ///< how old a contact may be felt
-  rate_limits rates{};      ///< how late the loops may be
+  weight_settings weight{};  ///< of the handle, see check(); none by default
+  contact_ageing ageing{};   ///< how old a contact may be felt
+  rate_limits rates{};       ///< how late the loops may be
   workspace_map map{};
   clutch_settings clutch{};  ///< none by default
   sample_check_settings samples{};

@@ -33,6 +33,8 @@ namespace asperity {
 ///   (control_settings::velocity). What a device tells is compared with its poses and believed only where it fits.
 /// - A clutch (control_settings::clutch) lets go of the probe while a button is held down. It goes over in a ramp, with
 ///   motion and wrench in the same proportion, so that no step is felt and no energy made. The probe stays where it is.
+/// - The handle's weight (control_settings::weight) is held up beside the contact's wrench, through the same gate, and its
+///   work is kept out of the guard's surplus (handle_weight).
 /// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
 /// - A clock that steps back stands still for one tick; the loop's time, which the device and the record are given,
 ///   goes on from there and never goes back.
@@ -71,6 +73,7 @@ class device_loop {
         speed_(settings.velocity, dev.capabilities().position_resolution_m, dev.capabilities().rotation_resolution_rad),
         motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
         guard_(guard_for(settings.guard, dev.capabilities())),
+        weight_(settings.weight, dev.capabilities()),
         rates_(settings.rates, settings.ageing),
         gate_(tighter(limits_of(dev.capabilities()), settings.limits), command_valid_ns, settings.low_pass_hz),
         goes_silent_(dev.capabilities().device_side_watchdog) {}
@@ -111,7 +114,9 @@ class device_loop {
     if (placed_) {
       if (accepted) {
         const double given_j = std::exchange(unobserved_bodies_j_, 0.0);
-        guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0), given_j);
+        const double raised_j = weight_.observe(last_seen_.T_dh, held, wanted_);
+        guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0), given_j, raised_j);
+        raised_j_ += raised_j;
       }
       const bool surprised = take_contact(now_ns);
       rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
@@ -119,6 +124,7 @@ class device_loop {
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
         guarded = guard_.adjust(wrench_on_hand());
+        if (weight_.held()) guarded.on_hand += hold_weight(dt_s, rates.scale);
         guarded.on_hand = rates.scale * guarded.on_hand;
       }
     }
@@ -129,6 +135,7 @@ class device_loop {
       gate_.rest();
       guarded.on_hand = {};
     }
+    wanted_ = guarded.on_hand;
     const device_command sent =
         gate_.pass(now_ns, seen, {guarded.on_hand, wrench_frame::device_base, now_ns, ++sequence_});
     valid_until_ns_ = sent.valid_until_ns;
@@ -244,12 +251,19 @@ class device_loop {
     }
     const wrench before = motion_.push_of(contact, bodies_.ways());
     if (!shared_->contacts.refresh()) return false;
-    const wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
-    return settings_.map.scale * glm::length(change.force) > rates_.limits().surprise_n ||
+    wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
+    change.force *= settings_.map.scale;  // as the hand would come to feel it
+    return glm::length(change.force) > rates_.limits().surprise_n ||
            glm::length(change.torque) > rates_.limits().surprise_n_m;
   }
 
   [[nodiscard]] pose pose_of_sample() const noexcept { return clutch_.T_wh() * T_hc_; }
+
+  // After the guard, which would take a weight from the motors and give it to the hand.
+  [[nodiscard]] wrench hold_weight(double dt_s, double scale) noexcept {
+    const bool may = may_put_out(device_->state()) && gate_.fault() == gate_fault::none;
+    return weight_.hold(last_seen_.T_dh, may, dt_s, scale);
+  }
 
   // A handle that has let go of the probe, or takes it up again, does so where the probe is and without a pull.
   void follow_handle(double dt_s) noexcept {
@@ -276,6 +290,8 @@ class device_loop {
     clutch_.take_up(last_seen_.T_dh);
     motion_.place(pose_of_sample());
     guard_.reset();
+    weight_.reset();
+    raised_j_ = 0.0;
     placed_ = true;
   }
 
@@ -330,6 +346,8 @@ class device_loop {
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
+    r.raised_j = raised_j_;
+    r.weight_share = weight_.share();
     r.from_bodies_j = motion_.probe().energy().from_bodies_j;
     r.guard_alpha_per_s = guarded.alpha_per_s;
     r.guard_scale = guarded.scale;
@@ -376,6 +394,7 @@ class device_loop {
   probe_motion motion_;
   body_follower bodies_;
   passivity_guard guard_;
+  handle_weight weight_;
   rate_monitor rates_;
   output_gate gate_;
   bool goes_silent_;  // the device puts out nothing once a command has expired
@@ -388,6 +407,8 @@ class device_loop {
   std::int64_t last_clock_ns_ = 0;
   std::int64_t now_ns_ = 0;           // the loop's time: the clock's steps forward, summed up
   double unobserved_s_ = 0.0;         // time since the guard saw a pose ...
+  wrench wanted_{};                   // what went into the gate last
+  double raised_j_ = 0.0;             // work of the handle's weight
   double unobserved_bodies_j_ = 0.0;  // ... and what bodies gave in it
   std::int64_t valid_until_ns_ = std::numeric_limits<std::int64_t>::max();  // of the last command
   std::uint64_t sequence_ = 0;

@@ -30,6 +30,8 @@ struct session_record {
   std::int64_t contact_age_ns = 0;  ///< age of the contact in use; 0 before the first
   double delivered_j = 0.0;         ///< energy delivered to the hand since the start
   double from_bodies_j = 0.0;       ///< work that moving bodies did on the probe since it was placed
+  double raised_j = 0.0;            ///< of delivered_j, work that the handle's weight was held up with
+  double weight_share = 0.0;        ///< how much of the handle's weight the motors hold
   double surplus_j = 0.0;           ///< what the passivity guard acts on
   double guard_alpha_per_s = 0.0;   ///< damping rate that the guard added
   double guard_scale = 1.0;         ///< factor that the guard put on the wrench

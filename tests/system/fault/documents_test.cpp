@@ -404,6 +404,7 @@ TEST_F(documents, run) {
                   "rate_check",
                   "velocity",
                   "scale",
+                  "weight",
                   "clutch",
                   "friction",
                   "surfaces"});
@@ -483,6 +484,19 @@ TEST_F(documents, run_with_support_planes) {
   EXPECT_NEAR(scaled["coupling"]["translation"]["stiffness"], 60.0, 1e-9);
   EXPECT_LE(scaled["energy"]["largest_surplus"], 1e-5);
   EXPECT_EQ(scaled["fault"], "none");
+  // The handle's weight, held up by the motors.
+  EXPECT_TRUE(d["weight"].is_null());
+  arguments heavy = above;
+  heavy.insert(heavy.end(), {"--weight", "0.2,0,0,0.03"});
+  const json held = expect_document(heavy, "asperity.run/1");
+  EXPECT_EQ(held["weight"]["mass"], 0.2);
+  EXPECT_EQ(held["weight"]["centre"][2], 0.03);
+  EXPECT_NE(held["energy"]["of_weight"], 0.0);
+  EXPECT_LE(held["energy"]["largest_surplus"], 1e-5);
+  EXPECT_EQ(held["fault"], "none");
+  arguments too_heavy = above;
+  too_heavy.insert(too_heavy.end(), {"--weight", "0.6"});
+  EXPECT_NE(expect_failure(too_heavy, 1, "invalid_argument").find("more than half"), std::string::npos);
   // Friction, where it was asked for.
   EXPECT_TRUE(d["friction"].is_null());
   arguments rough = above;

@@ -16,11 +16,12 @@
 namespace asperity {
 
 /// Where the energy of the plant went since the first read(), J. Works are of the wrench at the end of a plant step, as
-/// the step uses it, so that by_device_j + by_hand_j - damped_j - numerical_j is the kinetic energy gained, to
-/// rounding.
+/// the step uses it, so that by_device_j + by_hand_j + by_weight_j - damped_j - numerical_j is the kinetic energy
+/// gained, to rounding.
 struct plant_energy {
   double by_device_j = 0.0;  ///< work of the device's wrench
   double by_hand_j = 0.0;    ///< work of the hand's spring and damper
+  double by_weight_j = 0.0;  ///< work of the plant's own weight
   double damped_j = 0.0;     ///< lost in the plant's own dampers
   double numerical_j = 0.0;  ///< taken out by the implicit step
 };

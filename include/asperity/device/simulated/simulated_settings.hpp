@@ -58,12 +58,14 @@ struct hand_settings {
 /// A firm grip with a stiff wrist; see soft_hand(). Tremor grows with grip force.
 [[nodiscard]] ASPERITY_API hand_settings firm_hand() noexcept;
 
-/// A light arm with six free axes, gravity balanced.
+/// A light arm with six free axes, gravity balanced by default.
 struct plant_settings {
   double mass_kg = 0.15;
   double damping_n_s_per_m = 1.0;
   double inertia_kg_m2 = 2e-4;
   double damping_n_m_s_per_rad = 2e-3;
+  vec3 gravity_d{0.0};  ///< m/s^2, on the whole mass
+  vec3 centre_h{0.0};   ///< of that mass, m
 };
 
 /// How the measurement reaches the host.
