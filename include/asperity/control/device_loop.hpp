@@ -35,6 +35,7 @@ namespace asperity {
 ///   motion and wrench in the same proportion, so that no step is felt and no energy made. The probe stays where it is.
 /// - The handle's weight (control_settings::weight) is held up beside the contact's wrench, through the same gate, and its
 ///   work is kept out of the guard's surplus (handle_weight).
+/// - A first touch may ring (control_settings::transient). The guard and the gate see that as any other force.
 /// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
 /// - A clock that steps back stands still for one tick; the loop's time, which the device and the record are given,
 ///   goes on from there and never goes back.
@@ -72,6 +73,7 @@ class device_loop {
         clutch_(settings.map, settings.clutch),
         speed_(settings.velocity, dev.capabilities().position_resolution_m, dev.capabilities().rotation_resolution_rad),
         motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
+        transient_(settings.transient, dev.capabilities().moving_mass_kg),
         guard_(guard_for(settings.guard, dev.capabilities())),
         weight_(settings.weight, dev.capabilities()),
         rates_(settings.rates, settings.ageing),
@@ -121,6 +123,8 @@ class device_loop {
       const bool surprised = take_contact(now_ns);
       rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
       probe_status = move_probe(dt_s, accepted, rates);
+      if (accepted) transient_.observe(last_seen_.T_dh.position);
+      ring(dt_s, accepted && probe_status == status::ok && may_put_out(device_->state()));
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
         guarded = guard_.adjust(wrench_on_hand());
@@ -291,6 +295,7 @@ class device_loop {
     motion_.place(pose_of_sample());
     guard_.reset();
     weight_.reset();
+    transient_.reset();
     raised_j_ = 0.0;
     placed_ = true;
   }
@@ -305,6 +310,16 @@ class device_loop {
                                   accepted ? velocity_of_sample(wanted_T_wc) : std::nullopt);
     unobserved_bodies_j_ += motion_.probe().energy().from_bodies_j - before_j;
     return s;
+  }
+
+  // What a first touch rings with, as much of it as the hand has of the probe.
+  void ring(double dt_s, bool felt) noexcept {
+    if (!transient_.used()) return;
+    const quat r_dw = glm::conjugate(settings_.map.T_wd.rotation);
+    const double scale = settings_.map.scale;
+    const vec3 push_d = r_dw * (scale * motion_.touched().on_probe_w.force);
+    const vec3 velocity_d = r_dw * ((1.0 / scale) * motion_.probe().state().velocity_w.linear);
+    ringing_d_ = transient_.play(push_d, velocity_d, dt_s, felt ? clutch_.ratio() : 0.0);
   }
 
   void follow_bodies(std::int64_t now_ns) noexcept {
@@ -323,7 +338,9 @@ class device_loop {
   }
 
   [[nodiscard]] wrench wrench_on_hand() const noexcept {
-    return clutch_.to_device(motion_.on_hand_w(), motion_.target().position);
+    wrench out = clutch_.to_device(motion_.on_hand_w(), motion_.target().position);
+    if (transient_.used()) out.force += ringing_d_;
+    return out;
   }
 
   void report(std::int64_t now_ns, sample_verdict verdict, status probe_status, const guard_action& guarded,
@@ -347,6 +364,8 @@ class device_loop {
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
     r.raised_j = raised_j_;
+    r.transient_j = transient_.given_j();
+    r.first_touches = transient_.touches();
     r.weight_share = weight_.share();
     r.from_bodies_j = motion_.probe().energy().from_bodies_j;
     r.guard_alpha_per_s = guarded.alpha_per_s;
@@ -393,6 +412,8 @@ class device_loop {
   handle_velocity speed_;
   probe_motion motion_;
   body_follower bodies_;
+  contact_transient transient_;
+  vec3 ringing_d_{0.0};
   passivity_guard guard_;
   handle_weight weight_;
   rate_monitor rates_;

@@ -31,6 +31,8 @@ struct session_record {
   double delivered_j = 0.0;         ///< energy delivered to the hand since the start
   double from_bodies_j = 0.0;       ///< work that moving bodies did on the probe since it was placed
   double raised_j = 0.0;            ///< of delivered_j, work that the handle's weight was held up with
+  double transient_j = 0.0;         ///< work on the hand that first touches rang with; see contact_transient
+  std::uint32_t first_touches = 0;  ///< that rang, so far
   double weight_share = 0.0;        ///< how much of the handle's weight the motors hold
   double surplus_j = 0.0;           ///< what the passivity guard acts on
   double guard_alpha_per_s = 0.0;   ///< damping rate that the guard added
