@@ -264,6 +264,7 @@ result<answer> run_session(const run_command& options, const common_options& com
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
   control.coupling = found.coupling.settings;
   control.velocity = velocity_of(options);
+  control.transient = transient_of(options.transient).value_or(transient_settings{});
   control.weight = weight_of(options.weight).value_or(weight_settings{});
   if (const result<void> fits = check(control.weight, device.capabilities()); !fits) return fits.error();
   if (formulation_name(options.render) == "planes") control.surfaces = surfaces_of(feel->scene());
@@ -381,6 +382,11 @@ void add_run(command_line& line) {
          "--weight", o->weight,
          "Weight of the handle that the motors hold up: its mass (kg), and its centre in the handle's frame (m)")
       ->check(weight_error, "KG[,X,Y,Z]");
+  sub.add_option(
+         "--transient", o->transient,
+         "What a first touch rings with: peak force for each m/s of approach (N), frequency (Hz, 150), decay (s, "
+         "0.015)")
+      ->check(transient_error, "N[,HZ[,S]]");
   sub.add_option("--velocity", o->velocity,
                  "Velocity of the handle for the coupling's damper: of its last poses, of a window of poses, which "
                  "smooths an encoder's steps, or the device's own")

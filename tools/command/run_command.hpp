@@ -31,6 +31,7 @@ struct run_command {
   double scale = 1.0;                                            // metres of the world for a metre of the device
   std::uint32_t clutch_button = 0;                               // 1 to 32; 0: none
   std::string weight;                                            // see weight_of(); empty: none
+  std::string transient;                                         // see transient_of(); empty: none
   std::string velocity = "poses";                                // see velocity_source
   std::string friction;                                          // see friction_of(); empty: none
   std::vector<std::string> moves;                                // see body_script::read()

@@ -154,6 +154,15 @@ json weight_json(const run_command& options) {
   return {{"mass", w->mass_kg}, {"centre", command::to_json(w->centre_h)}};
 }
 
+json transient_json(const run_command& options, const session_summary& summary) {
+  const std::optional<transient_settings> t = transient_of(options.transient);
+  if (!t) return nullptr;
+  return {{"amplitude", t->amplitude_n_s_per_m},
+          {"frequency", t->frequency_hz},
+          {"decay", t->decay_s},
+          {"first_touches", summary.first_touches()}};
+}
+
 json velocity_json(const run_command& options, const session_summary& summary) {
   return {{"asked", options.velocity},
           {"device_ticks", summary.ticks_with(velocity_source::device)},
@@ -224,6 +233,7 @@ answer report(const run_command& options, const session_findings& found) {
                   {"scale", options.scale},
                   {"clutch", clutch_json(options, summary)},
                   {"weight", weight_json(options)},
+                  {"transient", transient_json(options, summary)},
                   {"velocity", velocity_json(options, summary)},
                   {"friction", friction_json(options)},
                   {"surfaces", surfaces_json(surfaces)},
@@ -259,6 +269,10 @@ answer report(const run_command& options, const session_findings& found) {
   if (options.clutch_button != 0) out.text += row("clutch", clutch_text(options, summary));
   if (const auto w = weight_of(options.weight)) {
     out.text += row("weight", brief(1e3 * w->mass_kg) + " g of the handle, held by the motors");
+  }
+  if (const auto t = transient_of(options.transient)) {
+    out.text += row("transient",
+                    brief(t->frequency_hz) + " Hz at " + std::to_string(summary.first_touches()) + " first touches");
   }
   if (velocity_of(options) != velocity_source::poses) out.text += row("velocity", "by " + options.velocity);
   if (const auto mu = friction_of(options.friction); mu && mu->any()) {

@@ -85,6 +85,8 @@ void session_summary::add(const session_record& tick) noexcept {
   hand_torque_.add(tick.on_hand_d.torque);
   delivered_j_ = tick.delivered_j;
   raised_j_ = tick.raised_j;
+  transient_j_ = tick.transient_j;
+  first_touches_ = tick.first_touches;
   from_bodies_j_ = tick.from_bodies_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
   if (tick.clutch_ratio == 0.0) ++let_go_ticks_;
@@ -112,6 +114,7 @@ json session_summary::to_json() const {
            {{"delivered_to_hand", delivered_j_},
             {"from_bodies", from_bodies_j_},
             {"of_weight", raised_j_},
+            {"of_transients", transient_j_},
             {"of_weight", raised_j_},
             {"largest_surplus", surplus_max_j_},
             {"guarded_ticks", guarded_}}},

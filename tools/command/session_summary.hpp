@@ -51,7 +51,8 @@ class session_summary {
   [[nodiscard]] std::uint64_t ticks_with(velocity_source source) const noexcept {
     return velocity_ticks_[static_cast<std::size_t>(source)];
   }
-  [[nodiscard]] std::uint64_t ticks_let_go() const noexcept { return let_go_ticks_; }  ///< in full, by the clutch
+  [[nodiscard]] std::uint64_t ticks_let_go() const noexcept { return let_go_ticks_; }    ///< in full, by the clutch
+  [[nodiscard]] std::uint32_t first_touches() const noexcept { return first_touches_; }  ///< that rang
   [[nodiscard]] bool buttons_told() const noexcept { return buttons_told_; }
   [[nodiscard]] bool velocity_refused() const noexcept { return velocity_refused_; }
   [[nodiscard]] double largest_hand_force_n() const noexcept { return hand_force_.largest(); }
@@ -74,6 +75,8 @@ class session_summary {
   std::uint64_t let_go_ticks_ = 0;
   bool buttons_told_ = false;
   double raised_j_ = 0.0;
+  double transient_j_ = 0.0;
+  std::uint32_t first_touches_ = 0;
   vibration_monitor vibration_;
   wall_summary wall_;
 };

@@ -404,6 +404,7 @@ TEST_F(documents, run) {
                   "rate_check",
                   "velocity",
                   "scale",
+                  "transient",
                   "weight",
                   "clutch",
                   "friction",
@@ -497,6 +498,16 @@ TEST_F(documents, run_with_support_planes) {
   arguments too_heavy = above;
   too_heavy.insert(too_heavy.end(), {"--weight", "0.6"});
   EXPECT_NE(expect_failure(too_heavy, 1, "invalid_argument").find("more than half"), std::string::npos);
+  // What a first touch rings with.
+  EXPECT_TRUE(d["transient"].is_null());
+  EXPECT_EQ(d["energy"]["of_transients"], 0.0);
+  arguments ringing = above;
+  ringing.insert(ringing.end(), {"--transient", "20,120"});
+  const json rang = expect_document(ringing, "asperity.run/1");
+  EXPECT_EQ(rang["transient"]["amplitude"], 20.0);
+  EXPECT_EQ(rang["transient"]["frequency"], 120.0);
+  EXPECT_GE(rang["transient"]["first_touches"], 1);
+  EXPECT_LE(rang["energy"]["largest_surplus"], 1e-5);
   // Friction, where it was asked for.
   EXPECT_TRUE(d["friction"].is_null());
   arguments rough = above;

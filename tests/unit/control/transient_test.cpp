@@ -221,7 +221,7 @@ TEST(contact_transient, that_cannot_be_is_refused_and_not_played) {
     EXPECT_FALSE(contact_transient(t).used());
   }
   EXPECT_TRUE(check(metal));
-  EXPECT_TRUE(check({}));
+  EXPECT_TRUE(check(transient_settings{}));
   EXPECT_FALSE(contact_transient({}).used());
   EXPECT_EQ(contact_transient({}).play({0, 0, 1}, {0, 0, -1}, 1e-3), vec3(0.0));
 }
