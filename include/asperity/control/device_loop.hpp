@@ -124,7 +124,7 @@ class device_loop {
       rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
       probe_status = move_probe(dt_s, accepted, rates);
       if (accepted) transient_.observe(last_seen_.T_dh.position);
-      ring(dt_s, accepted && probe_status == status::ok && may_put_out(device_->state()));
+      ring(dt_s, probe_status == status::ok && accepted && may_put_out(device_->state()));
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
         guarded = guard_.adjust(wrench_on_hand());

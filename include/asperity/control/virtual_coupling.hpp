@@ -90,7 +90,8 @@ class virtual_coupling {
 /// - Half of that stiffness is taken: the other half of b is left for the coupling's damper and for a data sheet that
 ///   was written for another hand.
 /// - The largest force should take a way that a hand can steer in: at least two millimetres of stretch (and 0.05 rad).
-/// A stiffness that the device does not state (0) leaves the coupling's default.
+/// A stiffness that the device does not state (0) leaves the coupling's default, or less where the largest force would
+/// have too short a way.
 /// @param scale workspace_map::scale; a device's K and B are K / scale^2 and B / scale^2 in the world, its force F is
 ///              F / scale
 /// @pre rate_hz > 0, scale > 0
@@ -101,19 +102,17 @@ class virtual_coupling {
   constexpr double least_turn_rad = 0.05;
   const double slower =
       device.max_stiffness_rate_hz > 0.0 ? std::min(1.0, rate_hz / device.max_stiffness_rate_hz) : 1.0;
-  const auto bounded = [&](double stiffness, double peak, double least_way) {
-    const double stable = share * slower * stiffness;
+  const auto fitting = [&](double stated, double usual, double peak, double least_way) {
+    const double stable = stated > 0.0 ? share * slower * stated : usual;
     return peak > 0.0 ? std::min(stable, peak / least_way) : stable;
   };
   coupling_settings out;
   out.max_damping_n_s_per_m /= scale * scale;
-  if (device.max_stiffness_n_per_m > 0.0) {
-    out.stiffness_n_per_m =
-        bounded(device.max_stiffness_n_per_m, device.peak_force_n, least_stretch_m) / (scale * scale);
-  }
-  if (device.max_stiffness_n_m_per_rad > 0.0) {
-    out.stiffness_n_m_per_rad = bounded(device.max_stiffness_n_m_per_rad, device.peak_torque_n_m, least_turn_rad);
-  }
+  out.stiffness_n_per_m =
+      fitting(device.max_stiffness_n_per_m, out.stiffness_n_per_m, device.peak_force_n, least_stretch_m) /
+      (scale * scale);
+  out.stiffness_n_m_per_rad =
+      fitting(device.max_stiffness_n_m_per_rad, out.stiffness_n_m_per_rad, device.peak_torque_n_m, least_turn_rad);
   return out;
 }
 
