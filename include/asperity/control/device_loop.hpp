@@ -177,7 +177,7 @@ class device_loop {
   /// Where the handle is in the world, and how much of it the probe has.
   [[nodiscard]] const clutched_map& clutch() const noexcept { return clutch_; }
   /// How fast the handle moves, and who says so.
-  [[nodiscard]] const handle_velocity& speed() const noexcept { return speed_; }
+  [[nodiscard]] const velocity_estimator& speed() const noexcept { return speed_; }
   [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
   [[nodiscard]] Observer& observer() noexcept { return observer_; }
   [[nodiscard]] Device& device() noexcept { return *device_; }
@@ -409,7 +409,7 @@ class device_loop {
   Observer observer_;
   sample_check check_;
   clutched_map clutch_;
-  handle_velocity speed_;
+  velocity_estimator speed_;
   probe_motion motion_;
   body_follower bodies_;
   contact_transient transient_;

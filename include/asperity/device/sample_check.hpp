@@ -150,7 +150,7 @@ enum class velocity_source : std::uint8_t {
 /// any more, until restart(); the window takes its place.
 /// @source window: Janabi-Sharifi, Hayward and Chen 2000, end-fit; the slope of the best fit and the comparison are ours
 /// @rt safe: at most 41 poses are looked at, each at most 40 times
-class handle_velocity {
+class velocity_estimator {
  public:
   static constexpr std::int64_t longest_ns = 20'000'000;
   static constexpr std::int64_t spacing_ns = 500'000;  ///< poses that come closer take the place of the last one
@@ -158,8 +158,8 @@ class handle_velocity {
   static constexpr double fastest_rad_per_s = 100.0;
 
   /// @param position_resolution_m, rotation_resolution_rad of the encoder; 0 for one that is not known
-  explicit handle_velocity(velocity_source wanted = velocity_source::poses, double position_resolution_m = 0.0,
-                           double rotation_resolution_rad = 0.0) noexcept
+  explicit velocity_estimator(velocity_source wanted = velocity_source::poses, double position_resolution_m = 0.0,
+                              double rotation_resolution_rad = 0.0) noexcept
       : wanted_(wanted),
         off_m_(steps * (position_resolution_m > 0.0 ? position_resolution_m : 1e-5)),
         off_rad_(steps * (rotation_resolution_rad > 0.0 ? rotation_resolution_rad : 1e-4)) {}

@@ -67,7 +67,9 @@ TEST(couplings, keep_to_the_limits_of_every_driver) {
         } else {
           EXPECT_LE(c.stiffness_n_m_per_rad, 3.0 * room) << d.driver;
         }
-        if (d.can.peak_force_n > 0.0) EXPECT_LE(0.002 * on_device, d.can.peak_force_n * room) << d.driver;
+        if (d.can.peak_force_n > 0.0) {
+          EXPECT_LE(0.002 * on_device, d.can.peak_force_n * room) << d.driver;
+        }
         if (d.can.peak_torque_n_m > 0.0) {
           EXPECT_LE(0.05 * c.stiffness_n_m_per_rad, d.can.peak_torque_n_m * room) << d.driver;
         }

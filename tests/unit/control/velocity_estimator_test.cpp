@@ -27,7 +27,7 @@ double rounded(double x, double step) { return step * std::round(x / step); }
 
 /// What an encoder makes of a motion, sample by sample.
 struct encoder {
-  handle_velocity speed;
+  velocity_estimator speed;
   std::uint64_t sequence = 0;
   void see(double t_s, const vec3& x_m, const vec3& turn_rad, const twist& told, sample_field valid = all_fields) {
     device_sample s;
@@ -43,11 +43,11 @@ struct encoder {
   }
 };
 
-encoder by_window() { return {handle_velocity(velocity_source::window, step_m, step_rad)}; }
-encoder by_device() { return {handle_velocity(velocity_source::device, step_m, step_rad)}; }
+encoder by_window() { return {velocity_estimator(velocity_source::window, step_m, step_rad)}; }
+encoder by_device() { return {velocity_estimator(velocity_source::device, step_m, step_rad)}; }
 
-TEST(handle_velocity, of_an_even_motion_is_exact_within_a_step_over_the_window) {
-  drawn d(seed_of(fresh_seed("handle_velocity", "200 even motions"), "even"));
+TEST(velocity_estimator, of_an_even_motion_is_exact_within_a_step_over_the_window) {
+  drawn d(seed_of(fresh_seed("velocity_estimator", "200 even motions"), "even"));
   for (int i = 0; i < 200; ++i) {
     encoder e = by_window();
     const double rate_hz = d.log_between(200.0, 10'000.0);
@@ -65,7 +65,7 @@ TEST(handle_velocity, of_an_even_motion_is_exact_within_a_step_over_the_window) 
   }
 }
 
-TEST(handle_velocity, of_a_stop_is_nothing_soon) {
+TEST(velocity_estimator, of_a_stop_is_nothing_soon) {
   for (const double rate_hz : {200.0, 1000.0, 4000.0, 10'000.0}) {
     encoder e = by_window();
     const double v = 0.2, period_s = 1.0 / rate_hz;
@@ -82,7 +82,7 @@ TEST(handle_velocity, of_a_stop_is_nothing_soon) {
   }
 }
 
-TEST(handle_velocity, of_a_slow_motion_is_nearer_the_truth_than_two_poses_are) {
+TEST(velocity_estimator, of_a_slow_motion_is_nearer_the_truth_than_two_poses_are) {
   drawn d(seed_of(fresh_seed("handle_velocity_any", "60 motions"), "any"));
   for (int i = 0; i < 60; ++i) {
     encoder e = by_window();
@@ -103,7 +103,7 @@ TEST(handle_velocity, of_a_slow_motion_is_nearer_the_truth_than_two_poses_are) {
   }
 }
 
-TEST(handle_velocity, takes_what_the_device_tells) {
+TEST(velocity_estimator, takes_what_the_device_tells) {
   encoder e = by_device();
   for (int k = 0; k < 100; ++k) e.see(1e-3 * k, {1e-4 * k, 0, 0}, {0, 1e-3 * k, 0}, {{0.1, 0, 0}, {0, 1.0, 0}});
   EXPECT_EQ(e.speed.velocity_d().linear, vec3(0.1, 0, 0));
@@ -112,7 +112,7 @@ TEST(handle_velocity, takes_what_the_device_tells) {
   EXPECT_FALSE(e.speed.refused());
 }
 
-TEST(handle_velocity, takes_the_window_where_the_device_tells_none) {
+TEST(velocity_estimator, takes_the_window_where_the_device_tells_none) {
   encoder none = by_device(), linear_alone = by_device(), window = by_window();
   for (int k = 0; k < 100; ++k) {
     const twist lie{{9, 9, 9}, {9, 9, 9}};
@@ -129,7 +129,7 @@ TEST(handle_velocity, takes_the_window_where_the_device_tells_none) {
   EXPECT_EQ(linear_alone.speed.velocity_d().angular, window.speed.velocity_d().angular);
 }
 
-TEST(handle_velocity, believes_no_device_whose_velocity_does_not_go_with_its_poses) {
+TEST(velocity_estimator, believes_no_device_whose_velocity_does_not_go_with_its_poses) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinite = std::numeric_limits<double>::infinity();
   for (const double factor : {-1.0, 0.0, 2.0, 1000.0, nan, infinite}) {
@@ -156,7 +156,7 @@ TEST(handle_velocity, believes_no_device_whose_velocity_does_not_go_with_its_pos
   }
 }
 
-TEST(handle_velocity, believes_a_device_that_is_late_and_noisy) {
+TEST(velocity_estimator, believes_a_device_that_is_late_and_noisy) {
   drawn d(seed_of(fresh_seed("handle_velocity_late", "40 motions"), "late"));
   for (int i = 0; i < 40; ++i) {
     encoder e = by_device();
@@ -171,7 +171,7 @@ TEST(handle_velocity, believes_a_device_that_is_late_and_noisy) {
   }
 }
 
-TEST(handle_velocity, of_old_poses_stays) {
+TEST(velocity_estimator, of_old_poses_stays) {
   encoder e = by_window();
   for (int k = 0; k < 50; ++k) e.see(1e-3 * k, {1e-4 * k, 0, 0}, vec3(0.0), {});
   const twist before = e.speed.velocity_d();
@@ -181,8 +181,8 @@ TEST(handle_velocity, of_old_poses_stays) {
   EXPECT_EQ(e.speed.velocity_d().linear, before.linear);
 }
 
-TEST(handle_velocity, of_poses_is_none) {
-  encoder e{handle_velocity{}};
+TEST(velocity_estimator, of_poses_is_none) {
+  encoder e{velocity_estimator{}};
   for (int k = 0; k < 50; ++k) e.see(1e-3 * k, {1e-4 * k, 0, 0}, vec3(0.0), {{0.1, 0, 0}, vec3(0.0)});
   EXPECT_EQ(e.speed.used(), velocity_source::poses);
   EXPECT_EQ(e.speed.velocity_d().linear, vec3(0.0));
