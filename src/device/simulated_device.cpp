@@ -238,12 +238,22 @@ void simulated_device::measure(std::int64_t now_ns) noexcept {
   newest_.velocity_d = then.plant.velocity_d;
   newest_.valid =
       sample_field::position | sample_field::rotation | sample_field::linear_velocity | sample_field::angular_velocity;
+  if (settings_.capabilities.has_gripper()) {
+    newest_.valid = newest_.valid | sample_field::gripper;
+    newest_.gripper_m = gripper_m(1e-9 * static_cast<double>(then.time_ns - origin_ns_));
+  }
   if (settings_.presses.empty()) return;
   newest_.valid = newest_.valid | sample_field::buttons;
   newest_.buttons = 0;
   for (const scripted_press& p : settings_.presses) {
     if (now_ns >= p.from_ns && now_ns < p.until_ns) newest_.buttons |= p.buttons;
   }
+}
+
+double simulated_device::gripper_m(double t_s) const noexcept {
+  const device_capabilities& c = settings_.capabilities;
+  const double share = 0.5 - 0.5 * std::cos(6.283185307179586 * 0.5 * t_s);
+  return c.gripper_low_m + share * (c.gripper_high_m - c.gripper_low_m);
 }
 
 pose simulated_device::quantised(const pose& T) const noexcept {

@@ -85,6 +85,11 @@ void session_summary::add(const session_record& tick) noexcept {
   hand_torque_.add(tick.on_hand_d.torque);
   delivered_j_ = tick.delivered_j;
   raised_j_ = tick.raised_j;
+  if (tick.gripper_told) {
+    if (!gripper_m_) gripper_m_ = {tick.gripper_m, tick.gripper_m};
+    gripper_m_->first = std::min(gripper_m_->first, tick.gripper_m);
+    gripper_m_->second = std::max(gripper_m_->second, tick.gripper_m);
+  }
   transient_j_ = tick.transient_j;
   first_touches_ = tick.first_touches;
   from_bodies_j_ = tick.from_bodies_j;
@@ -118,6 +123,7 @@ json session_summary::to_json() const {
             {"of_weight", raised_j_},
             {"largest_surplus", surplus_max_j_},
             {"guarded_ticks", guarded_}}},
+          {"gripper", gripper_m_ ? json{{"low", gripper_m_->first}, {"high", gripper_m_->second}} : json()},
           {"wall", wall_.to_json()},
           {"vibration", vibration_json(vibration_.report(), device_period_ns_)}};
 }

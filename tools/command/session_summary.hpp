@@ -4,7 +4,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "asperity/control/session_record.hpp"
@@ -75,6 +77,7 @@ class session_summary {
   std::uint64_t let_go_ticks_ = 0;
   bool buttons_told_ = false;
   double raised_j_ = 0.0;
+  std::optional<std::pair<double, double>> gripper_m_;  // narrowest and widest
   double transient_j_ = 0.0;
   std::uint32_t first_touches_ = 0;
   vibration_monitor vibration_;

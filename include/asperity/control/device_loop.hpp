@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -374,6 +375,9 @@ class device_loop {
     r.pulling = motion_.touched().pulling;
     r.buttons = buttons_;
     r.buttons_told = has_all(last_seen_.valid, sample_field::buttons);
+    r.gripper_told = has_all(last_seen_.valid, sample_field::gripper) && std::isfinite(last_seen_.gripper_m);
+    if (r.gripper_told) gripper_m_ = last_seen_.gripper_m;
+    r.gripper_m = gripper_m_;
     r.clutch_ratio = clutch_.ratio();
     r.velocity = speed_.used();
     r.velocity_refused = speed_.refused();
@@ -421,6 +425,7 @@ class device_loop {
   bool goes_silent_;  // the device puts out nothing once a command has expired
 
   device_sample last_seen_{};
+  double gripper_m_ = 0.0;
   std::uint32_t buttons_ = 0;  // as last told
   bool started_ = false;
   bool placed_ = false;

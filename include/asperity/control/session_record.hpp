@@ -41,6 +41,8 @@ struct session_record {
   bool pulling = false;             ///< the linear contact would have pulled and was set to zero
   std::uint32_t buttons = 0;        ///< of the device, as last told; one bit per button
   bool buttons_told = false;        ///< the sample in use says which buttons are held down
+  double gripper_m = 0.0;           ///< opening of the device's gripper, as last told
+  bool gripper_told = false;        ///< the sample in use has one
   double clutch_ratio = 1.0;  ///< share of the handle's motion that the probe is given, and of its wrench the hand
   velocity_source velocity = velocity_source::poses;  ///< that the coupling's damper was given
   bool velocity_refused = false;                      ///< the device told a velocity that does not go with its poses

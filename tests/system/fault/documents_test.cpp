@@ -404,6 +404,7 @@ TEST_F(documents, run) {
                   "rate_check",
                   "velocity",
                   "scale",
+                  "gripper",
                   "transient",
                   "weight",
                   "clutch",
@@ -485,6 +486,7 @@ TEST_F(documents, run_with_support_planes) {
   EXPECT_NEAR(scaled["coupling"]["translation"]["stiffness"], 60.0, 1e-9);
   EXPECT_LE(scaled["energy"]["largest_surplus"], 1e-5);
   EXPECT_EQ(scaled["fault"], "none");
+  EXPECT_TRUE(d["gripper"].is_null());  // the simulated device has none
   // The handle's weight, held up by the motors.
   EXPECT_TRUE(d["weight"].is_null());
   arguments heavy = above;

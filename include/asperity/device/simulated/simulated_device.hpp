@@ -124,6 +124,8 @@ class ASPERITY_API simulated_device {
   // `pull` is the hand's wrench before its damper took part in the step.
   void book(double h, const twist& before, const wrench& put_out, const wrench& pull) noexcept;
 
+  // The hand opens and shuts a gripper every two seconds, beginning shut.
+  [[nodiscard]] double gripper_m(double t_s) const noexcept;
   [[nodiscard]] vec3 tremor(double t_s) const noexcept;
   void measure(std::int64_t now_ns) noexcept;
   [[nodiscard]] pose quantised(const pose& T) const noexcept;
