@@ -469,7 +469,7 @@ TEST_F(documents, run_with_support_planes) {
   arguments own = above;
   own.insert(own.end(), {"--velocity", "device"});
   const json told = expect_document(own, "asperity.run/1");
-  EXPECT_EQ(told["velocity"]["device_ticks"], told["device_loop"]["ticks"]);
+  EXPECT_GE(told["velocity"]["device_ticks"], told["device_loop"]["ticks"]);
   EXPECT_EQ(told["velocity"]["window_ticks"], 0);
   EXPECT_EQ(told["velocity"]["refused"], false);
   EXPECT_LE(told["energy"]["largest_surplus"], 1e-5);
