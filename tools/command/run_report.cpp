@@ -9,6 +9,7 @@
 #include "interrupt.hpp"
 #include "material_option.hpp"
 #include "model_report.hpp"
+#include "options.hpp"
 #include "statistics.hpp"
 #include "text.hpp"
 

@@ -209,10 +209,9 @@ TEST(handle_weight, stays_within_every_limit) {
   ASSERT_TRUE(dev.open() && dev.arm());
   session_of_weight session(block_on_plane(), {{pose{}}, vec3(0.0)}, dev, control, {}, {&log});
   static_cast<void>(session.run_until(2000 * tick_ns));
-  double largest = 0.0, squares = 0.0;
+  double largest = 0.0;
   for (std::size_t i = 1; i < log.size(); ++i) {
     largest = std::max(largest, glm::length(log[i].on_hand_d.force));
-    squares += glm::dot(log[i].on_hand_d.force, log[i].on_hand_d.force);
     EXPECT_LT(glm::length(log[i].on_hand_d.force - log[i - 1].on_hand_d.force), 5.0001);
   }
   EXPECT_GT(largest, 19.0);
