@@ -155,6 +155,18 @@ TEST(handle_weight, lends_no_more_than_its_height) {
   }
 }
 
+TEST(handle_weight, lends_the_part_that_left_the_gate) {
+  for (const double part : {0.0, 0.5, 1.0}) {
+    handle_weight weight({.mass_kg = 0.2}, simulated_capabilities());
+    pose T;
+    for (int k = 0; k < 60; ++k) static_cast<void>(weight.hold(T, true, 1e-2));
+    const wrench wanted = weight.hold(T, true, 1e-3);
+    EXPECT_EQ(weight.observe(T, wanted, wanted), 0.0);
+    T.position.z += 0.01;
+    EXPECT_NEAR(weight.observe(T, part * wanted, wanted), part * 0.2 * gravity * 0.01, 1e-12);
+  }
+}
+
 TEST(handle_weight, that_came_out_whole_is_its_height) {
   handle_weight weight({.mass_kg = 0.2, .centre_h = {0.02, 0.01, 0.05}}, simulated_capabilities());
   drawn d(7);
