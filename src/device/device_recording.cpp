@@ -17,7 +17,8 @@ recording_encoder::recording_encoder() noexcept : sum_(recording_detail::first_s
 std::string recording_encoder::begin(const device_capabilities& c, device_state before) {
   using namespace recording_detail;
   byte_writer w;
-  w.text(magic, sizeof magic);
+  gripper_ = c.has_gripper();
+  w.text(gripper_ ? magic_with_gripper : magic, sizeof magic);
   const std::size_t length = c.name.size() < longest_name ? c.name.size() : longest_name;
   w.number(static_cast<std::uint16_t>(length));
   w.text(c.name.data(), length);
@@ -31,7 +32,7 @@ std::string recording_encoder::call(const call_record& c) {
   byte_writer sample;
   std::string seen;
   if (c.call == device_call::read) {
-    write(sample, c.sample);
+    write(sample, c.sample, gripper_);
     seen = sample.take();
   }
   const bool same = c.call == device_call::read && seen == last_seen_;
@@ -94,7 +95,8 @@ result<device_recording> decode(const std::string& bytes, const std::function<bo
   };
   byte_reader r(bytes);
   const std::string first_bytes = r.text(sizeof magic);
-  const bool in_blocks = first_bytes == std::string(magic, sizeof magic);
+  const bool gripper = first_bytes == std::string(magic_with_gripper, sizeof magic_with_gripper);
+  const bool in_blocks = gripper || first_bytes == std::string(magic, sizeof magic);
   if (!in_blocks && first_bytes != std::string(magic_without_blocks, sizeof magic)) {
     return error{error_code::bad_format,
                  "it is no device recording, for it does not begin with ASPDEVR2: give a file of `asperity run "
@@ -104,8 +106,9 @@ result<device_recording> decode(const std::string& bytes, const std::function<bo
   const std::size_t length = r.number<std::uint16_t>();
   if (length > longest_name) return bad("names a device of more than 256 bytes");
   out.name = r.text(length);
-  out.capabilities = read_capabilities(r);
+  out.capabilities = read_capabilities(r, gripper);
   out.before = r.choice<device_state>(device_state_count);
+  if (r.ok() && gripper != out.capabilities.has_gripper()) return bad("tells of a gripper that does not open");
   if (!r.ok()) return bad("is cut off, or wrong, in its header");
 
   running_sum sum(bytes);
@@ -170,7 +173,7 @@ result<device_recording> decode(const std::string& bytes, const std::function<bo
     c.after = r.choice<device_state>(device_state_count);
     if (reads || c.call == device_call::write) c.now_ns = r.number<std::int64_t>();
     if (reads) {
-      if (!same) last = read_sample(r);
+      if (!same) last = read_sample(r, gripper);
       c.sample = last;
       seen = true;
     }

@@ -16,6 +16,8 @@ void put(const vec3& from, double (&to)[3]) noexcept {
   to[1] = from.y;
   to[2] = from.z;
 }
+constexpr std::uint32_t known_fields = 0x3fU;
+
 vec3 get(const double (&from)[3]) noexcept { return {from[0], from[1], from[2]}; }
 
 }  // namespace
@@ -62,6 +64,8 @@ asperity_capabilities to_abi(const device_capabilities& c) noexcept {
   out.moving_mass_kg = c.moving_mass_kg;
   out.moving_inertia_kg_m2 = c.moving_inertia_kg_m2;
   put_text(out.name, c.name);
+  out.gripper_low_m = c.gripper_low_m;
+  out.gripper_high_m = c.gripper_high_m;
   return out;
 }
 
@@ -89,7 +93,9 @@ device_capabilities from_abi(const asperity_capabilities& c) noexcept {
           .moving_mass_kg = c.moving_mass_kg,
           .moving_inertia_kg_m2 = c.moving_inertia_kg_m2,
           .needs_homing = (c.flags & ASPERITY_NEEDS_HOMING) != 0,
-          .device_side_watchdog = (c.flags & ASPERITY_DEVICE_SIDE_WATCHDOG) != 0};
+          .device_side_watchdog = (c.flags & ASPERITY_DEVICE_SIDE_WATCHDOG) != 0,
+          .gripper_low_m = c.gripper_low_m,
+          .gripper_high_m = c.gripper_high_m};
 }
 
 asperity_sample to_abi(const device_sample& s) noexcept {
@@ -108,6 +114,7 @@ asperity_sample to_abi(const device_sample& s) noexcept {
   put(s.velocity_d.linear, out.linear_velocity_d_m_per_s);
   put(s.velocity_d.angular, out.angular_velocity_d_rad_per_s);
   out.buttons = s.buttons;
+  out.gripper_m = s.gripper_m;
   return out;
 }
 
@@ -120,7 +127,8 @@ device_sample from_abi(const asperity_sample& s) noexcept {
           .T_dh = {quat_from_xyzw({q[0], q[1], q[2], q[3]}), get(s.position_d_m)},
           .velocity_d = {get(s.linear_velocity_d_m_per_s), get(s.angular_velocity_d_rad_per_s)},
           .buttons = s.buttons,
-          .valid = static_cast<sample_field>(s.valid & 0x1fU)};
+          .valid = static_cast<sample_field>(s.valid & known_fields),
+          .gripper_m = s.gripper_m};
 }
 
 asperity_command to_abi(const device_command& c) noexcept {

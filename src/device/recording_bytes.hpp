@@ -13,6 +13,7 @@
 namespace asperity::recording_detail {
 
 inline constexpr char magic[] = {'A', 'S', 'P', 'D', 'E', 'V', 'R', '2'};
+inline constexpr char magic_with_gripper[] = {'A', 'S', 'P', 'D', 'E', 'V', 'R', '3'};  // of devices that have one
 inline constexpr char magic_without_blocks[] = {'A', 'S', 'P', 'D', 'E', 'V', 'R', '1'};
 inline constexpr std::uint64_t block_calls = 256;  // a quarter of a second and less at 1 kHz
 inline constexpr std::uint8_t block_mark = 0xfe;
@@ -127,6 +128,7 @@ inline constexpr std::array capability_numbers{
     &device_capabilities::minimum_rate_hz,         &device_capabilities::moving_mass_kg,
     &device_capabilities::moving_inertia_kg_m2};
 
+// A device with a gripper has two numbers more.
 inline void write(byte_writer& w, const device_capabilities& c) {
   w.number(static_cast<std::uint8_t>(c.maturity));
   w.number(c.sensed);
@@ -136,9 +138,12 @@ inline void write(byte_writer& w, const device_capabilities& c) {
   w.vector(c.workspace_low_d);
   w.vector(c.workspace_high_d);
   w.number(c.worst_latency_ns);
+  if (!c.has_gripper()) return;
+  w.real(c.gripper_low_m);
+  w.real(c.gripper_high_m);
 }
 
-inline device_capabilities read_capabilities(byte_reader& r) noexcept {
+inline device_capabilities read_capabilities(byte_reader& r, bool gripper) noexcept {
   device_capabilities c;
   c.maturity = r.choice<driver_maturity>(3);
   c.sensed = r.number<axis_mask>();
@@ -150,10 +155,14 @@ inline device_capabilities read_capabilities(byte_reader& r) noexcept {
   c.workspace_low_d = r.vector();
   c.workspace_high_d = r.vector();
   c.worst_latency_ns = r.number<std::int64_t>();
+  if (gripper) {
+    c.gripper_low_m = r.real();
+    c.gripper_high_m = r.real();
+  }
   return c;
 }
 
-inline void write(byte_writer& w, const device_sample& s) {
+inline void write(byte_writer& w, const device_sample& s, bool gripper) {
   w.number(s.host_time_ns);
   w.number(s.device_time_ns);
   w.number(s.sequence);
@@ -164,9 +173,10 @@ inline void write(byte_writer& w, const device_sample& s) {
   w.vector(s.velocity_d.angular);
   w.number(s.buttons);
   w.number(static_cast<std::uint8_t>(s.valid));
+  if (gripper) w.real(s.gripper_m);
 }
 
-inline device_sample read_sample(byte_reader& r) noexcept {
+inline device_sample read_sample(byte_reader& r, bool gripper) noexcept {
   device_sample s;
   s.host_time_ns = r.number<std::int64_t>();
   s.device_time_ns = r.number<std::int64_t>();
@@ -179,6 +189,7 @@ inline device_sample read_sample(byte_reader& r) noexcept {
   s.velocity_d.angular = r.vector();
   s.buttons = r.number<std::uint32_t>();
   s.valid = static_cast<sample_field>(r.number<std::uint8_t>());
+  if (gripper) s.gripper_m = r.real();
   return s;
 }
 

@@ -173,10 +173,18 @@ void simulated_device::step() noexcept {
   const wrench put_out = put_out_ =
       actuator_.follow(plant_ns_ <= command_.valid_until_ns ? command_.on_hand : wrench{}, h);
 
-  const vec3 pull = g.stiffness_n_per_m * (hand.T_dh.position + tremor(t) - plant_.T_dh.position) +
-                    g.damping_n_s_per_m * hand.velocity_d.linear + put_out.force;
-  const vec3 turn = g.stiffness_n_m_per_rad * log_rotation(hand.T_dh.rotation * glm::conjugate(plant_.T_dh.rotation)) +
-                    g.damping_n_m_s_per_rad * hand.velocity_d.angular + put_out.torque;
+  vec3 pull = g.stiffness_n_per_m * (hand.T_dh.position + tremor(t) - plant_.T_dh.position) +
+              g.damping_n_s_per_m * hand.velocity_d.linear + put_out.force;
+  vec3 turn = g.stiffness_n_m_per_rad * log_rotation(hand.T_dh.rotation * glm::conjugate(plant_.T_dh.rotation)) +
+              g.damping_n_m_s_per_rad * hand.velocity_d.angular + put_out.torque;
+  const wrench held_by_hand{pull - put_out.force, turn - put_out.torque};
+  wrench weight{};
+  if (p.gravity_d != vec3(0.0)) {
+    weight.force = p.mass_kg * p.gravity_d;
+    weight.torque = glm::cross(plant_.T_dh.rotation * p.centre_h, weight.force);
+    pull += weight.force;
+    turn += weight.torque;
+  }
   const double b = g.damping_n_s_per_m + p.damping_n_s_per_m;
   const double br = g.damping_n_m_s_per_rad + p.damping_n_m_s_per_rad;
   const twist before = plant_.velocity_d;
@@ -185,7 +193,8 @@ void simulated_device::step() noexcept {
   v.angular = (p.inertia_kg_m2 * v.angular + h * turn) / (p.inertia_kg_m2 + h * br);
   plant_.T_dh.position += h * v.linear;
   plant_.T_dh.rotation = glm::normalize(exp_rotation(h * v.angular) * plant_.T_dh.rotation);
-  book(h, before, put_out, {pull - put_out.force, turn - put_out.torque});
+  energy_.by_weight_j += h * (glm::dot(weight.force, v.linear) + glm::dot(weight.torque, v.angular));
+  book(h, before, put_out, held_by_hand);
 
   plant_ns_ += plant_step_ns;
   past_next_ = (past_next_ + 1) % past_size;
@@ -229,6 +238,22 @@ void simulated_device::measure(std::int64_t now_ns) noexcept {
   newest_.velocity_d = then.plant.velocity_d;
   newest_.valid =
       sample_field::position | sample_field::rotation | sample_field::linear_velocity | sample_field::angular_velocity;
+  if (settings_.capabilities.has_gripper()) {
+    newest_.valid = newest_.valid | sample_field::gripper;
+    newest_.gripper_m = gripper_m(1e-9 * static_cast<double>(then.time_ns - origin_ns_));
+  }
+  if (settings_.presses.empty()) return;
+  newest_.valid = newest_.valid | sample_field::buttons;
+  newest_.buttons = 0;
+  for (const scripted_press& p : settings_.presses) {
+    if (now_ns >= p.from_ns && now_ns < p.until_ns) newest_.buttons |= p.buttons;
+  }
+}
+
+double simulated_device::gripper_m(double t_s) const noexcept {
+  const device_capabilities& c = settings_.capabilities;
+  const double share = 0.5 - 0.5 * std::cos(6.283185307179586 * 0.5 * t_s);
+  return c.gripper_low_m + share * (c.gripper_high_m - c.gripper_low_m);
 }
 
 pose simulated_device::quantised(const pose& T) const noexcept {

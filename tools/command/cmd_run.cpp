@@ -1,4 +1,5 @@
 // asperity run: a session of the two-rate loop with a device.
+#include <cmath>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -90,11 +91,27 @@ struct felt_device {
   }
 };
 
+// The simulated hand holds the clutch's button down for a fifth of the session, in its middle.
+std::vector<scripted_press> presses_of(const run_command& options) {
+  if (options.clutch_button == 0) return {};
+  const double length_ns = 1e9 * options.seconds.value_or(usual_seconds);
+  return {{.buttons = button_bit(options.clutch_button),
+           .from_ns = std::llround(0.4 * length_ns),
+           .until_ns = std::llround(0.6 * length_ns)}};
+}
+
 result<void> open_device(const run_command& options, const scene& bodies, felt_device& felt) {
   if (felt.replay) {
     felt.device.emplace(felt.replay->device());
   } else if (is_simulated(options)) {
-    felt.device.emplace(simulated_device({.seed = options.seed, .motion = motion_of(options, bodies)}));
+    // A simulated handle has the weight that is to be held up.
+    plant_settings plant;
+    if (const std::optional<weight_settings> w = weight_of(options.weight)) {
+      plant.gravity_d = w->mass_kg / plant.mass_kg * w->gravity_d;
+      plant.centre_h = w->centre_h;
+    }
+    felt.device.emplace(simulated_device(
+        {.seed = options.seed, .motion = motion_of(options, bodies), .plant = plant, .presses = presses_of(options)}));
     return felt.device->open();
   } else {
     {
@@ -216,6 +233,7 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (const result<void> opened = open_device(options, *bodies, felt); !opened) return opened.error();
   render_options chosen = options.render;
   chosen.periods = periods_of(options);
+  chosen.motion_scale = options.scale;
   result<any_renderer> feel = make_chosen_renderer(std::move(bodies).value(), chosen);
   if (!feel) return feel.error();
   const std::shared_ptr<gpu_use> gpu = gpu_use_of(*feel);
@@ -239,10 +257,16 @@ result<answer> run_session(const run_command& options, const common_options& com
   const result<std::optional<pose>> T_dh = start_of_handle(options, felt, device);
   if (!T_dh) return T_dh.error();
   control_settings control;
-  control.map = *T_dh ? map_of(*poses->T_wa, shape.centre_of_mass, **T_dh) : map_of(*poses->T_wa, shape.centre_of_mass);
-  control.probe = found.probe = solid_probe(shape);
+  control.map = *T_dh ? map_of(*poses->T_wa, shape.centre_of_mass, options.scale, **T_dh)
+                      : map_of(*poses->T_wa, shape.centre_of_mass, options.scale);
+  control.clutch.buttons = button_bit(options.clutch_button);
+  control.probe = found.probe = felt_alike(solid_probe(shape), options.scale);
   found.coupling = coupling_of(options, device.capabilities(), control.map.scale);
   control.coupling = found.coupling.settings;
+  control.velocity = velocity_of(options);
+  control.transient = transient_of(options.transient).value_or(transient_settings{});
+  control.weight = weight_of(options.weight).value_or(weight_settings{});
+  if (const result<void> fits = check(control.weight, device.capabilities()); !fits) return fits.error();
   if (formulation_name(options.render) == "planes") control.surfaces = surfaces_of(feel->scene());
   if (!options.friction.empty()) {
     control.friction = friction_of(options.friction).value_or(friction_settings{});
@@ -343,6 +367,31 @@ void add_run(command_line& line) {
                  "The same of the rotation (N m/rad); by default what the device can show, and 3 with other contacts")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1e-3, 1e3));
+  sub.add_option(
+         "--scale", o->scale,
+         "Motion scaling: metres of the world for a metre of the device, 0.1 to 10; the force is scaled so that "
+         "energy is kept")
+      ->check(positive_number_error, "NUMBER > 0")
+      ->check(CLI::Range(0.1, 10.0))
+      ->capture_default_str();
+  sub.add_option("--clutch", o->clutch_button,
+                 "Button, 1 to 32, that lets go of the probe while it is held down; the simulated hand holds it for a "
+                 "fifth of the session")
+      ->check(CLI::Range(1, 32));
+  sub.add_option(
+         "--weight", o->weight,
+         "Weight of the handle that the motors hold up: its mass (kg), and its centre in the handle's frame (m)")
+      ->check(weight_error, "KG[,X,Y,Z]");
+  sub.add_option(
+         "--transient", o->transient,
+         "What a first touch rings with: peak force for each m/s of approach (N), frequency (Hz, 150), decay (s, "
+         "0.015)")
+      ->check(transient_error, "N[,HZ[,S]]");
+  sub.add_option("--velocity", o->velocity,
+                 "Velocity of the handle for the coupling's damper: of its last poses, of a window of poses, which "
+                 "smooths an encoder's steps, or the device's own")
+      ->check(CLI::IsMember({"poses", "window", "device"}))
+      ->capture_default_str();
   sub.add_option(
          "--friction", o->friction,
          "Coefficients of friction on support planes, STATIC or STATIC,DYNAMIC: 0.6,0.4; by default those of the "

@@ -9,8 +9,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "asperity/control/friction.hpp"
+#include "asperity/control/passivity_guard.hpp"
+#include "asperity/control/virtual_coupling.hpp"
 
 namespace asperity::command {
 
@@ -52,6 +55,50 @@ namespace asperity::command {
 [[nodiscard]] inline std::string friction_error(const std::string& text) {
   if (friction_of(text)) return {};
   return "'" + text + "' is not STATIC or STATIC,DYNAMIC with 10 >= STATIC >= DYNAMIC >= 0";
+}
+
+/// Numbers with commas between; nothing where one is none, or there are more than `most` of them.
+[[nodiscard]] inline std::vector<double> numbers_of(std::string_view text, std::size_t most) {
+  std::vector<double> out;
+  for (bool more = true; more;) {
+    double value = 0.0;
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failed != std::errc() || !std::isfinite(value) || out.size() == most) return {};
+    out.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    more = !text.empty();
+    if (more && text.front() != ',') return {};
+    if (more) text.remove_prefix(1);
+  }
+  return out;
+}
+
+/// Mass of a handle and, after commas, its centre of mass in the handle's frame: KG or KG,X,Y,Z.
+[[nodiscard]] inline std::optional<weight_settings> weight_of(const std::string& text) {
+  const std::vector<double> n = numbers_of(text, 4);
+  if ((n.size() != 1 && n.size() != 4) || !(n[0] > 0.0)) return std::nullopt;
+  weight_settings out{.mass_kg = n[0]};
+  if (n.size() == 4) out.centre_h = {n[1], n[2], n[3]};
+  return out;
+}
+[[nodiscard]] inline std::string weight_error(const std::string& text) {
+  if (weight_of(text)) return {};
+  return "'" + text + "' is not KG or KG,X,Y,Z with a mass above zero";
+}
+
+/// Transient of a first touch: AMPLITUDE[,HZ[,DECAY]], N for each m/s, Hz and s.
+[[nodiscard]] inline std::optional<transient_settings> transient_of(const std::string& text) {
+  const std::vector<double> n = numbers_of(text, 3);
+  if (n.empty() || !(n[0] > 0.0)) return std::nullopt;
+  transient_settings out{.amplitude_n_s_per_m = n[0]};
+  if (n.size() > 1) out.frequency_hz = n[1];
+  if (n.size() > 2) out.decay_s = n[2];
+  if (!asperity::check(out)) return std::nullopt;
+  return out;
+}
+[[nodiscard]] inline std::string transient_error(const std::string& text) {
+  if (transient_of(text)) return {};
+  return "'" + text + "' is not AMPLITUDE[,HZ[,DECAY]] with up to 100 N for each m/s, 20 to 1000 Hz, 0.001 to 0.2 s";
 }
 
 /// A whole number, zero or larger, that fits 64 bits.

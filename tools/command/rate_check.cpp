@@ -42,7 +42,8 @@ std::optional<double> rate_within(double tick_s) {
 rate_check check_rate(any_renderer& feel, const scene_placement& placement, const pose& touch_T_wa,
                       const control_settings& control, const loop_periods& periods) {
   const auto shared = std::make_unique<exchange>();
-  contact_loop contact(lent_renderer{&feel}, placement, *shared, selection_for(periods.renewal_ns()), laws_of(control));
+  contact_loop contact(lent_renderer{&feel}, placement, *shared, selection_for(periods.renewal_ns(), control.map.scale),
+                       laws_of(control));
   probe_motion motion(control.probe, control.coupling, laws_of(control), control.substeps, control.friction);
   const pose touch_T_wc = touch_T_wa * placement.T_ac();
   motion.place(touch_T_wc);

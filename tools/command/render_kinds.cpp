@@ -36,7 +36,8 @@ result<any_renderer> make_least_motion_on_cpu(scene bodies, const render_options
 
 result<any_renderer> make_planes_on_cpu(scene bodies, const render_options& options) {
   plane_renderer_settings settings;
-  const double reach_m = reach_for(seconds(options.periods.contact_ns), seconds(options.periods.device_ns));
+  const double reach_m = std::max(1.0, options.motion_scale) *
+                         reach_for(seconds(options.periods.contact_ns), seconds(options.periods.device_ns));
   // A loop below 180 Hz meets fast touches a little late: a longer reach would list whole bodies. One above 3.6 kHz
   // looks further than it has to, because planes are also asked for where the probe will come to rest.
   constexpr double most_m = 0.01, least_m = 0.0005;

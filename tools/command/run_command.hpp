@@ -28,6 +28,11 @@ struct run_command {
   double device_rate_hz = 1000.0;
   double contact_rate_hz = 1000.0;
   std::optional<double> coupling_n_per_m, coupling_n_m_per_rad;  // what fits device and contacts
+  double scale = 1.0;                                            // metres of the world for a metre of the device
+  std::uint32_t clutch_button = 0;                               // 1 to 32; 0: none
+  std::string weight;                                            // see weight_of(); empty: none
+  std::string transient;                                         // see transient_of(); empty: none
+  std::string velocity = "poses";                                // see velocity_source
   std::string friction;                                          // see friction_of(); empty: none
   std::vector<std::string> moves;                                // see body_script::read()
   std::string clock;                                             // empty: what fits the device
@@ -54,6 +59,18 @@ inline constexpr std::string_view replay_prefix = "replay:";
 /// Periods of the rates that were asked for, whole nanoseconds.
 [[nodiscard]] inline loop_periods periods_of(const run_command& options) {
   return {std::llround(1e9 / options.device_rate_hz), std::llround(1e9 / options.contact_rate_hz)};
+}
+
+/// The bit of a button that is counted from 1; none of 0.
+[[nodiscard]] constexpr std::uint32_t button_bit(std::uint32_t button) noexcept {
+  return button == 0 ? 0U : 1U << (button - 1U);
+}
+
+/// Where the coupling's damper takes the handle's velocity from.
+[[nodiscard]] inline velocity_source velocity_of(const run_command& options) {
+  return options.velocity == "device"   ? velocity_source::device
+         : options.velocity == "window" ? velocity_source::window
+                                        : velocity_source::poses;
 }
 
 /// `virtual` or `real`.

@@ -9,6 +9,7 @@
 #include "interrupt.hpp"
 #include "material_option.hpp"
 #include "model_report.hpp"
+#include "options.hpp"
 #include "statistics.hpp"
 #include "text.hpp"
 
@@ -136,6 +137,49 @@ std::string thread_text(const thread_grants& t) {
   return out;
 }
 
+json clutch_json(const run_command& options, const session_summary& summary) {
+  if (options.clutch_button == 0) return nullptr;
+  return {{"button", options.clutch_button},
+          {"told", summary.buttons_told()},
+          {"let_go", static_cast<double>(summary.ticks_let_go()) / options.device_rate_hz}};
+}
+
+std::string clutch_text(const run_command& options, const session_summary& summary) {
+  return "button " + std::to_string(options.clutch_button) + ", let go for " +
+         brief(static_cast<double>(summary.ticks_let_go()) / options.device_rate_hz) + " s";
+}
+
+json weight_json(const run_command& options) {
+  const std::optional<weight_settings> w = weight_of(options.weight);
+  if (!w) return nullptr;
+  return {{"mass", w->mass_kg}, {"centre", command::to_json(w->centre_h)}};
+}
+
+json transient_json(const run_command& options, const session_summary& summary) {
+  const std::optional<transient_settings> t = transient_of(options.transient);
+  if (!t) return nullptr;
+  return {{"amplitude", t->amplitude_n_s_per_m},
+          {"frequency", t->frequency_hz},
+          {"decay", t->decay_s},
+          {"first_touches", summary.first_touches()}};
+}
+
+json velocity_json(const run_command& options, const session_summary& summary) {
+  return {{"asked", options.velocity},
+          {"device_ticks", summary.ticks_with(velocity_source::device)},
+          {"window_ticks", summary.ticks_with(velocity_source::window)},
+          {"refused", summary.velocity_refused()}};
+}
+
+// What was asked for and not had.
+std::string velocity_warning(const run_command& options, const session_summary& summary) {
+  const std::uint64_t missed = summary.ticks_with(velocity_source::window);
+  if (velocity_of(options) != velocity_source::device || missed == 0) return "";
+  return "  warning: the handle's velocity was that of a window of its poses in " + std::to_string(missed) +
+         " ticks: the device " +
+         (summary.velocity_refused() ? "told one that does not go with its poses" : "told none of its own") + "\n";
+}
+
 json friction_json(const run_command& options) {
   const std::optional<friction_settings> mu = friction_of(options.friction);
   if (!mu) return {};
@@ -187,6 +231,11 @@ answer report(const run_command& options, const session_findings& found) {
                   {"grid", grid_json(options.render)},
                   {"lookup", lookup_json(options.render)},
                   {"coupling", command::to_json(coupling, probe)},
+                  {"scale", options.scale},
+                  {"clutch", clutch_json(options, summary)},
+                  {"weight", weight_json(options)},
+                  {"transient", transient_json(options, summary)},
+                  {"velocity", velocity_json(options, summary)},
                   {"friction", friction_json(options)},
                   {"surfaces", surfaces_json(surfaces)},
                   {"moves", options.moves}};
@@ -216,6 +265,17 @@ answer report(const run_command& options, const session_findings& found) {
              brief(ended.ended_at_s) + " s, " + (is_simulated(options) ? options.motion + ", " : "") +
              clock_of(options) + " clock\n" + summary.to_text();
   out.text += row("coupling", to_text(coupling, probe));
+  if (options.scale != 1.0)
+    out.text += row("scale", brief(options.scale) + " m of the world for a metre of the device");
+  if (options.clutch_button != 0) out.text += row("clutch", clutch_text(options, summary));
+  if (const auto w = weight_of(options.weight)) {
+    out.text += row("weight", brief(1e3 * w->mass_kg) + " g of the handle, held by the motors");
+  }
+  if (const auto t = transient_of(options.transient)) {
+    out.text += row("transient",
+                    brief(t->frequency_hz) + " Hz at " + std::to_string(summary.first_touches()) + " first touches");
+  }
+  if (velocity_of(options) != velocity_source::poses) out.text += row("velocity", "by " + options.velocity);
   if (const auto mu = friction_of(options.friction); mu && mu->any()) {
     out.text +=
         row("friction", brief(mu->static_coefficient) + " at rest, " + brief(mu->dynamic_coefficient) + " slipping");
@@ -240,6 +300,10 @@ answer report(const run_command& options, const session_findings& found) {
     out.text += "  warning: the probe never touched anything: lower it with --press or --probe-pose\n";
   out.text += summary.wall().warnings();
   out.text += summary.vibration_warning();
+  out.text += velocity_warning(options, summary);
+  if (options.clutch_button != 0 && !summary.buttons_told()) {
+    out.text += "  warning: the device told nothing of its buttons: the clutch was not used\n";
+  }
   out.text += rate_warning(options, ended.contact, contact);
   if (ended.rates.lowest_scale < 1.0) out.text += late_warning(ended.rates);
   if (ended.lost_records > 0) {

@@ -56,18 +56,18 @@ pose start_above(const run_command& options, pose touch_T_wa) {
   return touch_T_wa;
 }
 
-workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a) {
+workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, double scale) {
   const quat& r = T_wa_start.rotation;
   return {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), T_wa_start * centre_of_mass_a},
-          .scale = 1.0,
+          .scale = scale,
           .T_ha = {r, -(r * centre_of_mass_a)}};
 }
 
-workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, const pose& T_dh_start) {
+workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, double scale, const pose& T_dh_start) {
   const vec3 grip_w = T_wa_start * centre_of_mass_a;
   const pose T_wh_start{T_dh_start.rotation, grip_w};
-  return {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), grip_w - T_dh_start.position},
-          .scale = 1.0,
+  return {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), grip_w - scale * T_dh_start.position},
+          .scale = scale,
           .T_ha = inverse(T_wh_start) * T_wa_start};
 }
 
@@ -95,8 +95,8 @@ motion_settings motion_of(const run_command& options, const scene& bodies) {
                                             : motion_kind::scrub;
   // Oblique to both horizontal axes, so that ridges along either of them are felt.
   motion.sideways_d = {0.8, 0.6, 0.0};
-  motion.depth_m = options.press_m + (options.probe_pose.empty() ? clearance_m : 0.0);
-  motion.amplitude_m = std::min(0.01, 0.1 * size);
+  motion.depth_m = options.press_m + (options.probe_pose.empty() ? clearance_m / options.scale : 0.0);
+  motion.amplitude_m = std::min(0.01, 0.1 * size / options.scale);
   return motion;
 }
 

@@ -33,11 +33,13 @@ struct given_poses {
 
 /// The simulated hand's: the handle sits at the probe's centre of mass, and its torque is then the one that turns the
 /// probe in the hand.
-[[nodiscard]] workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a);
+/// @param scale metres of the world for a metre of the device
+[[nodiscard]] workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, double scale);
 
 /// That of a device of one's own: its axes are the world's; the probe is taken up in the pose in which the hand holds
 /// the handle.
-[[nodiscard]] workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, const pose& T_dh_start);
+[[nodiscard]] workspace_map map_of(const pose& T_wa_start, const vec3& centre_of_mass_a, double scale,
+                                   const pose& T_dh_start);
 
 /// Where the handle is: a device needs a moment for its first measurement. @return io_failed after a second |
 /// cancelled

@@ -84,8 +84,20 @@ void session_summary::add(const session_record& tick) noexcept {
   hand_force_.add(tick.on_hand_d.force);
   hand_torque_.add(tick.on_hand_d.torque);
   delivered_j_ = tick.delivered_j;
+  raised_j_ = tick.raised_j;
+  if (tick.gripper_told) {
+    if (!gripper_m_) gripper_m_ = {tick.gripper_m, tick.gripper_m};
+    gripper_m_->first = std::min(gripper_m_->first, tick.gripper_m);
+    gripper_m_->second = std::max(gripper_m_->second, tick.gripper_m);
+  }
+  transient_j_ = tick.transient_j;
+  first_touches_ = tick.first_touches;
   from_bodies_j_ = tick.from_bodies_j;
   surplus_max_j_ = std::max(surplus_max_j_, tick.surplus_j);
+  if (tick.clutch_ratio == 0.0) ++let_go_ticks_;
+  buttons_told_ = buttons_told_ || tick.buttons_told;
+  ++velocity_ticks_[static_cast<std::size_t>(tick.velocity)];
+  velocity_refused_ = velocity_refused_ || tick.velocity_refused;
   wall_.add(tick);
   vibration_.observe(tick.time_ns, tick.T_dh, tick.on_hand_d);
   if (tick.guard_alpha_per_s > 0.0 || tick.guard_scale < 1.0) ++guarded_;
@@ -106,8 +118,12 @@ json session_summary::to_json() const {
           {"energy",
            {{"delivered_to_hand", delivered_j_},
             {"from_bodies", from_bodies_j_},
+            {"of_weight", raised_j_},
+            {"of_transients", transient_j_},
+            {"of_weight", raised_j_},
             {"largest_surplus", surplus_max_j_},
             {"guarded_ticks", guarded_}}},
+          {"gripper", gripper_m_ ? json{{"low", gripper_m_->first}, {"high", gripper_m_->second}} : json()},
           {"wall", wall_.to_json()},
           {"vibration", vibration_json(vibration_.report(), device_period_ns_)}};
 }

@@ -1,9 +1,12 @@
 // What a session amounts to: ranges, energy and a picture.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "asperity/control/session_record.hpp"
@@ -46,6 +49,14 @@ class session_summary {
   [[nodiscard]] const wall_summary& wall() const noexcept { return wall_; }
   [[nodiscard]] bool touched() const noexcept { return touching_ > 0; }
   [[nodiscard]] double mean_contacts() const noexcept;
+  /// How often the coupling's damper was given the velocity of this source.
+  [[nodiscard]] std::uint64_t ticks_with(velocity_source source) const noexcept {
+    return velocity_ticks_[static_cast<std::size_t>(source)];
+  }
+  [[nodiscard]] std::uint64_t ticks_let_go() const noexcept { return let_go_ticks_; }    ///< in full, by the clutch
+  [[nodiscard]] std::uint32_t first_touches() const noexcept { return first_touches_; }  ///< that rang
+  [[nodiscard]] bool buttons_told() const noexcept { return buttons_told_; }
+  [[nodiscard]] bool velocity_refused() const noexcept { return velocity_refused_; }
   [[nodiscard]] double largest_hand_force_n() const noexcept { return hand_force_.largest(); }
   [[nodiscard]] double largest_hand_torque_n_m() const noexcept { return hand_torque_.largest(); }
 
@@ -61,6 +72,14 @@ class session_summary {
   double from_bodies_j_ = 0.0;
   double surplus_max_j_ = 0.0;
   std::uint64_t guarded_ = 0;
+  std::array<std::uint64_t, 3> velocity_ticks_{};
+  bool velocity_refused_ = false;
+  std::uint64_t let_go_ticks_ = 0;
+  bool buttons_told_ = false;
+  double raised_j_ = 0.0;
+  std::optional<std::pair<double, double>> gripper_m_;  // narrowest and widest
+  double transient_j_ = 0.0;
+  std::uint32_t first_touches_ = 0;
   vibration_monitor vibration_;
   wall_summary wall_;
 };

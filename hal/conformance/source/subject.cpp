@@ -316,7 +316,8 @@ void subject::look_at_capabilities() {
 
 void subject::look_at_sample(std::int64_t now_ns, const asperity_sample& s) {
   const bool finite = all_finite(s.position_d_m) && all_finite(s.rotation_dh_xyzw) &&
-                      all_finite(s.linear_velocity_d_m_per_s) && all_finite(s.angular_velocity_d_rad_per_s);
+                      all_finite(s.linear_velocity_d_m_per_s) && all_finite(s.angular_velocity_d_rad_per_s) &&
+                      std::isfinite(s.gripper_m);
   found_.look("samples.finite", finite, [] { return "a sample has a NaN or an infinity in it"; });
   if (finite) {
     const auto& q = s.rotation_dh_xyzw;
@@ -329,7 +330,9 @@ void subject::look_at_sample(std::int64_t now_ns, const asperity_sample& s) {
   found_.look(
       "samples.validity",
       ((s.valid & ASPERITY_VALID_POSITION) != 0) == position &&
-          ((s.valid & ASPERITY_VALID_ROTATION) != 0) == rotation && (s.valid & ~0x1fU) == 0,
+          ((s.valid & ASPERITY_VALID_ROTATION) != 0) == rotation &&
+          ((s.valid & ASPERITY_VALID_GRIPPER) == 0 || capabilities_.gripper_high_m > capabilities_.gripper_low_m) &&
+          (s.valid & ~0x3fU) == 0,
       [&] { return "valid is " + std::to_string(s.valid) + ", sensed is " + std::to_string(capabilities_.sensed); });
   if (finite && position) {
     for (int i = 0; i < 3; ++i) {

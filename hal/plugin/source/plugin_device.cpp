@@ -160,9 +160,13 @@ class plugin_device::body {
     observe();
     if (!measures()) return status::backend_failed;
     if (code != ASPERITY_OK) return abi::to_status(code);
-    const device_sample sample = abi::from_abi(s);
+    device_sample sample = abi::from_abi(s);
+    if (!capabilities_.has_gripper()) {  // a driver of 1.0 says nothing of one, whatever the bit
+      sample.valid = without(sample.valid, sample_field::gripper);
+      sample.gripper_m = 0.0;
+    }
     if (!is_finite(sample.T_dh.position) || !is_finite(sample.velocity_d.linear) ||
-        !is_finite(sample.velocity_d.angular)) {
+        !is_finite(sample.velocity_d.angular) || !std::isfinite(sample.gripper_m)) {
       return status::not_finite;
     }
     if (!is_valid(sample.T_dh)) return status::invalid_pose;

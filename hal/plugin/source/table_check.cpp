@@ -143,6 +143,9 @@ std::optional<std::string> find_problem(const asperity_capabilities& c) {
       return "the workspace is not a box: a corner is not finite, or low lies above high";
     }
   }
+  if (!std::isfinite(c.gripper_low_m) || !std::isfinite(c.gripper_high_m) || c.gripper_low_m > c.gripper_high_m) {
+    return "the gripper opens by no way: gripper_low_m or gripper_high_m is not finite, or low lies above high";
+  }
   return std::nullopt;
 }
 

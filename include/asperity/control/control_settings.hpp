@@ -44,11 +44,16 @@ struct control_settings {
   /// which looks 0.1 mm and 5 mrad around: with half of it a press with 10 N stepped by 0.4 N/ms at rest. What a hand
   /// begins to do in a period of a slow loop takes more.
   double least_gaps_m = 1e-3;
+  transient_settings transient{};  ///< of a first touch, see check(); none by default
   guard_settings guard{};
-  contact_ageing ageing{};  ///< how old a contact may be felt
-  rate_limits rates{};      ///< how late the loops may be
+  weight_settings weight{};  ///< of the handle, see check(); none by default
+  contact_ageing ageing{};   ///< how old a contact may be felt
+  rate_limits rates{};       ///< how late the loops may be
   workspace_map map{};
+  clutch_settings clutch{};  ///< none by default
   sample_check_settings samples{};
+  /// Of the handle, for the coupling's damper. With window and device an encoder's step is no blow.
+  velocity_source velocity = velocity_source::poses;
   gate_limits limits{.peak_force_n = 1e6,
                      .continuous_force_n = 1e6,
                      .force_slew_n_per_s = 1e6,
@@ -76,8 +81,9 @@ struct control_settings {
       std::min(periods.oldest_contact_ns() + periods.renewal_ns(), slowest.oldest_contact_ns() + slowest.renewal_ns());
   settings.rates.surprise_age_ns = std::max(settings.rates.surprise_age_ns, usual_ns);
   constexpr double begins_at_m_per_s = 0.5;
+  const double begins_in_world = std::max(1.0, settings.map.scale) * begins_at_m_per_s;
   settings.least_gaps_m =
-      std::max(settings.least_gaps_m, begins_at_m_per_s * 1e-9 * static_cast<double>(periods.renewal_ns()));
+      std::max(settings.least_gaps_m, begins_in_world * 1e-9 * static_cast<double>(periods.renewal_ns()));
   return settings;
 }
 

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "asperity/control/control_settings.hpp"
@@ -27,6 +30,13 @@ namespace asperity {
 /// write, publish the probe's pose and what bodies felt, tell the observer.
 ///
 /// - The probe starts at the device's first good pose, at rest: no jump.
+/// - The coupling's damper is given the handle's velocity by its poses, by a window of them, or as the device tells it
+///   (control_settings::velocity). What a device tells is compared with its poses and believed only where it fits.
+/// - A clutch (control_settings::clutch) lets go of the probe while a button is held down. It goes over in a ramp, with
+///   motion and wrench in the same proportion, so that no step is felt and no energy made. The probe stays where it is.
+/// - The handle's weight (control_settings::weight) is held up beside the contact's wrench, through the same gate, and its
+///   work is kept out of the guard's surplus (handle_weight).
+/// - A first touch may ring (control_settings::transient). The guard and the gate see that as any other force.
 /// - While the device is not armed the wrench is zero. Once it is armed, the wrench grows from zero at the slew rate.
 /// - A clock that steps back stands still for one tick; the loop's time, which the device and the record are given,
 ///   goes on from there and never goes back.
@@ -61,8 +71,12 @@ class device_loop {
         shared_(&shared),
         observer_(std::move(observer)),
         check_(settings.samples),
+        clutch_(settings.map, settings.clutch),
+        speed_(settings.velocity, dev.capabilities().position_resolution_m, dev.capabilities().rotation_resolution_rad),
         motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
+        transient_(settings.transient, dev.capabilities().moving_mass_kg),
         guard_(guard_for(settings.guard, dev.capabilities())),
+        weight_(settings.weight, dev.capabilities()),
         rates_(settings.rates, settings.ageing),
         gate_(tighter(limits_of(dev.capabilities()), settings.limits), command_valid_ns, settings.low_pass_hz),
         goes_silent_(dev.capabilities().device_side_watchdog) {}
@@ -94,6 +108,7 @@ class device_loop {
     unobserved_s_ += static_cast<double>(gap_ns) * 1e-9;
 
     const bool accepted = verdict == sample_verdict::accepted;
+    if (accepted) follow_handle(dt_s);
     if (accepted && !placed_) place();
     status probe_status = status::not_ready;
     guard_action guarded;
@@ -102,14 +117,19 @@ class device_loop {
     if (placed_) {
       if (accepted) {
         const double given_j = std::exchange(unobserved_bodies_j_, 0.0);
-        guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0), given_j);
+        const double raised_j = weight_.observe(last_seen_.T_dh, held, wanted_);
+        guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0), given_j, raised_j);
+        raised_j_ += raised_j;
       }
       const bool surprised = take_contact(now_ns);
       rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
       probe_status = move_probe(dt_s, accepted, rates);
+      if (accepted) transient_.observe(last_seen_.T_dh.position);
+      ring(dt_s, probe_status == status::ok && accepted && may_put_out(device_->state()));
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
         guarded = guard_.adjust(wrench_on_hand());
+        if (weight_.held()) guarded.on_hand += hold_weight(dt_s, rates.scale);
         guarded.on_hand = rates.scale * guarded.on_hand;
       }
     }
@@ -120,6 +140,7 @@ class device_loop {
       gate_.rest();
       guarded.on_hand = {};
     }
+    wanted_ = guarded.on_hand;
     const device_command sent =
         gate_.pass(now_ns, seen, {guarded.on_hand, wrench_frame::device_base, now_ns, ++sequence_});
     valid_until_ns_ = sent.valid_until_ns;
@@ -154,6 +175,10 @@ class device_loop {
   /// Where the moving bodies are.
   [[nodiscard]] const body_follower& bodies() const noexcept { return bodies_; }
   [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
+  /// Where the handle is in the world, and how much of it the probe has.
+  [[nodiscard]] const clutched_map& clutch() const noexcept { return clutch_; }
+  /// How fast the handle moves, and who says so.
+  [[nodiscard]] const velocity_estimator& speed() const noexcept { return speed_; }
   [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
   [[nodiscard]] Observer& observer() noexcept { return observer_; }
   [[nodiscard]] Device& device() noexcept { return *device_; }
@@ -166,6 +191,7 @@ class device_loop {
   [[nodiscard]] bool clear_fault() noexcept {
     if (!gate_.clear()) return false;
     check_.restart();
+    speed_.restart();
     guard_.reset();
     rates_.restart();
     placed_ = false;
@@ -230,17 +256,48 @@ class device_loop {
     }
     const wrench before = motion_.push_of(contact, bodies_.ways());
     if (!shared_->contacts.refresh()) return false;
-    const wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
+    wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
+    change.force *= settings_.map.scale;  // as the hand would come to feel it
     return glm::length(change.force) > rates_.limits().surprise_n ||
            glm::length(change.torque) > rates_.limits().surprise_n_m;
   }
 
-  [[nodiscard]] pose pose_of_sample() const noexcept { return settings_.map.to_world(last_seen_.T_dh) * T_hc_; }
+  [[nodiscard]] pose pose_of_sample() const noexcept { return clutch_.T_wh() * T_hc_; }
+
+  // After the guard, which would take a weight from the motors and give it to the hand.
+  [[nodiscard]] wrench hold_weight(double dt_s, double scale) noexcept {
+    const bool may = may_put_out(device_->state()) && gate_.fault() == gate_fault::none;
+    return weight_.hold(last_seen_.T_dh, may, dt_s, scale);
+  }
+
+  // A handle that has let go of the probe, or takes it up again, does so where the probe is and without a pull.
+  void follow_handle(double dt_s) noexcept {
+    speed_.observe(last_seen_);
+    if (has_all(last_seen_.valid, sample_field::buttons)) buttons_ = last_seen_.buttons;
+    const clutch_settings& c = settings_.clutch;
+    const bool asked = c.by_application && shared_->let_go.load(std::memory_order_relaxed);
+    if (clutch_.follow(last_seen_.T_dh, asked || (buttons_ & c.buttons) != 0, dt_s) && placed_) {
+      clutch_.put(motion_.probe().state().T_wc * inverse(T_hc_));
+      motion_.put_target(pose_of_sample());
+    }
+  }
+
+  // Of the target at c_A; nothing where its way is to tell.
+  [[nodiscard]] std::optional<twist> velocity_of_sample(const pose& wanted_T_wc) const noexcept {
+    if (speed_.used() == velocity_source::poses) return std::nullopt;
+    twist v = clutch_.to_world(speed_.velocity_d());
+    v.linear += glm::cross(v.angular, wanted_T_wc.position - clutch_.T_wh().position);
+    return v;
+  }
 
   void place() noexcept {
     placed_ns_ = now_ns_;
+    clutch_.take_up(last_seen_.T_dh);
     motion_.place(pose_of_sample());
     guard_.reset();
+    weight_.reset();
+    transient_.reset();
+    raised_j_ = 0.0;
     placed_ = true;
   }
 
@@ -250,9 +307,20 @@ class device_loop {
     const pose wanted_T_wc = accepted ? pose_of_sample() : motion_.target();
     const double part = part_allowed(motion_.way_to(wanted_T_wc), dt_s, rates);
     const double before_j = motion_.probe().energy().from_bodies_j;
-    const status s = motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front(), bodies_.ways());
+    const status s = motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front(), bodies_.ways(),
+                                  accepted ? velocity_of_sample(wanted_T_wc) : std::nullopt);
     unobserved_bodies_j_ += motion_.probe().energy().from_bodies_j - before_j;
     return s;
+  }
+
+  // What a first touch rings with, as much of it as the hand has of the probe.
+  void ring(double dt_s, bool felt) noexcept {
+    if (!transient_.used()) return;
+    const quat r_dw = glm::conjugate(settings_.map.T_wd.rotation);
+    const double scale = settings_.map.scale;
+    const vec3 push_d = r_dw * (scale * motion_.touched().on_probe_w.force);
+    const vec3 velocity_d = r_dw * ((1.0 / scale) * motion_.probe().state().velocity_w.linear);
+    ringing_d_ = transient_.play(push_d, velocity_d, dt_s, felt ? clutch_.ratio() : 0.0);
   }
 
   void follow_bodies(std::int64_t now_ns) noexcept {
@@ -271,8 +339,9 @@ class device_loop {
   }
 
   [[nodiscard]] wrench wrench_on_hand() const noexcept {
-    const pose T_wh = settings_.map.to_world(last_seen_.T_dh);
-    return settings_.map.to_device(motion_.on_hand_w(), motion_.target().position, T_wh.position);
+    wrench out = clutch_.to_device(motion_.on_hand_w(), motion_.target().position);
+    if (transient_.used()) out.force += ringing_d_;
+    return out;
   }
 
   void report(std::int64_t now_ns, sample_verdict verdict, status probe_status, const guard_action& guarded,
@@ -295,11 +364,23 @@ class device_loop {
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();
+    r.raised_j = raised_j_;
+    r.transient_j = transient_.given_j();
+    r.first_touches = transient_.touches();
+    r.weight_share = weight_.share();
     r.from_bodies_j = motion_.probe().energy().from_bodies_j;
     r.guard_alpha_per_s = guarded.alpha_per_s;
     r.guard_scale = guarded.scale;
     r.rate_scale = rates.scale;
     r.pulling = motion_.touched().pulling;
+    r.buttons = buttons_;
+    r.buttons_told = has_all(last_seen_.valid, sample_field::buttons);
+    r.gripper_told = has_all(last_seen_.valid, sample_field::gripper) && std::isfinite(last_seen_.gripper_m);
+    if (r.gripper_told) gripper_m_ = last_seen_.gripper_m;
+    r.gripper_m = gripper_m_;
+    r.clutch_ratio = clutch_.ratio();
+    r.velocity = speed_.used();
+    r.velocity_refused = speed_.refused();
     r.sample = verdict;
     r.contact_status = contact.answer;
     r.probe_status = probe_status;
@@ -331,20 +412,29 @@ class device_loop {
   exchange* shared_;
   Observer observer_;
   sample_check check_;
+  clutched_map clutch_;
+  velocity_estimator speed_;
   probe_motion motion_;
   body_follower bodies_;
+  contact_transient transient_;
+  vec3 ringing_d_{0.0};
   passivity_guard guard_;
+  handle_weight weight_;
   rate_monitor rates_;
   output_gate gate_;
   bool goes_silent_;  // the device puts out nothing once a command has expired
 
   device_sample last_seen_{};
+  double gripper_m_ = 0.0;
+  std::uint32_t buttons_ = 0;  // as last told
   bool started_ = false;
   bool placed_ = false;
   std::int64_t placed_ns_ = 0;
   std::int64_t last_clock_ns_ = 0;
   std::int64_t now_ns_ = 0;           // the loop's time: the clock's steps forward, summed up
   double unobserved_s_ = 0.0;         // time since the guard saw a pose ...
+  wrench wanted_{};                   // what went into the gate last
+  double raised_j_ = 0.0;             // work of the handle's weight
   double unobserved_bodies_j_ = 0.0;  // ... and what bodies gave in it
   std::int64_t valid_until_ns_ = std::numeric_limits<std::int64_t>::max();  // of the last command
   std::uint64_t sequence_ = 0;

@@ -41,6 +41,7 @@ struct exchange {
   triple_buffer<linear_contact> contacts;  ///< written by the contact thread
   triple_buffer<moving_bodies> bodies;     ///< written by the application
   triple_buffer<felt_bodies> felt;         ///< written by the device thread
+  std::atomic<bool> let_go{false};         ///< set by the application; see clutch_settings::by_application
   heartbeat application;                   ///< beaten by the application, never by a loop; see watchdog_ns
 };
 

@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "asperity/core/export.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
+#include "asperity/core/status.hpp"
+#include "asperity/device/capabilities.hpp"
 
 namespace asperity {
 
@@ -61,8 +64,10 @@ class passivity_guard {
   /// Books one sample: the wrench that was held since the last call (it left the gate then) and the pose reached with
   /// it. Any frame, as long as wrench and pose share it and the torque is about the pose's origin.
   /// @param from_bodies_j work that moving bodies did on the probe meanwhile
+  /// @param from_weight_j work that the weight of the handle was held up with meanwhile; see handle_weight
   /// @rt safe
-  void observe(const pose& T, const wrench& held, double h_s, double from_bodies_j = 0.0) noexcept {
+  void observe(const pose& T, const wrench& held, double h_s, double from_bodies_j = 0.0,
+               double from_weight_j = 0.0) noexcept {
     h_s_ = h_s;
     if (!has_last_) {
       has_last_ = true;
@@ -72,8 +77,9 @@ class passivity_guard {
     const vec3 dx = T.position - last_.position;
     const vec3 dphi = log_rotation(T.rotation * glm::conjugate(last_.rotation));
     last_ = T;
-    const double given_j = glm::dot(held.force, dx) + glm::dot(held.torque, dphi);
+    double given_j = glm::dot(held.force, dx) + glm::dot(held.torque, dphi);
     delivered_j_ += given_j;
+    given_j -= from_weight_j;
     const double lent_j = std::min(from_bodies_j, settings_.bodies_power_w * h_s);
     surplus_j_ = std::max(-settings_.credit_j, surplus_j_ + given_j - lent_j);
     velocity_ = h_s > 0.0 ? twist{dx / h_s, dphi / h_s} : twist{};
@@ -111,6 +117,103 @@ class passivity_guard {
   double h_s_ = 0.0;
   double delivered_j_ = 0.0;
   double surplus_j_ = 0.0;
+};
+
+/// Weight of the handle that the motors hold up in the hand's place. None by default.
+struct weight_settings {
+  double mass_kg = 0.0;             ///< of what the hand would have to hold up
+  vec3 centre_h{0.0};               ///< its centre of mass in the handle's frame, m
+  vec3 gravity_d{0.0, 0.0, -9.81};  ///< in the device's base frame, m/s^2
+  double ramp_s = 0.5;              ///< for which the weight is taken over once the device is armed
+
+  [[nodiscard]] bool any() const noexcept { return mass_kg != 0.0 || std::isnan(mass_kg); }
+};
+
+/// Says what is out of range and what would do: a weight, or its moment, may take half of what the device can hold for
+/// ever, the other half is for contacts. A device without torque has no moment to be held.
+/// @return invalid_argument
+[[nodiscard]] ASPERITY_API result<void> check(const weight_settings& w, const device_capabilities& device);
+
+/// Holds up a handle's weight, and keeps its work apart from the contact's.
+///
+/// A weight that is raised is energy that the hand gets back when it comes down. The guard must not take that for the
+/// loop's: what the held weight did is taken off its surplus, in the part in which it left the gate, and never more than
+/// the weight has gained in height. So over any interval the hand receives at most the weight times its way up beyond
+/// the guard's bound, whatever the gate let through.
+/// @rt safe
+class handle_weight {
+ public:
+  /// One that check() would refuse is not held.
+  handle_weight(const weight_settings& settings, const device_capabilities& device) noexcept
+      : settings_(settings), held_(settings.any() && is_within(settings, device)) {}
+
+  /// Whether there is a weight, and it may be held.
+  [[nodiscard]] bool held() const noexcept { return held_; }
+  /// How much of it is held now: 0 while the device is not armed, then growing to 1.
+  [[nodiscard]] double share() const noexcept { return share_; }
+
+  /// From an accepted pose to the next one.
+  /// @param held, wanted what left the gate in the tick before, and what went into it
+  /// @return of the work of `held`, what is the weight's, J
+  [[nodiscard]] double observe(const pose& T_dh, const wrench& held, const wrench& wanted) noexcept {
+    if (!held_) return 0.0;
+    const double now_j = height_j(T_dh);
+    low_j_ = has_last_ ? std::min(low_j_, now_j) : now_j;
+    high_j_ = has_last_ ? std::max(high_j_, now_j) : now_j;
+    double raised_j = 0.0;
+    if (has_last_) {
+      const vec3 dx = T_dh.position - last_.position;
+      const vec3 dphi = log_rotation(T_dh.rotation * glm::conjugate(last_.rotation));
+      raised_j = part(held.force, wanted.force) * glm::dot(put_out_.force, dx) +
+                 part(held.torque, wanted.torque) * glm::dot(put_out_.torque, dphi);
+    }
+    const double before_j = has_last_ ? lent_j_ : 0.0;
+    lent_j_ = std::clamp(before_j + raised_j, now_j - high_j_, now_j - low_j_);
+    last_ = T_dh;
+    has_last_ = true;
+    return lent_j_ - before_j;
+  }
+
+  /// What to put out now for the weight, in the device's base frame about the handle's origin.
+  /// @param may whether the device may put out anything
+  /// @param scale factor that it is put out with
+  [[nodiscard]] wrench hold(const pose& T_dh, bool may, double dt_s, double scale = 1.0) noexcept {
+    share_ = held_ && may ? std::min(1.0, share_ + dt_s / settings_.ramp_s) : 0.0;
+    const vec3 up = -share_ * settings_.mass_kg * settings_.gravity_d;
+    const wrench out{up, glm::cross(T_dh.rotation * settings_.centre_h, up)};
+    put_out_ = scale * out;
+    return out;
+  }
+
+  /// Forgets all poses.
+  void reset() noexcept {
+    has_last_ = false;
+    lent_j_ = share_ = 0.0;
+    put_out_ = {};
+  }
+
+ private:
+  ASPERITY_API static bool is_within(const weight_settings& w, const device_capabilities& device) noexcept;
+
+  // Of what was wanted, how much came out.
+  [[nodiscard]] static double part(const vec3& held, const vec3& wanted) noexcept {
+    const double whole = glm::dot(wanted, wanted);
+    return whole > 0.0 ? std::clamp(glm::dot(held, wanted) / whole, 0.0, 1.0) : 0.0;
+  }
+  // Energy of the weight at this height, J.
+  [[nodiscard]] double height_j(const pose& T_dh) const noexcept {
+    return -settings_.mass_kg * glm::dot(settings_.gravity_d, T_dh * settings_.centre_h);
+  }
+
+  weight_settings settings_;
+  bool held_;
+  double share_ = 0.0;
+  bool has_last_ = false;
+  pose last_{};
+  wrench put_out_{};
+  double lent_j_ = 0.0;
+  double low_j_ = 0.0;
+  double high_j_ = 0.0;
 };
 
 }  // namespace asperity

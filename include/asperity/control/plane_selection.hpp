@@ -1,6 +1,7 @@
 // From all support planes that a renderer tells to the few that the device thread needs until the next contact.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -23,14 +24,15 @@ struct plane_selection {
 };
 
 /// The selection for a contact loop of this period.
-/// @pre period_ns > 0
-[[nodiscard]] inline plane_selection selection_for(std::int64_t period_ns) noexcept {
+/// @param scale workspace_map::scale: a hand's way is longer in a world that it is enlarged into
+/// @pre period_ns > 0, scale > 0
+[[nodiscard]] inline plane_selection selection_for(std::int64_t period_ns, double scale = 1.0) noexcept {
   constexpr double turn_rad_per_s = 5.0;
   constexpr double slide_m_per_s = 0.1;
   const double period_s = 1e-9 * static_cast<double>(period_ns);
   plane_selection out;
   out.tilt_rad = turn_rad_per_s * period_s;
-  out.slide_m = slide_m_per_s * period_s;
+  out.slide_m = std::max(1.0, scale) * slide_m_per_s * period_s;
   return out;
 }
 

@@ -29,6 +29,14 @@ struct probe_settings {
   return {mass_kg, mass_kg * shape.inertia_per_mass};
 }
 
+/// The virtual tool that a hand feels as it would feel this one without a scale: what it moves m by counts scale^2 m on
+/// the device. Rotations are not scaled, so the inertia stays.
+/// @param scale workspace_map::scale, > 0
+[[nodiscard]] inline probe_settings felt_alike(probe_settings p, double scale) noexcept {
+  p.mass_kg /= scale * scale;
+  return p;
+}
+
 /// Motion of the probe's centre-of-mass frame c (origin c_A, body axes).
 struct probe_state {
   pose T_wc{};

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -53,6 +54,9 @@ class probe_motion {
     caught_up_ = true;
   }
 
+  /// Puts the target there, with no way that the probe would be drawn along: what the coupling had stored is lost.
+  void put_target(const pose& target_T_wc) noexcept { target_T_wc_ = target_T_wc; }
+
   /// What the last contact did to the probe is forgotten; where the probe is, is not.
   void forget_contact() noexcept {
     touched_ = {};
@@ -66,9 +70,12 @@ class probe_motion {
   /// One period of dt_s seconds, at whose end the target has gone `part` of its way to wanted_T_wc.
   /// @param part 1: all of it, to the bit
   /// @param ways of the moving bodies in this period
+  /// @param velocity_w of the target at the period's end, where it is known otherwise than by its way; not used while
+  ///                   the target is on its way to the handle (part < 1)
   /// @return ok | not_finite (the probe is left at rest where it was)
   [[nodiscard]] status move(double dt_s, const pose& wanted_T_wc, double part, const linear_contact& contact,
-                            std::span<const body_way> ways = {}) noexcept {
+                            std::span<const body_way> ways = {},
+                            const std::optional<twist>& velocity_w = std::nullopt) noexcept {
     const carried_contact carried(contact, ways);
     felt_.list.clear();
     velocities_.clear();
@@ -87,6 +94,7 @@ class probe_motion {
     if (!(dt_s > 0.0)) return status::ok;
 
     target_velocity_w_ = velocity_over(way, dt_s);
+    if (velocity_w && caught_up_) target_velocity_w_ = *velocity_w;
     for (int i = 1; i <= substeps_; ++i) {
       const double passed = static_cast<double>(i) / substeps_;
       const double begun = static_cast<double>(i - 1) / substeps_;

@@ -32,8 +32,8 @@ class virtual_session {
   virtual_session(Renderer feel, scene_placement placement, Device& dev, const control_settings& settings,
                   const virtual_schedule& schedule = {}, Observer observer = {})
       : schedule_(schedule),
-        contact_(std::move(feel), placement, shared_, selection_for(schedule.periods().renewal_ns()),
-                 laws_of(settings)),
+        contact_(std::move(feel), placement, shared_,
+                 selection_for(schedule.periods().renewal_ns(), settings.map.scale), laws_of(settings)),
         device_(dev, with_periods(settings, schedule.periods()), placement.centre_of_mass_a, shared_,
                 std::move(observer)),
         next_contact_ns_(schedule.start_ns),
@@ -88,6 +88,9 @@ class virtual_session {
     shared_.felt.refresh();
     return shared_.felt.front();
   }
+  /// Has the handle let go of the probe, or take it up again; needs clutch_settings::by_application. From any thread.
+  /// @rt safe
+  void let_go(bool wanted) noexcept { shared_.let_go.store(wanted, std::memory_order_relaxed); }
   /// A sign of life of the application. Only these feed control_settings::watchdog_ns.
   void beat() noexcept { shared_.application.beat(); }
   /// Time of the next device tick.

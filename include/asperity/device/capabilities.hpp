@@ -66,6 +66,10 @@ struct device_capabilities {
   double moving_inertia_kg_m2 = 0.0;
   bool needs_homing = false;
   bool device_side_watchdog = false;  ///< the device itself goes to zero when the host falls silent
+  double gripper_low_m = 0.0;         ///< opening of the gripper when it is shut ...
+  double gripper_high_m = 0.0;        ///< ... and wide open; equal: the device has no gripper
+
+  [[nodiscard]] constexpr bool has_gripper() const noexcept { return gripper_high_m > gripper_low_m; }
 };
 
 }  // namespace asperity

@@ -31,6 +31,7 @@ class ASPERITY_API recording_encoder {
   std::string counted(std::string bytes);
 
   std::string last_seen_;
+  bool gripper_ = false;
   std::uint64_t calls_ = 0;
   std::uint64_t sum_;
 };

@@ -36,7 +36,7 @@
 #include <stdint.h>
 
 #define ASPERITY_ABI_MAJOR 1u
-#define ASPERITY_ABI_MINOR 0u
+#define ASPERITY_ABI_MINOR 1u
 /* What a host passes to the entry: major in the upper half, minor in the lower. */
 #define ASPERITY_ABI_VERSION ((ASPERITY_ABI_MAJOR << 16) | ASPERITY_ABI_MINOR)
 /* Name of the one exported function. */
@@ -85,6 +85,7 @@ extern "C" {
 #define ASPERITY_VALID_LINEAR_VELOCITY 4u
 #define ASPERITY_VALID_ANGULAR_VELOCITY 8u
 #define ASPERITY_VALID_BUTTONS 16u
+#define ASPERITY_VALID_GRIPPER 32u /* since 1.1 */
 
 /* asperity_command.frame. BASE is the only one that a device takes; 0 and all others are refused. */
 #define ASPERITY_FRAME_BASE 1u
@@ -133,6 +134,9 @@ struct asperity_capabilities {
   double moving_inertia_kg_m2;
   char name[ASPERITY_NAME_SIZE]; /* for people */
   uint64_t reserved[8];
+  /* since 1.1 */
+  double gripper_low_m;  /* opening of a gripper on the handle when it is shut ... */
+  double gripper_high_m; /* ... and wide open; equal: there is none */
 };
 
 /* A device that is plugged in. */
@@ -163,6 +167,7 @@ struct asperity_sample {
   uint32_t buttons; /* one bit per button, pressed = 1 */
   uint32_t reserved_0;
   uint64_t reserved[4];
+  double gripper_m; /* since 1.1: opening of the gripper */
 };
 
 /* The wrench on the hand that a device shall put out. */

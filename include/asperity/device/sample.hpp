@@ -16,10 +16,14 @@ enum class sample_field : std::uint8_t {
   linear_velocity = 4,
   angular_velocity = 8,
   buttons = 16,
+  gripper = 32,
 };
 
 [[nodiscard]] constexpr sample_field operator|(sample_field a, sample_field b) noexcept {
   return static_cast<sample_field>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
+}
+[[nodiscard]] constexpr sample_field without(sample_field set, sample_field bits) noexcept {
+  return static_cast<sample_field>(static_cast<std::uint8_t>(set) & ~static_cast<std::uint8_t>(bits));
 }
 /// True where every bit of `bits` is in `set`.
 [[nodiscard]] constexpr bool has_all(sample_field set, sample_field bits) noexcept {
@@ -37,6 +41,7 @@ struct device_sample {
   twist velocity_d{};               ///< of the handle's origin, base frame, m/s and rad/s
   std::uint32_t buttons = 0;        ///< one bit per button, pressed = 1
   sample_field valid = sample_field::none;
+  double gripper_m = 0.0;  ///< opening of a gripper on the handle, m: the seventh axis of a device that has one
 };
 
 /// The frame that a command's wrench is written in. There is one right answer for a device; the tag is carried so that

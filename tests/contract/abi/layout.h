@@ -43,6 +43,8 @@ AT(asperity_capabilities, moving_mass_kg, 184, 8);
 AT(asperity_capabilities, moving_inertia_kg_m2, 192, 8);
 AT(asperity_capabilities, name, 200, 64);
 AT(asperity_capabilities, reserved, 264, 64);
+AT(asperity_capabilities, gripper_low_m, 328, 8);  /* 1.1 */
+AT(asperity_capabilities, gripper_high_m, 336, 8); /* 1.1 */
 AT(asperity_listing, struct_size, 0, 4);
 AT(asperity_listing, maturity, 4, 4);
 AT(asperity_listing, identity, 8, 128);
@@ -64,6 +66,7 @@ AT(asperity_sample, angular_velocity_d_rad_per_s, 120, 24);
 AT(asperity_sample, buttons, 144, 4);
 AT(asperity_sample, reserved_0, 148, 4);
 AT(asperity_sample, reserved, 152, 32);
+AT(asperity_sample, gripper_m, 184, 8); /* 1.1 */
 AT(asperity_command, struct_size, 0, 4);
 AT(asperity_command, frame, 4, 4);
 AT(asperity_command, force_d_n, 8, 24);
@@ -108,9 +111,9 @@ AT(asperity_driver, applied, 192, 8);
 AT(asperity_driver, fault_text, 200, 8);
 AT(asperity_driver, provoke, 208, 8);
 AT(asperity_driver, reserved_functions, 216, 64);
-SIZE(asperity_capabilities, 328);
+SIZE(asperity_capabilities, 344);
 SIZE(asperity_listing, 1008);
-SIZE(asperity_sample, 184);
+SIZE(asperity_sample, 192);
 SIZE(asperity_command, 104);
 SIZE(asperity_applied, 88);
 SIZE(asperity_host, 56);
@@ -144,6 +147,7 @@ IS(ASPERITY_VALID_ROTATION, 2);
 IS(ASPERITY_VALID_LINEAR_VELOCITY, 4);
 IS(ASPERITY_VALID_ANGULAR_VELOCITY, 8);
 IS(ASPERITY_VALID_BUTTONS, 16);
+IS(ASPERITY_VALID_GRIPPER, 32); /* 1.1 */
 IS(ASPERITY_FRAME_BASE, 1);
 IS(ASPERITY_LOG_DEBUG, 0);
 IS(ASPERITY_LOG_INFO, 1);

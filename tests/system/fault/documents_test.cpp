@@ -402,6 +402,12 @@ TEST_F(documents, run) {
                   "wall",
                   "coupling",
                   "rate_check",
+                  "velocity",
+                  "scale",
+                  "gripper",
+                  "transient",
+                  "weight",
+                  "clutch",
                   "friction",
                   "surfaces"});
   for (const char* loop : {"contact_loop", "device_loop"}) {
@@ -458,6 +464,52 @@ TEST_F(documents, run_with_support_planes) {
   EXPECT_EQ(deep["coupling"]["translation"]["stiffness"], 700.0);
   EXPECT_EQ(deep["coupling"]["translation"]["from"], "option");
   EXPECT_EQ(deep["coupling"]["rotation"]["from"], "device");
+  // The velocity of the handle, where another than that of its poses was asked for.
+  EXPECT_EQ(d["velocity"]["asked"], "poses");
+  arguments own = above;
+  own.insert(own.end(), {"--velocity", "device"});
+  const json told = expect_document(own, "asperity.run/1");
+  EXPECT_GE(told["velocity"]["device_ticks"], told["device_loop"]["ticks"]);
+  EXPECT_EQ(told["velocity"]["window_ticks"], 0);
+  EXPECT_EQ(told["velocity"]["refused"], false);
+  EXPECT_LE(told["energy"]["largest_surplus"], 1e-5);
+  // Motion scaling and a clutch, which the simulated hand uses for a fifth of the session.
+  EXPECT_EQ(d["scale"], 1.0);
+  EXPECT_TRUE(d["clutch"].is_null());
+  arguments large = session;
+  large.insert(large.end(), {"--scale", "5", "--clutch", "2", "--seconds", "1.5"});
+  const json scaled = expect_document(large, "asperity.run/1");
+  EXPECT_EQ(scaled["scale"], 5.0);
+  EXPECT_EQ(scaled["clutch"]["button"], 2);
+  EXPECT_EQ(scaled["clutch"]["told"], true);
+  EXPECT_NEAR(scaled["clutch"]["let_go"], 0.15, 0.01);  // of 0.3 s the second half, the first is the ramp
+  EXPECT_NEAR(scaled["coupling"]["translation"]["stiffness"], 60.0, 1e-9);
+  EXPECT_LE(scaled["energy"]["largest_surplus"], 1e-5);
+  EXPECT_EQ(scaled["fault"], "none");
+  EXPECT_TRUE(d["gripper"].is_null());  // the simulated device has none
+  // The handle's weight, held up by the motors.
+  EXPECT_TRUE(d["weight"].is_null());
+  arguments heavy = above;
+  heavy.insert(heavy.end(), {"--weight", "0.2,0,0,0.03"});
+  const json held = expect_document(heavy, "asperity.run/1");
+  EXPECT_EQ(held["weight"]["mass"], 0.2);
+  EXPECT_EQ(held["weight"]["centre"][2], 0.03);
+  EXPECT_NE(held["energy"]["of_weight"], 0.0);
+  EXPECT_LE(held["energy"]["largest_surplus"], 1e-5);
+  EXPECT_EQ(held["fault"], "none");
+  arguments too_heavy = above;
+  too_heavy.insert(too_heavy.end(), {"--weight", "0.6"});
+  EXPECT_NE(expect_failure(too_heavy, 1, "invalid_argument").find("more than half"), std::string::npos);
+  // What a first touch rings with.
+  EXPECT_TRUE(d["transient"].is_null());
+  EXPECT_EQ(d["energy"]["of_transients"], 0.0);
+  arguments ringing = above;
+  ringing.insert(ringing.end(), {"--transient", "20,120"});
+  const json rang = expect_document(ringing, "asperity.run/1");
+  EXPECT_EQ(rang["transient"]["amplitude"], 20.0);
+  EXPECT_EQ(rang["transient"]["frequency"], 120.0);
+  EXPECT_GE(rang["transient"]["first_touches"], 1);
+  EXPECT_LE(rang["energy"]["largest_surplus"], 1e-5);
   // Friction, where it was asked for.
   EXPECT_TRUE(d["friction"].is_null());
   arguments rough = above;

@@ -89,6 +89,71 @@ TEST(device_recording, replays_a_session_to_the_bit) {
   EXPECT_GT(glm::length(then[350].force), 0.5);
 }
 
+// A device with a gripper writes a format of its own; one without, and every recording from before, is as ever.
+TEST(device_recording, keeps_a_gripper_and_no_other_byte) {
+  EXPECT_EQ(encode(record()).substr(0, 8), "ASPDEVR2");
+  simulated_settings c = hand_with_faults();
+  c.capabilities.gripper_low_m = 0.01;
+  c.capabilities.gripper_high_m = 0.05;
+  simulated_device dev(c);
+  call_ring ring(4096);
+  recorded_device recorded(dev, ring);
+  device_recording out{std::string(dev.capabilities().name), dev.capabilities(), dev.state(), {}};
+  const std::vector<wrench> then = play(recorded);
+  for (call_record r; ring.pop(r);) out.calls.push_back(r);
+  const std::string bytes = encode(out);
+  EXPECT_EQ(bytes.substr(0, 8), "ASPDEVR3");
+  const result<device_recording> read = decode(bytes);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(encode(*read), bytes);
+  replay_device again(*read);
+  EXPECT_EQ(again.capabilities().gripper_high_m, 0.05);
+  double widest = 0.0;
+  for (const call_record& r : read->calls) {
+    if (r.call == device_call::read && r.answered == status::ok) widest = std::max(widest, r.sample.gripper_m);
+  }
+  EXPECT_GT(widest, 0.03);  // after 0.7 s of two
+  EXPECT_LE(widest, 0.05);
+  EXPECT_TRUE(same_bits(play(again), then));
+  EXPECT_EQ(again.differences(), 0U);
+  // What the hand does beside is felt as without a gripper.
+  std::vector<wrench> without;
+  static_cast<void>(record(&without));
+  EXPECT_TRUE(same_bits(then, without));
+}
+
+TEST(device_recording, of_a_gripper_refuses_every_cut_and_every_flipped_byte) {
+  device_recording r = record();
+  r.calls.resize(20);
+  r.capabilities.gripper_high_m = 0.05;
+  const std::string bytes = encode(r);
+  ASSERT_TRUE(decode(bytes));
+  for (std::size_t n = 0; n < bytes.size(); ++n) ASSERT_FALSE(decode(bytes.substr(0, n))) << n;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string wrong = bytes;
+    wrong[i] = static_cast<char>(wrong[i] ^ 0x10);
+    ASSERT_FALSE(decode(wrong)) << i;
+  }
+}
+
+TEST(device_recording, tells_a_session_of_its_gripper) {
+  struct watch {
+    session_record last;
+    void operator()(const session_record& seen) noexcept { last = seen; }
+  };
+  for (const bool has_one : {false, true}) {
+    simulated_settings c;
+    if (has_one) c.capabilities.gripper_high_m = 0.04;
+    simulated_device dev(c);
+    ASSERT_TRUE(dev.open() && dev.arm());
+    virtual_session<analytic_wall, simulated_device, watch> session({}, {{pose{}}, vec3(0.0)}, dev, {});
+    static_cast<void>(session.run_until(1001 * ms));
+    const session_record& last = session.device().observer().last;
+    EXPECT_EQ(last.gripper_told, has_one);
+    EXPECT_NEAR(last.gripper_m, has_one ? 0.04 : 0.0, 1e-6);
+  }
+}
+
 TEST(device_recording, notices_another_session) {
   replay_device other(record());
   static_cast<void>(play(other, 2001.0));  // a slightly harder wall

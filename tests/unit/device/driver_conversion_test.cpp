@@ -6,6 +6,7 @@
 #include <string>
 
 #include <asperity/device/driver_conversion.hpp>
+#include <asperity/device/simulated/simulated_settings.hpp>
 
 namespace {
 
@@ -67,6 +68,42 @@ TEST(driver_conversion, a_sample_keeps_its_axes_and_its_turn) {
   EXPECT_EQ(back.velocity_d.linear, s.velocity_d.linear);
   EXPECT_EQ(back.velocity_d.angular, s.velocity_d.angular);
   EXPECT_EQ(back.valid, s.valid);
+}
+
+TEST(driver_conversion, a_gripper_is_the_seventh_value) {
+  device_sample s;
+  s.valid = sample_field::position | sample_field::gripper;
+  s.gripper_m = 0.03;
+  const asperity_sample bits = asperity::abi::to_abi(s);
+  EXPECT_EQ(bits.gripper_m, 0.03);
+  EXPECT_EQ(bits.valid, ASPERITY_VALID_POSITION | ASPERITY_VALID_GRIPPER);
+  EXPECT_EQ(asperity::abi::from_abi(bits).gripper_m, 0.03);
+  EXPECT_TRUE(has_all(asperity::abi::from_abi(bits).valid, sample_field::gripper));
+  device_capabilities c = simulated_capabilities();
+  EXPECT_FALSE(c.has_gripper());
+  c.gripper_low_m = 0.01;
+  c.gripper_high_m = 0.05;
+  const device_capabilities back = asperity::abi::from_abi(asperity::abi::to_abi(c));
+  EXPECT_EQ(back.gripper_low_m, 0.01);
+  EXPECT_EQ(back.gripper_high_m, 0.05);
+  EXPECT_TRUE(back.has_gripper());
+}
+
+// Version 1.0 ends before the gripper: what it has there is somebody else's memory.
+TEST(driver_conversion, an_older_side_has_no_gripper) {
+  constexpr std::uint32_t sample_of_1_0 = 184, capabilities_of_1_0 = 328;
+  device_sample s;
+  s.gripper_m = 0.03;
+  asperity_sample older = asperity::abi::to_abi(s);
+  older.struct_size = sample_of_1_0;
+  EXPECT_EQ(asperity::abi::copy_in(older).gripper_m, 0.0);
+  older.gripper_m = 0.7;
+  asperity::abi::copy_out(asperity::abi::to_abi(s), older);
+  EXPECT_EQ(older.gripper_m, 0.7);
+  auto limits = asperity::abi::blank<asperity_capabilities>();
+  limits.gripper_high_m = 0.05;
+  limits.struct_size = capabilities_of_1_0;
+  EXPECT_FALSE(asperity::abi::from_abi(asperity::abi::copy_in(limits)).has_gripper());
 }
 
 TEST(driver_conversion, a_drivers_limits_arrive_each_as_itself) {

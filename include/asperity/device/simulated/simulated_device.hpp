@@ -16,11 +16,12 @@
 namespace asperity {
 
 /// Where the energy of the plant went since the first read(), J. Works are of the wrench at the end of a plant step, as
-/// the step uses it, so that by_device_j + by_hand_j - damped_j - numerical_j is the kinetic energy gained, to
-/// rounding.
+/// the step uses it, so that by_device_j + by_hand_j + by_weight_j - damped_j - numerical_j is the kinetic energy
+/// gained, to rounding.
 struct plant_energy {
   double by_device_j = 0.0;  ///< work of the device's wrench
   double by_hand_j = 0.0;    ///< work of the hand's spring and damper
+  double by_weight_j = 0.0;  ///< work of the plant's own weight
   double damped_j = 0.0;     ///< lost in the plant's own dampers
   double numerical_j = 0.0;  ///< taken out by the implicit step
 };
@@ -123,6 +124,8 @@ class ASPERITY_API simulated_device {
   // `pull` is the hand's wrench before its damper took part in the step.
   void book(double h, const twist& before, const wrench& put_out, const wrench& pull) noexcept;
 
+  // The hand opens and shuts a gripper every two seconds, beginning shut.
+  [[nodiscard]] double gripper_m(double t_s) const noexcept;
   [[nodiscard]] vec3 tremor(double t_s) const noexcept;
   void measure(std::int64_t now_ns) noexcept;
   [[nodiscard]] pose quantised(const pose& T) const noexcept;

@@ -34,6 +34,13 @@ struct scripted_fault {
   std::int64_t until_ns = 0;  ///< not included
 };
 
+/// Buttons that the hand holds down, and when.
+struct scripted_press {
+  std::uint32_t buttons = 1;  ///< one bit per button
+  std::int64_t from_ns = 0;   ///< session clock
+  std::int64_t until_ns = 0;  ///< not included
+};
+
 /// The hand as a spring and damper to where it wants to be, and a tremor.
 struct hand_settings {
   double stiffness_n_per_m = 300.0;
@@ -51,12 +58,14 @@ struct hand_settings {
 /// A firm grip with a stiff wrist; see soft_hand(). Tremor grows with grip force.
 [[nodiscard]] ASPERITY_API hand_settings firm_hand() noexcept;
 
-/// A light arm with six free axes, gravity balanced.
+/// A light arm with six free axes, gravity balanced by default.
 struct plant_settings {
   double mass_kg = 0.15;
   double damping_n_s_per_m = 1.0;
   double inertia_kg_m2 = 2e-4;
   double damping_n_m_s_per_rad = 2e-3;
+  vec3 gravity_d{0.0};  ///< m/s^2, on the whole mass
+  vec3 centre_h{0.0};   ///< of that mass, m
 };
 
 /// How the measurement reaches the host.
@@ -80,6 +89,7 @@ struct simulated_settings {
   actuator_settings actuator{};
   device_capabilities capabilities = simulated_capabilities();
   std::vector<scripted_fault> faults{};
+  std::vector<scripted_press> presses{};  ///< empty: the device has no buttons
 };
 
 }  // namespace asperity

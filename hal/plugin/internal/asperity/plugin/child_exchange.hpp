@@ -105,7 +105,7 @@ struct listed_item {
 
 /// Laid out once by the program; the driver's process finds it behind a descriptor that can neither grow nor shrink.
 struct child_page {
-  static constexpr std::uint64_t layout = 0x61737065'00000001;
+  static constexpr std::uint64_t layout = 0x61737065'00000002;
 
   std::uint64_t version = layout;
   std::uint64_t size = sizeof(child_page);
