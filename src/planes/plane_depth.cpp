@@ -36,18 +36,18 @@ trial_motions trials_within(double reach_m) noexcept {
 // Readers of a pose, one for the patches of a body on either side; patches mostly come in long rows of the same two.
 class readers {
  public:
-  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w, double sinking_m) noexcept
-      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), sinking_m_(sinking_m) {}
+  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w) noexcept
+      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w) {}
 
-  [[nodiscard]] const leaf_reader& of(const near_patch& patch) noexcept {
+  [[nodiscard]] const leaf_reader& of(const near_patch& patch, double sinking_m) noexcept {
     std::optional<leaf_reader>& out = patch.of_probe ? of_probe_ : of_fixed_;
     if (out && out->reads(patch)) return *out;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[patch.body];
     const pose &T_wa = at_->T_wa, &T_wb = at_->T_wb[patch.body];
     if (patch.of_probe) {
-      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m_, work_);
+      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m, work_);
     } else {
-      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m_, work_);
+      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m, work_);
     }
     return *out;
   }
@@ -57,7 +57,6 @@ class readers {
   const field_scene* bodies_;
   const scene_pose* at_;
   vec3 c_a_w_;
-  double sinking_m_;
   depth_work work_;
   std::optional<leaf_reader> of_probe_, of_fixed_;
 };
@@ -89,13 +88,36 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
       told_m_(reach_m),
-      sinking_m_(facing::sinking_m(of)),
       ways_(of.fixed.size()),
       watch_(std::make_unique<plane_watch>(*bodies_, of)),
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
       branches_(std::move(branches)),
       asked_at_(std::make_unique<vec6>()) {
+  for (way& w : ways_) w.sinking_m = facing::sinking_m(of);
+  reserve(most);
+}
+
+plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t most,
+                         std::shared_ptr<known_branches> branches)
+    : bodies_(first.fields),
+      centre_of_mass_a_(first.bodies.probe->mass.centre_of_mass),
+      reach_m_(reach_m),
+      told_m_(reach_m),
+      ways_(first.of.size()),
+      watch_(std::make_unique<plane_watch>(first.probe, first.of.size())),
+      met_(std::make_unique<first_met>(trials_within(reach_m))),
+      known_(std::make_unique<known_depths>(most)),
+      branches_(std::move(branches)),
+      asked_at_(std::make_unique<vec6>()) {
+  reserve(most);
+  take(first);
+  // What is there from the beginning does not wait.
+  for (way& w : ways_) w.waits = false;
+  waiting_ = 0;
+}
+
+void plane_depth::reserve(std::size_t most) {
   detail::reserve_resident(reported_, most);
   detail::reserve_resident(order_, most);
   for (const field_sample& s : bodies_->probe->samples.samples()) {
@@ -106,15 +128,41 @@ plane_depth::plane_depth(plane_depth&&) noexcept = default;
 plane_depth& plane_depth::operator=(plane_depth&&) noexcept = default;
 plane_depth::~plane_depth() = default;
 
+void plane_depth::take(const plane_scene& next) noexcept {
+  const std::uint64_t before = placed_ != nullptr ? placed_->version : 0;
+  for (way& w : ways_) w.deepest_m = 0.0;
+  for (const support_plane& p : reported_) {
+    way& w = ways_[p.body];
+    w.deepest_m = std::max(w.deepest_m, p.depth_m);
+  }
+  for (std::uint32_t b = 0; b < ways_.size(); ++b) {
+    if (!(next.since[b] > before)) continue;
+    way& w = ways_[b];
+    const bool waits = next.fields->fixed[b] != nullptr;
+    waiting_ += (waits ? 1U : 0U) - (w.waits ? 1U : 0U);
+    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m), .waits = waits, .let_in_m = w.deepest_m + let_in_m};
+    watch_->forget(b, next.of[b]);
+    known_->forget(b);
+    if (branches_) branches_->forget(b);
+  }
+  bodies_ = next.fields;
+  placed_ = &next;
+}
+
+const placed_scene* plane_depth::placed() const noexcept { return placed_; }
+
 status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
-  readers reading(*bodies_, at, c_a_w, sinking_m_);
+  readers reading(*bodies_, at, c_a_w);
+  const auto reader_of = [&](const near_patch& patch) noexcept -> const leaf_reader& {
+    return reading.of(patch, ways_[patch.body].sinking_m);
+  };
   reported_.clear();
   met_->clear();
   told_m_ = std::min(reach_m_, at.gaps_m);
-  learn_ways(at);
+  learn_ways(at, found);
   known_->begin(found, [&](const near_patch& patch, double most_m) noexcept {
-    const leaf_reader& reader = reading.of(patch);
+    const leaf_reader& reader = reader_of(patch);
     const way& w = ways_[patch.body];
     const vec3 now_y = reader.in_field(patch.ball.centre_b);
     const vec3 before_y = (patch.of_probe ? w.before_ba : w.before_ab) * patch.ball.centre_b;
@@ -129,14 +177,15 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   sort_by_depth(found.patches());
   for (const std::uint32_t i : order_) {
     const near_patch& patch = found.patches()[i];
-    read(patch, found.leaves_of(patch), reading.of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
+    read(patch, found.leaves_of(patch), reader_of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
+  if (waiting_ > 0) let_in(found, out);
   for (const near_plane& p : out) {
     if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
   teach(found);
   known_->ask(found, [&](const near_patch& patch) noexcept {
-    const leaf_reader& reader = reading.of(patch);
+    const leaf_reader& reader = reader_of(patch);
     const vec3 r_w = reader.from_centre_of_mass_w(patch.ball.centre_b);
     return known_depths::asked_patch{.middle_y = reader.in_field(patch.ball.centre_b),
                                      .arm_m = std::sqrt(glm::dot(r_w, r_w)) + patch.ball.radius_m};
@@ -147,17 +196,46 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   known_motion_ = {-found.most_left_m(), -found.most_left_m() / farthest_m_};
   for (const near_leaf& leaf : found.leaves()) work_.listed += leaf.count;
   flags_ = watch_->look(*bodies_, at, reported_, c_a_w);
+  if (waiting_ > 0) flags_ |= tick_flag::body_waits;
   return status::ok;
 }
 
-void plane_depth::learn_ways(const scene_pose& at) noexcept {
-  for (std::size_t b = 0; b < ways_.size(); ++b) {
-    way& w = ways_[b];
+void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) noexcept {
+  // Patches come body by body. Nothing is known of one that was not listed in the tick before.
+  const near_patch* last = nullptr;
+  for (const near_patch& patch : found.patches()) {
+    if (last != nullptr && last->body == patch.body) continue;
+    last = &patch;
+    way& w = ways_[patch.body];
     w.before_ba = w.T_ba;
     w.before_ab = inverse(w.T_ba);
-    w.T_ba = inverse(at.T_wb[b]) * at.T_wa;
+    w.T_ba = inverse(at.T_wb[patch.body]) * at.T_wa;
     const quat turn = glm::conjugate(w.before_ba.rotation) * w.T_ba.rotation;
     w.chord = 2.0 * std::sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+  }
+}
+
+void plane_depth::let_in(const near_samples& found, std::span<near_plane> out) noexcept {
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  for (way& w : ways_) w.deepest_m = none;
+  for (const near_patch& patch : found.patches()) {
+    double& deepest_m = ways_[patch.body].deepest_m;
+    for (const near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
+      deepest_m = std::max(deepest_m, p.plane.depth_m);
+    }
+  }
+  for (way& w : ways_) {
+    if (!w.waits) continue;
+    if (w.deepest_m > w.let_in_m) {
+      w.let_in_m = let_in_m;
+      continue;
+    }
+    w.waits = false;
+    --waiting_;
+  }
+  for (const near_patch& patch : found.patches()) {
+    if (!ways_[patch.body].waits) continue;
+    for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) p.plane.depth_m = none;
   }
 }
 
@@ -234,7 +312,7 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
 
 status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
                               const vec6& moved, double above_m, plane_list& out) const noexcept {
-  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, sinking_m_);
+  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
   const double slid_m = std::sqrt(glm::dot(step.linear, step.linear));
@@ -246,7 +324,8 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
         static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
     if (!(static_cast<double>(asked.most_m + asked.since_m) > above_m)) continue;
     const near_patch& patch = found.patches()[p];
-    const leaf_reader& reader = reading.of(patch);
+    if (ways_[patch.body].waits) continue;
+    const leaf_reader& reader = reading.of(patch, ways_[patch.body].sinking_m);
     const double least_m = std::max(above_m, come_to(asked, patch, reader, moved.angular) - told_m_);
     if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     known_->open(asked, patch);
