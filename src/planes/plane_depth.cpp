@@ -139,7 +139,8 @@ void plane_depth::take(const plane_scene& next) noexcept {
     if (!(next.since[b] > before)) continue;
     way& w = ways_[b];
     const bool waits = next.fields->fixed[b] != nullptr;
-    waiting_ += (waits ? 1U : 0U) - (w.waits ? 1U : 0U);
+    if (w.waits) --waiting_;
+    if (waits) ++waiting_;
     w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m), .waits = waits, .let_in_m = w.deepest_m + let_in_m};
     watch_->forget(b, next.of[b]);
     known_->forget(b);

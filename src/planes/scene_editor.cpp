@@ -123,7 +123,8 @@ result<void> scene_editor::remove(const body_handle& body) {
 
 result<void> scene_editor::place(const body_handle& body, const pose& T_wb) {
   if (const result<void> ok = check(body); !ok) return ok;
-  if (!is_valid(T_wb)) return bad("a body was placed at a pose that is none: give finite numbers and a unit quaternion");
+  if (!is_valid(T_wb))
+    return bad("a body was placed at a pose that is none: give finite numbers and a unit quaternion");
   slots_[body.slot].T_wb = T_wb;
   change(slots_[body.slot]);
   return {};
@@ -214,8 +215,8 @@ result<plane_renderer> make_plane_renderer(scene_editor& editor, const plane_ren
     }
     reach_m = std::min(reach_for(usual_period_s), of_the_diagonal * smallest_m);
   }
-  auto known = std::make_shared<known_branches>(*first->fields, first->bodies.probe->mass.centre_of_mass,
-                                                first->most_balls);
+  auto known =
+      std::make_shared<known_branches>(*first->fields, first->bodies.probe->mass.centre_of_mass, first->most_balls);
   plane_finder finder(*first, reach_m, known);
   plane_depth depth(*first, reach_m, settings.limits.readings(), std::move(known));
   return plane_renderer(std::move(first), std::move(finder), std::move(depth), plane_springs(settings.springs),

@@ -28,8 +28,8 @@ concept contact_renderer = requires(R& renderer, const scene_pose& at, tick& out
 /// it replaces; nothing is allocated or freed. placed() is null where the renderer was made for a scene that never
 /// changes.
 template <class R>
-concept scene_taker =
-    contact_renderer<R> && requires(R& renderer, std::shared_ptr<const typename R::placed_type> next) {
+concept scene_taker = contact_renderer<R> &&
+    requires(R& renderer, std::shared_ptr<const typename R::placed_type> next) {
   { renderer.take(std::move(next)) }
   noexcept->std::same_as<std::shared_ptr<const typename R::placed_type>>;
   { renderer.placed() }
@@ -185,7 +185,8 @@ class contact_loop {
     out.version = scene.version;
     out.bodies = there;
     for (const support_plane& p : out.planes) {
-      const bool known = std::any_of(out.of.begin(), out.of.end(), [&](const contact_body& b) { return b.body == p.body; });
+      const bool known =
+          std::any_of(out.of.begin(), out.of.end(), [&](const contact_body& b) { return b.body == p.body; });
       if (!known) static_cast<void>(out.of.push_back({p.body, scene.since[p.body], scene.surfaces[p.body]}));
     }
   }

@@ -29,8 +29,8 @@ using support_planes = fixed_vector<support_plane, most_support_planes>;
 
 /// A body of a changing scene that a contact has planes of.
 struct contact_body {
-  std::uint32_t body = 0;     ///< its slot
-  std::uint64_t since = 0;    ///< placed_scene::since of the slot
+  std::uint32_t body = 0;                 ///< its slot
+  std::uint64_t since = 0;                ///< placed_scene::since of the slot
   std::optional<surface_pair> surface{};  ///< of the probe and it
 };
 

@@ -116,11 +116,11 @@ class body_follower {
     lost_ = false;
     for (followed& f : bodies_) {
       const pose T_wb = f.at(now_ns);
-      static_cast<void>(ways_.push_back({f.told.body,
-                                         f.last_T_wb,
-                                         {T_wb.position - f.last_T_wb.position,
-                                          log_rotation(T_wb.rotation * glm::conjugate(f.last_T_wb.rotation))},
-                                         f.told.generation}));
+      static_cast<void>(ways_.push_back(
+          {f.told.body,
+           f.last_T_wb,
+           {T_wb.position - f.last_T_wb.position, log_rotation(T_wb.rotation * glm::conjugate(f.last_T_wb.rotation))},
+           f.told.generation}));
       static_cast<void>(places_.push_back({f.told.body, T_wb, f.told.generation}));
       f.last_T_wb = T_wb;
       lost_ = lost_ || (f.moves() && now_ns - f.told_ns > longest_guess_ns);

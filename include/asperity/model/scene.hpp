@@ -33,9 +33,9 @@ struct body_handle {
 
 /// One version of a scene that changes: which body is in which slot, and where. It does not change once it is shared.
 struct placed_scene {
-  std::uint64_t version = 0;  ///< counts from 1; 0 is a scene that never changes
-  scene bodies;               ///< fixed: one per slot, null where the slot is free
-  std::vector<pose> T_wb;     ///< one per slot
+  std::uint64_t version = 0;              ///< counts from 1; 0 is a scene that never changes
+  scene bodies;                           ///< fixed: one per slot, null where the slot is free
+  std::vector<pose> T_wb;                 ///< one per slot
   std::vector<std::uint32_t> generation;  ///< one per slot: body_handle::generation of its body, 0 where it is free
   /// One per slot: the version that put this body there, by adding, exchanging or placing it, or that removed the last.
   std::vector<std::uint64_t> since;

@@ -114,7 +114,7 @@ class ASPERITY_API plane_depth {
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
   double reach_m_;
-  double told_m_;     // of the last measure(): no gap beyond this is told
+  double told_m_;  // of the last measure(): no gap beyond this is told
   std::vector<support_plane> reported_;
   std::vector<std::uint32_t> order_;  // of patches
   // How the probe has moved from the tick before, seen from each body.

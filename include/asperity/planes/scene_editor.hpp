@@ -19,8 +19,9 @@ namespace asperity {
 
 /// Fixed sizes of a scene that changes. All memory of its renderer is taken for them.
 struct scene_limits {
-  std::size_t bodies = 64;     ///< most fixed bodies at one time: the slots
-  std::size_t balls = 65'536;  ///< of the samples of one fixed body (sample_tree::balls()), about an eighth of the samples
+  std::size_t bodies = 64;  ///< most fixed bodies at one time: the slots
+  std::size_t balls =
+      65'536;  ///< of the samples of one fixed body (sample_tree::balls()), about an eighth of the samples
 };
 
 /// Edits a scene and hands versions of it to a session.

@@ -116,8 +116,8 @@ class basic_renderer {
   /// Goes on with another version of the scene. @pre made for a scene that changes; as many slots
   /// @return the version that it replaces: nothing of the renderer refers to it
   /// @rt safe: nothing is allocated or freed
-  [[nodiscard]] std::shared_ptr<const placed_type> take(std::shared_ptr<const placed_type> next) noexcept
-      requires takes_scenes<Finder> && takes_scenes<Depth> {
+  [[nodiscard]] std::shared_ptr<const placed_type> take(std::shared_ptr<const placed_type> next) noexcept requires
+      takes_scenes<Finder> && takes_scenes<Depth> {
     finder_.take(*next);
     depth_.take(*next);
     return std::exchange(placed_, std::move(next));
@@ -231,7 +231,8 @@ class basic_renderer {
 
   // Of bodies that are where the scene has them nothing has to be asked.
   [[nodiscard]] bool has_valid_bodies(const scene_pose& at) const noexcept {
-    if (!stands_still(at)) return std::all_of(at.T_wb.begin(), at.T_wb.end(), [](const pose& T) { return is_valid(T); });
+    if (!stands_still(at))
+      return std::all_of(at.T_wb.begin(), at.T_wb.end(), [](const pose& T) { return is_valid(T); });
     return std::all_of(at.moved.begin(), at.moved.end(),
                        [&](std::uint32_t b) { return b < at.T_wb.size() && is_valid(at.T_wb[b]); });
   }
