@@ -80,6 +80,13 @@ double come_to(known_depths::asked_patch& asked, const near_patch& patch, const 
   return asked.slopes.growth_m(come, radius_m + here_m);
 }
 
+// Of a depth on one surface, the part that pushes as much or less on another one.
+double share_of_push(const std::optional<surface_pair>& on, const std::optional<surface_pair>& now) noexcept {
+  if (!on && !now) return 1.0;
+  if (!on || !now) return 0.0;
+  return std::min(1.0, on->stiffness_n_per_m / now->stiffness_n_per_m);
+}
+
 }  // namespace
 
 plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
@@ -112,9 +119,9 @@ plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t m
       asked_at_(std::make_unique<vec6>()) {
   reserve(most);
   take(first);
-  // What is there from the beginning does not wait.
-  for (way& w : ways_) w.waits = false;
-  waiting_ = 0;
+  // What is there from the beginning does not stand back.
+  for (way& w : ways_) w.comes = false;
+  come_ = false;
 }
 
 void plane_depth::reserve(std::size_t most) {
@@ -138,10 +145,9 @@ void plane_depth::take(const plane_scene& next) noexcept {
   for (std::uint32_t b = 0; b < ways_.size(); ++b) {
     if (!(next.since[b] > before)) continue;
     way& w = ways_[b];
-    const bool waits = next.fields->fixed[b] != nullptr;
-    if (w.waits) --waiting_;
-    if (waits) ++waiting_;
-    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m), .waits = waits, .let_in_m = w.deepest_m + let_in_m};
+    const double share = placed_ != nullptr ? share_of_push(placed_->surfaces[b], next.surfaces[b]) : 0.0;
+    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m), .comes = true, .was_m = share * w.deepest_m};
+    come_ = true;
     watch_->forget(b, next.of[b]);
     known_->forget(b);
     if (branches_) branches_->forget(b);
@@ -180,7 +186,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
     const near_patch& patch = found.patches()[i];
     read(patch, found.leaves_of(patch), reader_of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
-  if (waiting_ > 0) let_in(found, out);
+  if (come_) stand_back(found, out);
   for (const near_plane& p : out) {
     if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
@@ -197,7 +203,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   known_motion_ = {-found.most_left_m(), -found.most_left_m() / farthest_m_};
   for (const near_leaf& leaf : found.leaves()) work_.listed += leaf.count;
   flags_ = watch_->look(*bodies_, at, reported_, c_a_w);
-  if (waiting_ > 0) flags_ |= tick_flag::body_waits;
+  if (come_) flags_ |= tick_flag::stands_back;
   return status::ok;
 }
 
@@ -216,27 +222,27 @@ void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) no
   }
 }
 
-void plane_depth::let_in(const near_samples& found, std::span<near_plane> out) noexcept {
-  constexpr double none = -std::numeric_limits<double>::infinity();
-  for (way& w : ways_) w.deepest_m = none;
+void plane_depth::stand_back(const near_samples& found, std::span<near_plane> out) noexcept {
+  for (way& w : ways_) w.deepest_m = -std::numeric_limits<double>::infinity();
   for (const near_patch& patch : found.patches()) {
     double& deepest_m = ways_[patch.body].deepest_m;
     for (const near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
       deepest_m = std::max(deepest_m, p.plane.depth_m);
     }
   }
+  come_ = false;
   for (way& w : ways_) {
-    if (!w.waits) continue;
-    if (w.deepest_m > w.let_in_m) {
-      w.let_in_m = let_in_m;
-      continue;
+    if (std::exchange(w.comes, false)) {
+      w.back_m = w.deepest_m - w.was_m > let_in_m ? w.deepest_m - w.was_m : 0.0;
+    } else {
+      w.back_m = std::max(0.0, std::min(w.back_m, w.deepest_m + reach_m_));
     }
-    w.waits = false;
-    --waiting_;
+    come_ = come_ || w.back_m > 0.0;
   }
+  if (!come_) return;
   for (const near_patch& patch : found.patches()) {
-    if (!ways_[patch.body].waits) continue;
-    for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) p.plane.depth_m = none;
+    const double back_m = ways_[patch.body].back_m;
+    for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) p.plane.depth_m -= back_m;
   }
 }
 
@@ -325,14 +331,16 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
         static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
     if (!(static_cast<double>(asked.most_m + asked.since_m) > above_m)) continue;
     const near_patch& patch = found.patches()[p];
-    if (ways_[patch.body].waits) continue;
-    const leaf_reader& reader = reading.of(patch, ways_[patch.body].sinking_m);
+    const way& of = ways_[patch.body];
+    const leaf_reader& reader = reading.of(patch, of.sinking_m);
     const double least_m = std::max(above_m, come_to(asked, patch, reader, moved.angular) - told_m_);
     if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     known_->open(asked, patch);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
-      reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i),
-                         [&](const support_plane& plane) noexcept { keep_deepest(plane, out); });
+      reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i), [&](support_plane plane) noexcept {
+        plane.depth_m -= of.back_m;
+        if (plane.depth_m > above_m) keep_deepest(plane, out);
+      });
     }
     known_->close(asked, patch);
   }

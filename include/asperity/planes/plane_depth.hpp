@@ -40,10 +40,11 @@ struct plane_scene;
 /// bounds of patches and leaves, so most samples are not read; what is reported has exact depths and slopes. What
 /// earlier ticks know of samples spares readings as well and changes nothing: planes follow from the pose alone.
 ///
-/// A body of a scene that changes comes into it (is added, exchanged or placed) where the probe may be. What would push
-/// the probe out at once, by more than let_in_m beyond how deep it was in the slot before, has no planes: the body waits
-/// until the probe has left it, and flags() tell it (tick_flag::body_waits). So a change puts no more energy into the
-/// probe than springs that are let_in_m deeper hold.
+/// A body of a scene that changes may come into it (be added, exchanged or placed) where the probe is. Where it would be
+/// deeper in the probe than what was in its slot before, by more than let_in_m, it stands back: its surface is felt that
+/// much further in, so that it pushes as hard as what was there, and flags() tell it (tick_flag::stands_back). It comes
+/// forward behind a probe that leaves it, a reach away from it, so a change puts no more energy into the probe than
+/// springs that are let_in_m deeper hold.
 ///
 /// A reading whose depth is -infinity stands for a leaf that has no plane.
 class ASPERITY_API plane_depth {
@@ -53,7 +54,7 @@ class ASPERITY_API plane_depth {
   using reading_type = near_plane;
   using placed_type = plane_scene;
 
-  /// By this much deeper than what was in its slot a body may come into a scene, m: 4 N of a plane of 200 N/mm.
+  /// By this much deeper than what was in its slot a body comes into a scene as it is, m: 4 N of a plane of 200 N/mm.
   static constexpr double let_in_m = 2e-5;
 
   /// @param bodies   the scene's, in its order
@@ -101,8 +102,8 @@ class ASPERITY_API plane_depth {
   void reserve(std::size_t most);
   // What known bounds grow by: how far samples have gone since the tick before.
   void learn_ways(const scene_pose& at, const near_samples& found) noexcept;
-  // Takes away what was read of bodies that wait, unless the probe has left them.
-  void let_in(const near_samples& found, std::span<near_plane> out) noexcept;
+  // Makes what was read of bodies that stand back less deep.
+  void stand_back(const near_samples& found, std::span<near_plane> out) noexcept;
   // The deepest first, roughly.
   void sort_by_depth(std::span<const near_patch> patches) noexcept;
   // The planes of a patch's leaves, where they can matter.
@@ -122,13 +123,14 @@ class ASPERITY_API plane_depth {
     pose T_ba{}, before_ba{}, before_ab{};
     double chord = 0.0;
     double sinking_m = 0.0;  // of a sample that looks away
-    bool waits = false;
-    double let_in_m = 0.0;   // a body that waits comes in where it is no deeper
-    double deepest_m = 0.0;  // of its planes, while bodies come in
+    bool comes = false;      // since the last tick ...
+    double was_m = 0.0;      // ... in the place of one that was so deep
+    double back_m = 0.0;     // its surface stands back by this
+    double deepest_m = 0.0;  // of its planes, where bodies come or stand back
   };
   std::vector<way> ways_;
   const plane_scene* placed_ = nullptr;
-  std::size_t waiting_ = 0;  // bodies that wait
+  bool come_ = false;  // a body comes or stands back
   std::unique_ptr<plane_watch> watch_;
   std::unique_ptr<first_met> met_;
   std::unique_ptr<known_depths> known_;

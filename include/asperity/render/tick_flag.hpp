@@ -24,8 +24,8 @@ enum class tick_flag : std::uint8_t {
   /// A moving body was told of no more, or what was told of it is no motion of a body, or there were too many: it stands
   /// still. Or one was told of that the scene does not have any more. Device ticks only.
   body_lost = 64,
-  /// A body of a changing scene came where the probe is, and waits until the probe has left it: it is not felt.
-  body_waits = 128,
+  /// A body of a changing scene came where the probe is: its surface is felt further in, until the probe has left it.
+  stands_back = 128,
 };
 
 /// Overlap beyond which planes do not hold the probe, m: the load of one plane of the usual 200 N/mm is 200 N there.

@@ -25,6 +25,7 @@ namespace {
 using namespace test_support;
 
 const vec3 tool_half(0.006, 0.005, 0.004), table_half(0.03, 0.03, 0.01), cube_half(0.012);
+constexpr field_body_settings coarse{.sample_pitch_m = 3e-4};
 
 model_ptr box(const vec3& half, std::uint32_t texels) {
   return std::make_shared<const textured_model>(make_flat_box(half, texels));
@@ -34,7 +35,7 @@ model_ptr box(const vec3& half, std::uint32_t texels) {
 struct box_set {
   model_ptr tool = box(tool_half, 192), table = box(table_half, 256), cube = box(cube_half, 192);
   std::shared_ptr<const field_scene> made =
-      std::make_shared<const field_scene>(make_field_scene({tool, {table, cube}}).value());
+      std::make_shared<const field_scene>(make_field_scene({tool, {table, cube}}, coarse).value());
   [[nodiscard]] field_body_ptr field_of(const model_ptr& m) const { return made->fixed[m == table ? 0 : 1]; }
 };
 const box_set& boxes() {
@@ -42,7 +43,9 @@ const box_set& boxes() {
   return made;
 }
 
-scene_editor editor_of(std::size_t slots) { return scene_editor::make(boxes().tool, {.bodies = slots}).value(); }
+scene_editor editor_of(std::size_t slots) {
+  return scene_editor::make(boxes().tool, {.bodies = slots}, coarse).value();
+}
 
 quat drawn_turn(drawn& d) { return exp_rotation(d.inside(3.0)); }
 
@@ -239,7 +242,7 @@ TEST(ChangingScene, FeelsAsASceneThatNeverChanged) {
     if (there.empty()) continue;
     still_scene expected_of = still(*now);
     tick found, expected;
-    // What came where the probe is waits; far away nothing does.
+    // What comes where the probe is stands back; far away nothing does.
     ASSERT_EQ(feel.step({far_away, now->T_wb}, found), status::ok);
     std::vector<pose> T_wb = now->T_wb;
     std::vector<std::uint32_t> moved;
@@ -282,68 +285,104 @@ TEST(ChangingScene, FeelsAsASceneThatNeverChanged) {
   EXPECT_GT(left_out, looked);
 }
 
-TEST(ChangingScene, LetsABodyWaitThatComesWhereTheProbeIs) {
+TEST(ChangingScene, LetsABodyStandBackThatComesWhereTheProbeIs) {
   const box_set& of = boxes();
   scene_editor editor = editor_of(2);
   const body_handle table = editor.add(of.table, of.field_of(of.table), pose{}).value();
   plane_renderer feel = make_plane_renderer(editor, {.reach_m = reach_m}).value();
   tick t;
-  const auto at_height = [&](double depth_m) {
+  // How deep the planes are where the probe is this deep in the table's first place.
+  const auto told_at = [&](double depth_m) {
     const pose T_wa{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, table_half.z + tool_half.z - depth_m)};
-    return feel.step({T_wa, feel.placed()->T_wb, 1.0, feel.placed()->version}, t);
-  };
-  const auto deepest = [&] {
+    EXPECT_EQ(feel.step({T_wa, feel.placed()->T_wb, 1.0, feel.placed()->version}, t), status::ok);
     double most_m = -1.0;
     for (const support_plane& p : t.planes) most_m = std::max(most_m, p.depth_m);
     return most_m;
   };
-  const auto take = [&] { static_cast<void>(feel.take(editor.prepare())); };
-  constexpr double pressed_m = 5e-5;
-  // What is there from the beginning does not wait, however deep.
-  ASSERT_EQ(at_height(0.001), status::ok);
-  EXPECT_NEAR(deepest(), 0.001, 1e-5);
-  // The same body at the same place, while it is pressed, goes on as it was.
-  ASSERT_EQ(at_height(pressed_m), status::ok);
+  const auto stands_back = [&] { return has(t.flags, tick_flag::stands_back); };
+  const auto lift = [&](double by_m) {
+    ASSERT_TRUE(editor.place(table, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, by_m)}));
+    static_cast<void>(feel.take(editor.prepare()));
+  };
+  constexpr double pressed_m = 5e-5, near_m = 1e-6;
+  // What is there from the beginning does not stand back, however deep.
+  EXPECT_NEAR(told_at(0.001), 0.001, 1e-5);
+  // The same body at the same place, while it is pressed, goes on as it was; so does one that is lifted by a little.
+  const double pressed_told_m = told_at(pressed_m);
+  EXPECT_NEAR(pressed_told_m, pressed_m, 1e-5);
   ASSERT_TRUE(editor.exchange(table, of.table, of.field_of(of.table)));
-  take();
-  ASSERT_EQ(at_height(pressed_m), status::ok);
-  EXPECT_NEAR(deepest(), pressed_m, 1e-5);
-  EXPECT_FALSE(has(t.flags, tick_flag::body_waits));
-  // Lifted by less than lets it in, and by more.
-  ASSERT_TRUE(editor.place(table, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, 0.7 * plane_depth::let_in_m)}));
-  take();
-  ASSERT_EQ(at_height(pressed_m), status::ok);
-  EXPECT_GT(deepest(), pressed_m);
-  EXPECT_FALSE(has(t.flags, tick_flag::body_waits));
-  ASSERT_TRUE(editor.place(table, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, 0.002)}));
-  take();
+  static_cast<void>(feel.take(editor.prepare()));
+  EXPECT_EQ(told_at(pressed_m), pressed_told_m);
+  EXPECT_FALSE(stands_back());
+  lift(0.7 * plane_depth::let_in_m);
+  EXPECT_NEAR(told_at(pressed_m), pressed_m + 0.7 * plane_depth::let_in_m, near_m);
+  EXPECT_FALSE(stands_back());
+  // Lifted by more, it pushes no harder, here and at poses near by.
+  const double was_m = told_at(pressed_m);
+  lift(0.002);
   plane_list near;
   for (int i = 0; i < 3; ++i) {
-    ASSERT_EQ(at_height(pressed_m), status::ok);
-    EXPECT_TRUE(has(t.flags, tick_flag::body_waits));
-    EXPECT_TRUE(t.planes.empty());
-    EXPECT_TRUE(t.contacts.empty());
-    EXPECT_EQ(t.force.on_probe_w.force, vec3(0.0));
-    ASSERT_EQ(t.planes_near({vec3(0.0, 0.0, -1e-4), vec3(0.0)}, -1e-4, near), status::ok);
+    EXPECT_NEAR(told_at(pressed_m), was_m, near_m);
+    EXPECT_TRUE(stands_back());
+    ASSERT_NE(t.planes_near({vec3(0.0, 0.0, -1e-4), vec3(0.0)}, -1e-4, near), status::not_ready);
+    double most_m = -1.0;
+    for (const support_plane& p : near) most_m = std::max(most_m, p.depth_m);
+    EXPECT_NEAR(most_m, was_m + 1e-4, near_m);
+    ASSERT_EQ(t.planes_near({vec3(0.0, 0.0, 0.001), vec3(0.0)}, -1e-4, near), status::ok);
     EXPECT_TRUE(near.empty());
   }
-  // Once the probe has left it, it is there.
-  ASSERT_EQ(at_height(-0.0021), status::ok);
-  EXPECT_FALSE(has(t.flags, tick_flag::body_waits));
-  EXPECT_FALSE(t.planes.empty());
-  ASSERT_EQ(at_height(-0.0019), status::ok);
-  EXPECT_NEAR(deepest(), 0.0001, 1e-5);
-  // A body that comes around the probe, and one that goes while it waits.
-  const body_handle cube =
-      editor.add(of.cube, of.field_of(of.cube), {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, 0.03)}).value();
-  take();
-  ASSERT_EQ(at_height(-0.016), status::ok);
-  EXPECT_TRUE(has(t.flags, tick_flag::body_waits));
-  EXPECT_TRUE(t.planes.empty());
+  EXPECT_NEAR(told_at(pressed_m + 1e-4), was_m + 1e-4, near_m);
+  EXPECT_NEAR(told_at(pressed_m - 2e-4), was_m - 2e-4, near_m);
+  // It comes forward behind a probe that leaves it, a reach away.
+  const double left_m = pressed_m - 1.5 * reach_m;
+  EXPECT_NEAR(told_at(left_m), -reach_m, 1e-5);
+  EXPECT_TRUE(stands_back());
+  EXPECT_NEAR(told_at(left_m + 1e-4), 1e-4 - reach_m, 1e-5);
+  static_cast<void>(told_at(-0.002 - 1.1 * reach_m));
+  EXPECT_FALSE(stands_back());
+  EXPECT_NEAR(told_at(-0.0019), 0.0001, 1e-5);
+  EXPECT_FALSE(stands_back());
+  // A body that comes around the probe pushes not at all, and holds what goes further in.
+  const pose above{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, 0.03)};
+  const body_handle cube = editor.add(of.cube, of.field_of(of.cube), above).value();
+  static_cast<void>(feel.take(editor.prepare()));
+  const double inside_m = -0.03 + table_half.z + tool_half.z - 0.003;  // 3 mm above the cube's middle
+  EXPECT_NEAR(told_at(inside_m), 0.0, near_m);
+  EXPECT_TRUE(stands_back());
+  EXPECT_EQ(t.force.on_probe_w.force, vec3(0.0));
+  // One that is gone stands back no more.
   ASSERT_TRUE(editor.remove(cube));
-  take();
-  ASSERT_EQ(at_height(-0.016), status::ok);
-  EXPECT_FALSE(has(t.flags, tick_flag::body_waits));
+  static_cast<void>(feel.take(editor.prepare()));
+  static_cast<void>(told_at(inside_m));
+  EXPECT_FALSE(stands_back());
+}
+
+TEST(ChangingScene, LetsAStifferBodyStandBack) {
+  const box_set& of = boxes();
+  const auto of_stiffness = [&](double n_per_m) {
+    textured_model model = *of.table;
+    model.surface = material{.stiffness_n_per_m = n_per_m};
+    return std::make_shared<const textured_model>(std::move(model));
+  };
+  const model_ptr soft = of_stiffness(1e4), hard = of_stiffness(4e4);
+  for (const bool stiffer : {true, false}) {
+    scene_editor editor = editor_of(1);
+    const body_handle b = editor.add(stiffer ? soft : hard, of.field_of(of.table), pose{}).value();
+    plane_renderer feel = make_plane_renderer(editor, {.reach_m = reach_m}).value();
+    tick t;
+    const auto deepest = [&] {
+      const pose T_wa{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, table_half.z + tool_half.z - 4e-4)};
+      EXPECT_EQ(feel.step({T_wa, feel.placed()->T_wb}, t), status::ok);
+      double most_m = -1.0;
+      for (const support_plane& p : t.planes) most_m = std::max(most_m, p.depth_m);
+      return most_m;
+    };
+    const double was_m = deepest();
+    ASSERT_TRUE(editor.exchange(b, stiffer ? hard : soft, of.field_of(of.table)));
+    static_cast<void>(feel.take(editor.prepare()));
+    EXPECT_NEAR(deepest(), stiffer ? 0.25 * was_m : was_m, 1e-9);
+    EXPECT_EQ(has(t.flags, tick_flag::stands_back), stiffer);
+  }
 }
 
 // A control: the ratio of what a tick takes with the tree to what it takes with a look at each body.
