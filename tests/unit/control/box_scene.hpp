@@ -1,9 +1,12 @@
 // Boxes that a probe, a box too, is pressed on: models and depth fields, made once in a program.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 
+#include "asperity/core/math.hpp"
+#include "asperity/core/pose.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/model/scene.hpp"
 #include "support/small_models.hpp"
@@ -23,6 +26,13 @@ struct box_scene {
     return made->fixed[m == table ? 0 : (m == rough ? 1 : 2)];
   }
 };
+
+/// The probe with a corner down, where few of its samples are near, and the corner's distance from its middle.
+[[nodiscard]] inline quat corner_down() {
+  const vec3 corner = glm::normalize(tool_half_m), down(0.0, 0.0, -1.0);
+  return exp_rotation(std::acos(glm::dot(corner, down)) * glm::normalize(glm::cross(corner, down)));
+}
+[[nodiscard]] inline double corner_m() { return glm::length(tool_half_m); }
 
 /// A probe; a table and the same with ridges of 50 um; a cube.
 [[nodiscard]] inline const box_scene& boxes() {
