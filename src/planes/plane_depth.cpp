@@ -223,19 +223,25 @@ void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) no
 }
 
 void plane_depth::stand_back(const near_samples& found, std::span<near_plane> out) noexcept {
-  for (way& w : ways_) w.deepest_m = -std::numeric_limits<double>::infinity();
+  for (way& w : ways_) w.deepest_m = w.bound_m = -std::numeric_limits<double>::infinity();
   for (const near_patch& patch : found.patches()) {
-    double& deepest_m = ways_[patch.body].deepest_m;
+    way& w = ways_[patch.body];
     for (const near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
-      deepest_m = std::max(deepest_m, p.plane.depth_m);
+      w.deepest_m = std::max(w.deepest_m, p.plane.depth_m);
     }
+  }
+  // Where a probe has left it so fast that nothing of it was read, a bound will do.
+  for (const near_patch& patch : found.patches()) {
+    way& w = ways_[patch.body];
+    w.bound_m = std::max(w.bound_m, patch.in_other.most_m);
   }
   come_ = false;
   for (way& w : ways_) {
     if (std::exchange(w.comes, false)) {
       w.back_m = w.deepest_m - w.was_m > let_in_m ? w.deepest_m - w.was_m : 0.0;
     } else {
-      w.back_m = std::max(0.0, std::min(w.back_m, w.deepest_m + reach_m_));
+      const bool was_read = w.deepest_m > w.back_m - 1.25 * told_m_;
+      w.back_m = std::max(0.0, std::min(w.back_m, (was_read ? w.deepest_m : w.bound_m) + told_m_));
     }
     come_ = come_ || w.back_m > 0.0;
   }
@@ -270,7 +276,10 @@ void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
 void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
                        std::span<near_plane> out) noexcept {
   // Gaps up to this are reported whatever lies before them.
-  const double always_m = std::min(reach_m_ / 9.0, told_m_ / 5.0);
+  const double back_m = ways_[patch.body].back_m;
+  const double always_m = std::min(reach_m_ / 9.0, told_m_ / 5.0) - back_m;
+  // What stands back is read a little further than it is told, so that it comes forward as the probe leaves it.
+  const double least_m = back_m > 0.0 ? back_m - 1.25 * told_m_ : -told_m_;
   // The pose alone decides which patches have a plane, and only these are compared with others. So it decides which
   // planes are reported; a patch without a plane may be listed or not.
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
@@ -281,8 +290,8 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
   };
   move();
   const auto least_that_matters_m = [&]() noexcept {
-    if (group == nullptr) return -told_m_;
-    return std::max(-told_m_, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
+    if (group == nullptr) return least_m;
+    return std::max(least_m, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
   };
   double above_m = least_that_matters_m();
   const auto most_of_patch_m = leaf_reader::rounded_up(patch.in_other.most_m);
@@ -329,11 +338,12 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
     // Most patches are too far away for any motion of this length.
     asked.since_m +=
         static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
-    if (!(static_cast<double>(asked.most_m + asked.since_m) > above_m)) continue;
     const near_patch& patch = found.patches()[p];
     const way& of = ways_[patch.body];
+    const double deeper_m = above_m + of.back_m;
+    if (!(static_cast<double>(asked.most_m + asked.since_m) > deeper_m)) continue;
     const leaf_reader& reader = reading.of(patch, of.sinking_m);
-    const double least_m = std::max(above_m, come_to(asked, patch, reader, moved.angular) - told_m_);
+    const double least_m = std::max(deeper_m, come_to(asked, patch, reader, moved.angular) - told_m_ + of.back_m);
     if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     known_->open(asked, patch);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {

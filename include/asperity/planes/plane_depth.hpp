@@ -43,8 +43,8 @@ struct plane_scene;
 /// A body of a scene that changes may come into it (be added, exchanged or placed) where the probe is. Where it would be
 /// deeper in the probe than what was in its slot before, by more than let_in_m, it stands back: its surface is felt that
 /// much further in, so that it pushes as hard as what was there, and flags() tell it (tick_flag::stands_back). It comes
-/// forward behind a probe that leaves it, a reach away from it, so a change puts no more energy into the probe than
-/// springs that are let_in_m deeper hold.
+/// forward behind a probe that leaves it, as far away as gaps are told, so a change puts no more energy into the probe
+/// than springs that are let_in_m deeper hold.
 ///
 /// A reading whose depth is -infinity stands for a leaf that has no plane.
 class ASPERITY_API plane_depth {
@@ -122,11 +122,11 @@ class ASPERITY_API plane_depth {
   struct way {
     pose T_ba{}, before_ba{}, before_ab{};
     double chord = 0.0;
-    double sinking_m = 0.0;  // of a sample that looks away
-    bool comes = false;      // since the last tick ...
-    double was_m = 0.0;      // ... in the place of one that was so deep
-    double back_m = 0.0;     // its surface stands back by this
-    double deepest_m = 0.0;  // of its planes, where bodies come or stand back
+    double sinking_m = 0.0;                 // of a sample that looks away
+    bool comes = false;                     // since the last tick ...
+    double was_m = 0.0;                     // ... in the place of one that was so deep
+    double back_m = 0.0;                    // its surface stands back by this
+    double deepest_m = 0.0, bound_m = 0.0;  // of its planes and patches, where bodies come or stand back
   };
   std::vector<way> ways_;
   const plane_scene* placed_ = nullptr;
