@@ -51,10 +51,12 @@ class mailbox {
     full_.store(true, std::memory_order_release);
     return true;
   }
-  /// Takes the value that was posted. Consumer only. @return false where there is none
-  [[nodiscard]] bool take(T& out) noexcept {
+  /// Gives the value that was posted to use(T&&); until that returns, the mailbox is full. Consumer only.
+  /// @return false where there is none
+  template <class Use>
+  bool take(Use&& use) noexcept {
     if (!full()) return false;
-    out = std::move(value_);
+    use(std::move(value_));
     full_.store(false, std::memory_order_release);
     return true;
   }
@@ -75,25 +77,22 @@ class scene_hand_over {
   [[nodiscard]] bool pending() const noexcept { return next_.full(); }
   /// Offers a scene, and frees the one that came back. Editing thread. @return false while another one is pending
   [[nodiscard]] bool offer(scene_ptr next) {
+    if (pending()) return false;
     collect();
     return next_.post(std::move(next));
   }
   /// Frees the scene that came back, if one did. Editing thread.
   void collect() {
-    scene_ptr old;
-    static_cast<void>(old_.take(old));
+    old_.take([](scene_ptr&& old) { const scene_ptr freed = std::move(old); });
   }
 
   /// Gives the scene that waits to exchange(next), which returns the one that it replaces. Contact thread.
   /// @return whether there was one   @rt safe
   template <class Exchange>
   bool take(Exchange&& exchange) noexcept {
-    // Where the last scene still waits to be freed there is no room for another one.
-    if (old_.full()) return false;
-    scene_ptr next;
-    if (!next_.take(next)) return false;
-    static_cast<void>(old_.post(exchange(std::move(next))));
-    return true;
+    // A scene is pending until the one before has been given back. So there is room for that one whenever there is a
+    // next one: offer() has made it.
+    return next_.take([&](scene_ptr&& next) { static_cast<void>(old_.post(exchange(std::move(next)))); });
   }
 
  private:

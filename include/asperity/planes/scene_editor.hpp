@@ -68,8 +68,8 @@ class ASPERITY_API scene_editor {
   ///         commit
   template <class HandOver>
   [[nodiscard]] result<std::uint64_t> commit(HandOver& to) {
-    to.collect();
     if (to.pending()) return busy();
+    to.collect();
     if (!changed_) return version_;
     changed_ = !to.offer(prepare());
     return version_;
