@@ -273,6 +273,24 @@ TEST(changing_session, moves_nobody_else_in_its_slot) {
   tell(table, 0.002);
   for (int i = 0; i < 5; ++i) s.step();
   EXPECT_EQ(place(), 0.003);
+  // One that stood far away and is moved under the probe is found there.
+  ASSERT_TRUE(s.editor.remove(next));
+  const body_handle far =
+      s.editor.add(boxes().table, boxes().field_of(boxes().table), {quat(1, 0, 0, 0), {0, 0, -1.0}}).value();
+  s.step_to(s.commit().value());
+  for (int i = 0; i < 300; ++i) s.step();
+  EXPECT_EQ(s.on->device().observer().last.planes, 0U);
+  const double below_m = s.on->device().observer().last.T_wa.position.z - touch_m - 3e-4;
+  for (int i = 0; i < 5; ++i) {
+    tell(far, below_m);
+    s.step();
+  }
+  EXPECT_GT(s.on->device().observer().last.planes, 0U);
+  ASSERT_TRUE(s.editor.remove(far));
+  const body_handle again = s.editor.add(boxes().table, boxes().field_of(boxes().table), at_origin).value();
+  s.step_to(s.commit().value());
+  tell(again, 0.003);
+  for (int i = 0; i < 5; ++i) s.step();
   // A version in which it stays leaves it where it was moved to.
   ASSERT_TRUE(s.editor.add(boxes().cube, boxes().field_of(boxes().cube), {quat(1, 0, 0, 0), {0, 0, 1.0}}));
   s.step_to(s.commit().value());
