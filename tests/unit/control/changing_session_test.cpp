@@ -86,12 +86,17 @@ struct edited_session {
       for (const body_wrench& w : felt.list) stale += of.bodies.fixed[w.body] ? 0U : 1U;
       EXPECT_EQ(felt.version, on->scene_in_use().version);
     }
+    if (felt.version != last_version) rise_m = std::max(rise_m, r.overlap_m - last_overlap_m);
+    last_version = felt.version;
+    last_overlap_m = r.overlap_m;
     const double delivered_j = dev.delivered_j() - r.from_bodies_j;
     surplus_j = std::max(-0.1, surplus_j + delivered_j - before_j);
     most_surplus_j = std::max(most_surplus_j, surplus_j);
     before_j = delivered_j;
   }
   double most_surplus_j = 0.0;
+  double rise_m = 0.0, last_overlap_m = 0.0;  // by how much an overlap was deeper in the first tick of a version
+  std::uint64_t last_version = 0;
   [[nodiscard]] double force_n() const { return glm::length(on->device().observer().last.on_hand_d.force); }
 };
 
@@ -118,7 +123,7 @@ TEST(changing_session, feels_nothing_of_a_body_that_was_removed) {
     const scene_use in_use = s.on->scene_in_use();
     EXPECT_EQ(in_use.tick, s.on->device_ticks());
     EXPECT_EQ(in_use.time_ns, s.on->device().observer().last.time_ns);
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 200; ++i) {
       EXPECT_TRUE(s.on->felt().list.empty());
       EXPECT_EQ(s.on->device().observer().last.planes, 0U);
       s.step();
@@ -174,10 +179,10 @@ TEST(changing_session, comes_forward_behind_the_hand) {
 
 // Light and firm hands, 200 Hz to 10 kHz, and a change every few hundredths of a second.
 TEST(changing_session, makes_no_energy) {
-  const std::uint64_t seed = fresh_seed("changing_session.makes_no_energy", "10 sessions, 60 at length");
-  double worst_j = 0.0;
+  const std::uint64_t seed = fresh_seed("changing_session.makes_no_energy", "5 sessions, 60 at length");
+  double worst_j = 0.0, worst_rise_m = 0.0;
   std::uint64_t changes = 0, touched = 0;
-  const int sessions = extent(10, 60);
+  const int sessions = extent(5, 60);
   for (int k = 0; k < sessions; ++k) {
     drawn d(seed_of(seed, "session", static_cast<std::uint64_t>(k)));
     const double hz[] = {200, 500, 1000, 4000, 10000};
@@ -223,13 +228,18 @@ TEST(changing_session, makes_no_energy) {
     }
     EXPECT_EQ(s.stale, 0U) << "session " << k;
     EXPECT_EQ(s.on->device().gate().fault(), gate_fault::none) << "session " << k;
-    std::printf("  session %d, %g Hz: %.1f uJ, back %llu\n", k, hz[k % 5], 1e6 * s.most_surplus_j,
-                static_cast<unsigned long long>(s.back));
+    std::printf(
+        "  session %d, %g Hz: surplus %.1f uJ, overlap at a change up by %.1f um, %llu ticks with one that stands "
+        "back\n",
+        k, hz[k % 5], 1e6 * s.most_surplus_j, 1e6 * s.rise_m, static_cast<unsigned long long>(s.back));
     worst_j = std::max(worst_j, s.most_surplus_j);
+    worst_rise_m = std::max(worst_rise_m, s.rise_m);
   }
   std::printf("  %llu changes, the hand in touch at %llu; most surplus %.1f uJ\n",
               static_cast<unsigned long long>(changes), static_cast<unsigned long long>(touched), 1e6 * worst_j);
-  EXPECT_LE(worst_j, 1e-3);
+  EXPECT_LE(worst_j, rounding_j);
+  // As much as it may come as it is, and what a hand does in a tick of 200 Hz.
+  EXPECT_LE(worst_rise_m, plane_depth::let_in_m + 4e-5);
   EXPECT_GT(touched, changes / 10);
 }
 
