@@ -141,7 +141,7 @@ plane_finder::sphere plane_finder::around(const field_body& body) noexcept {
   return out;
 }
 
-plane_body make_plane_body(const field_body& body, double probe_diagonal_m, double diagonal_m) {
+body_facts facts_of(const field_body& body, double probe_diagonal_m, double diagonal_m) {
   const plane_finder::sphere s = plane_finder::around(body);
   return {s.centre_b, s.radius_m, field_reach::of(body.field).half_m, std::min(probe_diagonal_m, diagonal_m)};
 }

@@ -37,12 +37,12 @@ class plane_watch {
     listed_.reserve(fixed_.size());
   }
   /// Of a scene that changes: every body that comes into it is told by forget().
-  plane_watch(const plane_body& probe, std::size_t slots) : probe_{probe.half_m}, fixed_(slots) {
+  plane_watch(const body_facts& probe, std::size_t slots) : probe_{probe.half_m}, fixed_(slots) {
     listed_.reserve(slots);
   }
 
   /// Another body is in a slot: it is watched from now on. @rt safe
-  void forget(std::size_t slot, const plane_body& now) noexcept {
+  void forget(std::size_t slot, const body_facts& now) noexcept {
     watched& w = fixed_[slot];
     w.of_probe.forget();
     w.of_fixed.forget();

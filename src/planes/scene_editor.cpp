@@ -28,7 +28,7 @@ scene_editor::scene_editor(model_ptr probe, field_body_ptr made, const scene_lim
                            const field_body_settings& fields)
     : probe_(std::move(probe)),
       probe_field_(std::move(made)),
-      probe_facts_(make_plane_body(*probe_field_, probe_->box.diagonal(), probe_->box.diagonal())),
+      probe_facts_(facts_of(*probe_field_, probe_->box.diagonal(), probe_->box.diagonal())),
       limits_(limits),
       fields_(fields),
       slots_(limits.bodies) {}
@@ -73,7 +73,7 @@ result<scene_editor::slot> scene_editor::fit(const model_ptr& model, field_body_
   }
   slot out;
   out.model = model;
-  out.facts = make_plane_body(*made, probe_->box.diagonal(), model->box.diagonal());
+  out.facts = facts_of(*made, probe_->box.diagonal(), model->box.diagonal());
   out.field = std::move(made);
   return out;
 }

@@ -16,7 +16,7 @@
 namespace asperity {
 
 class known_branches;
-struct plane_body;
+struct body_facts;
 struct plane_scene;
 
 /// Lists the patches of samples whose depth may be more than -reach, with a bound of it: of the probe in each fixed
@@ -51,7 +51,7 @@ class ASPERITY_API plane_finder {
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_, near_); }
 
  private:
-  friend ASPERITY_API plane_body make_plane_body(const field_body&, double, double);
+  friend ASPERITY_API body_facts facts_of(const field_body&, double, double);
   // Nothing of two bodies whose spheres are further apart than the reach is listed.
   struct sphere {
     vec3 centre_b{0.0};

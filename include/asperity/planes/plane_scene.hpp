@@ -16,7 +16,7 @@ namespace asperity {
 class body_tree;
 
 /// What a plane renderer looks up of a body in every tick. The same for all bodies of one model.
-struct plane_body {
+struct body_facts {
   vec3 centre_b{0.0};       ///< of the sphere beyond whose reach nothing of the body is listed; body frame
   double radius_m = 0.0;    ///< of that sphere
   double half_m = 0.0;      ///< half the thickness of its thinnest parts
@@ -26,15 +26,14 @@ struct plane_body {
 /// A placed_scene with depth fields and the tree of its bodies. Bodies of one model share its field and samples.
 struct plane_scene : placed_scene {
   std::shared_ptr<const field_scene> fields;  ///< fixed: one per slot, null where it is free
-  std::vector<plane_body> of;                 ///< one per slot
-  plane_body probe{};
+  std::vector<body_facts> of;                 ///< one per slot
+  body_facts probe{};
   std::shared_ptr<const body_tree> tree;  ///< of the bodies where this version has them
   std::size_t most_balls = 0;             ///< that the sample_tree of a fixed body may have
 };
 
 /// What a plane renderer looks up of a body. Reads its whole field; not for a tick.
 /// @param probe_diagonal_m,diagonal_m of the boxes of the probe's model and the body's
-[[nodiscard]] ASPERITY_API plane_body make_plane_body(const field_body& body, double probe_diagonal_m,
-                                                      double diagonal_m);
+[[nodiscard]] ASPERITY_API body_facts facts_of(const field_body& body, double probe_diagonal_m, double diagonal_m);
 
 }  // namespace asperity

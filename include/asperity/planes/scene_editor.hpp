@@ -96,7 +96,7 @@ class ASPERITY_API scene_editor {
     pose T_wb{};
     std::uint32_t generation = 0;  // of the last body that was here
     std::uint64_t since = 0;
-    plane_body facts{};
+    body_facts facts{};
   };
 
   scene_editor(model_ptr probe, field_body_ptr made, const scene_limits& limits, const field_body_settings& fields);
@@ -112,7 +112,7 @@ class ASPERITY_API scene_editor {
 
   model_ptr probe_;
   field_body_ptr probe_field_;
-  plane_body probe_facts_;
+  body_facts probe_facts_;
   scene_limits limits_;
   field_body_settings fields_;
   std::vector<slot> slots_;
