@@ -7,6 +7,8 @@ struct pose;
 struct wrench;
 struct scene;
 struct scene_pose;
+struct placed_scene;
+struct body_handle;
 struct textured_model;
 struct field_body;
 
@@ -18,6 +20,8 @@ struct support_plane;
 
 struct least_motion_renderer_settings;
 struct plane_renderer_settings;
+struct plane_scene;
+class scene_editor;
 struct window_renderer_settings;
 class any_renderer;
 class any_depth;

@@ -64,6 +64,19 @@ void friction::forget() noexcept {
   slips_ = leaves_out_ = false;
 }
 
+void friction::forget(std::uint32_t body) noexcept {
+  std::size_t kept = 0;
+  for (const bristle& b : bristles_) {
+    if (b.body == body) {
+      energy_.lost_j += b.stored_j;
+      energy_.stored_j -= b.stored_j;
+    } else {
+      bristles_[kept++] = b;
+    }
+  }
+  bristles_.truncate(kept);
+}
+
 double friction::coefficient(const bristle& b, double slip_m_per_s) const noexcept {
   const double ratio = slip_m_per_s / settings_.stribeck_m_per_s;
   return b.dynamic_coefficient + (b.static_coefficient - b.dynamic_coefficient) * std::exp(-ratio * ratio);

@@ -51,7 +51,7 @@ std::size_t field_scene::heap_bytes() const noexcept {
   std::size_t bytes = asperity::heap_bytes(fixed) + memory_bytes(*probe);
   for (auto b = fixed.begin(); b != fixed.end(); ++b) {
     const bool counted = *b == probe || std::find(fixed.begin(), b, *b) != b;
-    if (!counted) bytes += memory_bytes(**b);
+    if (*b && !counted) bytes += memory_bytes(**b);
   }
   return bytes - kept_by_models_bytes;
 }

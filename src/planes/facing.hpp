@@ -25,12 +25,17 @@ struct cosines {
           std::cos(std::min(cone_rad + none_rad, std::numbers::pi))};
 }
 
+/// By how much a sample sinks that does not count at all, m, where the smallest body's box has this diagonal.
+[[nodiscard]] inline double sinking_m(double smallest_diagonal_m) noexcept {
+  constexpr double of_the_diagonal = 0.03;
+  return of_the_diagonal * smallest_diagonal_m;
+}
+
 /// By how much a sample of a scene sinks that does not count at all, m: see plane_depth.
 [[nodiscard]] inline double sinking_m(const scene& of) noexcept {
-  constexpr double of_the_diagonal = 0.03;
   double smallest_m = of.probe->box.diagonal();
   for (const model_ptr& b : of.fixed) smallest_m = std::min(smallest_m, b->box.diagonal());
-  return of_the_diagonal * smallest_m;
+  return sinking_m(smallest_m);
 }
 
 }  // namespace asperity::facing

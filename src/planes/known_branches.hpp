@@ -84,7 +84,9 @@ class branch_bounds {
 class known_branches {
  public:
   /// Takes all memory.
-  known_branches(const field_scene& bodies, const vec3& centre_of_mass_a) : centre_of_mass_a_(centre_of_mass_a) {
+  /// @param most_balls of the trees of bodies that may come into the scene; 0: it does not change
+  known_branches(const field_scene& bodies, const vec3& centre_of_mass_a, std::size_t most_balls = 0)
+      : centre_of_mass_a_(centre_of_mass_a) {
     const detail::coarse_grid& grid = bodies.probe->field.smooth;
     vec3 far(0.0);
     for (int k = 0; k < 3; ++k) {
@@ -93,8 +95,9 @@ class known_branches {
           std::max(std::fabs(grid.low[k] - centre_of_mass_a[k]), std::fabs(grid.low[k] + side_m - centre_of_mass_a[k]));
     }
     lever_m_ = std::sqrt(glm::dot(far, far)) + branch_bounds::deepest_m;
-    std::size_t most_balls = 0;
-    for (const field_body_ptr& b : bodies.fixed) most_balls = std::max(most_balls, b->samples.balls());
+    for (const field_body_ptr& b : bodies.fixed) {
+      if (b) most_balls = std::max(most_balls, b->samples.balls());
+    }
     rooms_.resize(std::min(most_rooms, bodies.fixed.size()));
     for (room& r : rooms_) {
       r.of_probe = branch_bounds(bodies.probe->samples.balls(), most_opened);
@@ -137,6 +140,14 @@ class known_branches {
     }
     r->near_in = tick_;
     return {&r->of_probe, &r->of_fixed};
+  }
+
+  /// Nothing is known of a body any more: another one is in its place. @rt safe
+  void forget(std::uint32_t body) noexcept {
+    room* const r = find(body);
+    if (r == nullptr) return;
+    r->body = nobody;
+    r->near_in = 0;
   }
 
   /// Notes that no sample of a ball is deeper. @rt safe

@@ -68,6 +68,14 @@ class known_depths {
     }
   }
 
+  /// Nothing is known of a body's samples any more: another one is in its place. @rt safe
+  void forget(std::uint32_t body) noexcept {
+    for (std::size_t l = 0; l < now_.leaves.size(); ++l) {
+      if (now_.leaves[l].body != body) continue;
+      for (float& m : now_.range(l, now_.most_m)) m = std::numeric_limits<float>::infinity();
+    }
+  }
+
   /// Bounds of a leaf's samples, m; +infinity where nothing is known. Fewer than the leaf has where a leaf is larger
   /// than the tree's, or the list is full.
   [[nodiscard]] std::span<float> of(std::size_t leaf) noexcept { return now_.range(leaf, std::span(now_.most_m)); }

@@ -36,18 +36,18 @@ trial_motions trials_within(double reach_m) noexcept {
 // Readers of a pose, one for the patches of a body on either side; patches mostly come in long rows of the same two.
 class readers {
  public:
-  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w, double sinking_m) noexcept
-      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), sinking_m_(sinking_m) {}
+  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w) noexcept
+      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w) {}
 
-  [[nodiscard]] const leaf_reader& of(const near_patch& patch) noexcept {
+  [[nodiscard]] const leaf_reader& of(const near_patch& patch, double sinking_m) noexcept {
     std::optional<leaf_reader>& out = patch.of_probe ? of_probe_ : of_fixed_;
     if (out && out->reads(patch)) return *out;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[patch.body];
     const pose &T_wa = at_->T_wa, &T_wb = at_->T_wb[patch.body];
     if (patch.of_probe) {
-      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m_, work_);
+      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m, work_);
     } else {
-      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m_, work_);
+      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m, work_);
     }
     return *out;
   }
@@ -57,7 +57,6 @@ class readers {
   const field_scene* bodies_;
   const scene_pose* at_;
   vec3 c_a_w_;
-  double sinking_m_;
   depth_work work_;
   std::optional<leaf_reader> of_probe_, of_fixed_;
 };
@@ -81,6 +80,13 @@ double come_to(known_depths::asked_patch& asked, const near_patch& patch, const 
   return asked.slopes.growth_m(come, radius_m + here_m);
 }
 
+// Of a depth on one surface, the part that pushes as much or less on another one.
+double share_of_push(const std::optional<surface_pair>& on, const std::optional<surface_pair>& now) noexcept {
+  if (!on && !now) return 1.0;
+  if (!on || !now) return 0.0;
+  return std::min(1.0, on->stiffness_n_per_m / now->stiffness_n_per_m);
+}
+
 }  // namespace
 
 plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
@@ -89,13 +95,36 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
       told_m_(reach_m),
-      sinking_m_(facing::sinking_m(of)),
       ways_(of.fixed.size()),
       watch_(std::make_unique<plane_watch>(*bodies_, of)),
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
       branches_(std::move(branches)),
       asked_at_(std::make_unique<vec6>()) {
+  for (way& w : ways_) w.sinking_m = facing::sinking_m(of);
+  reserve(most);
+}
+
+plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t most,
+                         std::shared_ptr<known_branches> branches)
+    : bodies_(first.fields),
+      centre_of_mass_a_(first.bodies.probe->mass.centre_of_mass),
+      reach_m_(reach_m),
+      told_m_(reach_m),
+      ways_(first.of.size()),
+      watch_(std::make_unique<plane_watch>(first.probe, first.of.size())),
+      met_(std::make_unique<first_met>(trials_within(reach_m))),
+      known_(std::make_unique<known_depths>(most)),
+      branches_(std::move(branches)),
+      asked_at_(std::make_unique<vec6>()) {
+  reserve(most);
+  take(first);
+  // What is there from the beginning does not stand back.
+  for (way& w : ways_) w.comes = false;
+  come_ = false;
+}
+
+void plane_depth::reserve(std::size_t most) {
   detail::reserve_resident(reported_, most);
   detail::reserve_resident(order_, most);
   for (const field_sample& s : bodies_->probe->samples.samples()) {
@@ -106,15 +135,41 @@ plane_depth::plane_depth(plane_depth&&) noexcept = default;
 plane_depth& plane_depth::operator=(plane_depth&&) noexcept = default;
 plane_depth::~plane_depth() = default;
 
+void plane_depth::take(const plane_scene& next) noexcept {
+  const std::uint64_t before = placed_ != nullptr ? placed_->version : 0;
+  for (way& w : ways_) w.deepest_m = 0.0;
+  for (const support_plane& p : reported_) {
+    way& w = ways_[p.body];
+    w.deepest_m = std::max(w.deepest_m, p.depth_m);
+  }
+  for (std::uint32_t b = 0; b < ways_.size(); ++b) {
+    if (!(next.since[b] > before)) continue;
+    way& w = ways_[b];
+    const double share = placed_ != nullptr ? share_of_push(placed_->surfaces[b], next.surfaces[b]) : 0.0;
+    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m), .comes = true, .was_m = share * w.deepest_m};
+    come_ = true;
+    watch_->forget(b, next.of[b]);
+    known_->forget(b);
+    if (branches_) branches_->forget(b);
+  }
+  bodies_ = next.fields;
+  placed_ = &next;
+}
+
+const placed_scene* plane_depth::placed() const noexcept { return placed_; }
+
 status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
-  readers reading(*bodies_, at, c_a_w, sinking_m_);
+  readers reading(*bodies_, at, c_a_w);
+  const auto reader_of = [&](const near_patch& patch) noexcept -> const leaf_reader& {
+    return reading.of(patch, ways_[patch.body].sinking_m);
+  };
   reported_.clear();
   met_->clear();
   told_m_ = std::min(reach_m_, at.gaps_m);
-  learn_ways(at);
+  learn_ways(at, found);
   known_->begin(found, [&](const near_patch& patch, double most_m) noexcept {
-    const leaf_reader& reader = reading.of(patch);
+    const leaf_reader& reader = reader_of(patch);
     const way& w = ways_[patch.body];
     const vec3 now_y = reader.in_field(patch.ball.centre_b);
     const vec3 before_y = (patch.of_probe ? w.before_ba : w.before_ab) * patch.ball.centre_b;
@@ -129,14 +184,15 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   sort_by_depth(found.patches());
   for (const std::uint32_t i : order_) {
     const near_patch& patch = found.patches()[i];
-    read(patch, found.leaves_of(patch), reading.of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
+    read(patch, found.leaves_of(patch), reader_of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
+  if (come_) stand_back(found, out);
   for (const near_plane& p : out) {
     if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
   teach(found);
   known_->ask(found, [&](const near_patch& patch) noexcept {
-    const leaf_reader& reader = reading.of(patch);
+    const leaf_reader& reader = reader_of(patch);
     const vec3 r_w = reader.from_centre_of_mass_w(patch.ball.centre_b);
     return known_depths::asked_patch{.middle_y = reader.in_field(patch.ball.centre_b),
                                      .arm_m = std::sqrt(glm::dot(r_w, r_w)) + patch.ball.radius_m};
@@ -147,17 +203,52 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   known_motion_ = {-found.most_left_m(), -found.most_left_m() / farthest_m_};
   for (const near_leaf& leaf : found.leaves()) work_.listed += leaf.count;
   flags_ = watch_->look(*bodies_, at, reported_, c_a_w);
+  if (come_) flags_ |= tick_flag::stands_back;
   return status::ok;
 }
 
-void plane_depth::learn_ways(const scene_pose& at) noexcept {
-  for (std::size_t b = 0; b < ways_.size(); ++b) {
-    way& w = ways_[b];
+void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) noexcept {
+  // Patches come body by body. Nothing is known of one that was not listed in the tick before.
+  const near_patch* last = nullptr;
+  for (const near_patch& patch : found.patches()) {
+    if (last != nullptr && last->body == patch.body) continue;
+    last = &patch;
+    way& w = ways_[patch.body];
     w.before_ba = w.T_ba;
     w.before_ab = inverse(w.T_ba);
-    w.T_ba = inverse(at.T_wb[b]) * at.T_wa;
+    w.T_ba = inverse(at.T_wb[patch.body]) * at.T_wa;
     const quat turn = glm::conjugate(w.before_ba.rotation) * w.T_ba.rotation;
     w.chord = 2.0 * std::sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
+  }
+}
+
+void plane_depth::stand_back(const near_samples& found, std::span<near_plane> out) noexcept {
+  for (way& w : ways_) w.deepest_m = w.bound_m = -std::numeric_limits<double>::infinity();
+  for (const near_patch& patch : found.patches()) {
+    way& w = ways_[patch.body];
+    for (const near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
+      w.deepest_m = std::max(w.deepest_m, p.plane.depth_m);
+    }
+  }
+  // Where a probe has left it so fast that nothing of it was read, a bound will do.
+  for (const near_patch& patch : found.patches()) {
+    way& w = ways_[patch.body];
+    w.bound_m = std::max(w.bound_m, patch.in_other.most_m);
+  }
+  come_ = false;
+  for (way& w : ways_) {
+    if (std::exchange(w.comes, false)) {
+      w.back_m = w.deepest_m - w.was_m > let_in_m ? w.deepest_m - w.was_m : 0.0;
+    } else {
+      const bool was_read = w.deepest_m > w.back_m - 1.25 * told_m_;
+      w.back_m = std::max(0.0, std::min(w.back_m, (was_read ? w.deepest_m : w.bound_m) + told_m_));
+    }
+    come_ = come_ || w.back_m > 0.0;
+  }
+  if (!come_) return;
+  for (const near_patch& patch : found.patches()) {
+    const double back_m = ways_[patch.body].back_m;
+    for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) p.plane.depth_m -= back_m;
   }
 }
 
@@ -185,7 +276,10 @@ void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
 void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
                        std::span<near_plane> out) noexcept {
   // Gaps up to this are reported whatever lies before them.
-  const double always_m = std::min(reach_m_ / 9.0, told_m_ / 5.0);
+  const double back_m = ways_[patch.body].back_m;
+  const double always_m = std::min(reach_m_ / 9.0, told_m_ / 5.0) - back_m;
+  // What stands back is read a little further than it is told, so that it comes forward as the probe leaves it.
+  const double least_m = back_m > 0.0 ? back_m - 1.25 * told_m_ : -told_m_;
   // The pose alone decides which patches have a plane, and only these are compared with others. So it decides which
   // planes are reported; a patch without a plane may be listed or not.
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
@@ -196,8 +290,8 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
   };
   move();
   const auto least_that_matters_m = [&]() noexcept {
-    if (group == nullptr) return -told_m_;
-    return std::max(-told_m_, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
+    if (group == nullptr) return least_m;
+    return std::max(least_m, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
   };
   double above_m = least_that_matters_m();
   const auto most_of_patch_m = leaf_reader::rounded_up(patch.in_other.most_m);
@@ -234,7 +328,7 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
 
 status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
                               const vec6& moved, double above_m, plane_list& out) const noexcept {
-  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, sinking_m_);
+  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
   const double slid_m = std::sqrt(glm::dot(step.linear, step.linear));
@@ -244,15 +338,19 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
     // Most patches are too far away for any motion of this length.
     asked.since_m +=
         static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
-    if (!(static_cast<double>(asked.most_m + asked.since_m) > above_m)) continue;
     const near_patch& patch = found.patches()[p];
-    const leaf_reader& reader = reading.of(patch);
-    const double least_m = std::max(above_m, come_to(asked, patch, reader, moved.angular) - told_m_);
+    const way& of = ways_[patch.body];
+    const double deeper_m = above_m + of.back_m;
+    if (!(static_cast<double>(asked.most_m + asked.since_m) > deeper_m)) continue;
+    const leaf_reader& reader = reading.of(patch, of.sinking_m);
+    const double least_m = std::max(deeper_m, come_to(asked, patch, reader, moved.angular) - told_m_ + of.back_m);
     if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     known_->open(asked, patch);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
-      reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i),
-                         [&](const support_plane& plane) noexcept { keep_deepest(plane, out); });
+      reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i), [&](support_plane plane) noexcept {
+        plane.depth_m -= of.back_m;
+        if (plane.depth_m > above_m) keep_deepest(plane, out);
+      });
     }
     known_->close(asked, patch);
   }

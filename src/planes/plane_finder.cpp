@@ -10,9 +10,12 @@
 
 #include "asperity/core/pose.hpp"
 #include "asperity/field/field_body.hpp"
+#include "asperity/planes/plane_scene.hpp"
 #include "model/body_sphere.hpp"
 #include "planes/ball_bound.hpp"
+#include "planes/body_tree.hpp"
 #include "planes/known_branches.hpp"
+#include "planes/passage.hpp"
 
 namespace asperity {
 namespace {
@@ -138,34 +141,79 @@ plane_finder::sphere plane_finder::around(const field_body& body) noexcept {
   return out;
 }
 
+body_facts facts_of(const field_body& body, double probe_diagonal_m, double diagonal_m) {
+  const plane_finder::sphere s = plane_finder::around(body);
+  return {s.centre_b, s.radius_m, field_reach::of(body.field).half_m, std::min(probe_diagonal_m, diagonal_m)};
+}
+
+plane_finder::plane_finder(const plane_scene& first, double reach_m, std::shared_ptr<known_branches> known)
+    : known_(std::move(known)),
+      probe_{first.probe.centre_b, first.probe.radius_m},
+      fixed_(first.of.size()),
+      reach_m_(reach_m) {
+  detail::reserve_resident(near_, first.of.size());
+  take(first);
+}
+
+void plane_finder::take(const plane_scene& next) noexcept {
+  const std::uint64_t before = placed_ != nullptr ? placed_->version : 0;
+  for (std::size_t b = 0; b < fixed_.size(); ++b) {
+    if (next.since[b] > before) fixed_[b] = {next.of[b].centre_b, next.of[b].radius_m};
+  }
+  bodies_ = next.fields;
+  placed_ = &next;
+}
+
 status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
   out.clear();
   near_bodies_ = 0;
   const double reach_m = std::min(reach_m_, at.gaps_m);
   if (known_) known_->begin(at);
-  // Most bodies of a large scene are left out by this alone.
   const vec3 probe_w = at.T_wa * probe_.centre_b;
-  for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
-    const sphere& body = fixed_[b];
-    const vec3 body_w = at.T_wb[b] * body.centre_b;
-    const double enough_m = looks_to_m(out, reach_m);
-    if (!may_be_within(enough_m, probe_w, probe_.radius_m, body_w, body.radius_m)) {
-      out.leave(probe_.radius_m + body.radius_m - glm::distance(probe_w, body_w));
-      continue;
+  if (placed_ == nullptr || at.version == 0 || at.version != placed_->version) {
+    // Most bodies of a large scene are left out by this alone.
+    for (std::uint32_t b = 0; b < bodies_->fixed.size(); ++b) {
+      if (bodies_->fixed[b]) look_into(b, at, probe_w, reach_m, out);
     }
-    ++near_bodies_;
-    const field_body &A = *bodies_->probe, &B = *bodies_->fixed[b];
-    const pose T_ba = inverse(at.T_wb[b]) * at.T_wa, T_ab = inverse(T_ba);
-    const double most_m = std::max(most_near(A.samples, B.field, T_ba), most_near(B.samples, A.field, T_ab));
-    if (!(most_m > -enough_m)) {
-      out.leave(most_m);
-      continue;
-    }
-    const auto known = known_ ? known_->of(b, at, *bodies_) : known_branches::pair_bounds{};
-    list(A.samples, B.field, T_ba, {.body = b, .of_probe = true}, reach_m, known.of_probe, out);
-    list(B.samples, A.field, T_ab, {.body = b, .of_probe = false}, reach_m, known.of_fixed, out);
+    return out.dropped() > 0 ? status::capacity_reached : status::ok;
   }
+  // No clearance makes the look at a body go on beyond this; the order of bodies is that of their slots.
+  const double farthest_m = looks_to_m(out, reach_m);
+  near_.clear();
+  const auto is_moved = [&](std::uint32_t b) noexcept {
+    return std::find(at.moved.begin(), at.moved.end(), b) != at.moved.end();
+  };
+  out.leave(placed_->tree->find(probe_w, probe_.radius_m, farthest_m, is_moved,
+                                [&](std::uint32_t b) noexcept { near_.push_back(b); }));
+  for (const std::uint32_t b : at.moved) {
+    const bool listed = std::find(near_.begin(), near_.end(), b) != near_.end();
+    if (!listed && b < bodies_->fixed.size() && bodies_->fixed[b]) near_.push_back(b);
+  }
+  std::sort(near_.begin(), near_.end());
+  for (const std::uint32_t b : near_) look_into(b, at, probe_w, reach_m, out);
   return out.dropped() > 0 ? status::capacity_reached : status::ok;
+}
+
+void plane_finder::look_into(std::uint32_t b, const scene_pose& at, const vec3& probe_w, double reach_m,
+                             near_samples& out) noexcept {
+  const sphere& body = fixed_[b];
+  const vec3 body_w = at.T_wb[b] * body.centre_b;
+  const double enough_m = looks_to_m(out, reach_m);
+  if (!may_be_within(enough_m, probe_w, probe_.radius_m, body_w, body.radius_m)) {
+    out.leave(probe_.radius_m + body.radius_m - glm::distance(probe_w, body_w));
+    return;
+  }
+  ++near_bodies_;
+  const field_body &A = *bodies_->probe, &B = *bodies_->fixed[b];
+  const pose T_ba = inverse(at.T_wb[b]) * at.T_wa, T_ab = inverse(T_ba);
+  const double most_m = std::max(most_near(A.samples, B.field, T_ba), most_near(B.samples, A.field, T_ab));
+  if (!(most_m > -enough_m)) {
+    out.leave(most_m);
+    return;
+  }
+  const auto known = known_ ? known_->of(b, at, *bodies_) : known_branches::pair_bounds{};
+  list(A.samples, B.field, T_ba, {.body = b, .of_probe = true}, reach_m, known.of_probe, out);
+  list(B.samples, A.field, T_ab, {.body = b, .of_probe = false}, reach_m, known.of_fixed, out);
 }
 
 }  // namespace asperity

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "asperity/core/memory.hpp"
@@ -12,6 +14,7 @@
 #include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/model/scene.hpp"
+#include "asperity/planes/plane_scene.hpp"
 #include "asperity/render/support_plane.hpp"
 #include "asperity/render/tick_flag.hpp"
 #include "planes/passage.hpp"
@@ -27,11 +30,24 @@ class plane_watch {
  public:
   explicit plane_watch(const field_scene& bodies, const scene& of) : probe_(field_reach::of(bodies.probe->field)) {
     double smallest_m = of.probe->box.diagonal();
-    for (std::size_t b = 0; b < bodies.fixed.size(); ++b) {
-      smallest_m = std::min(smallest_m, of.fixed[b]->box.diagonal());
-      fixed_.push_back({.reach = field_reach::of(bodies.fixed[b]->field)});
+    for (const model_ptr& b : of.fixed) smallest_m = std::min(smallest_m, b->box.diagonal());
+    for (const field_body_ptr& b : bodies.fixed) {
+      fixed_.push_back({.reach = field_reach::of(b->field), .farthest_m = 0.5 * smallest_m});
     }
-    farthest_m_ = 0.5 * smallest_m;
+    listed_.reserve(fixed_.size());
+  }
+  /// Of a scene that changes: every body that comes into it is told by forget().
+  plane_watch(const body_facts& probe, std::size_t slots) : probe_{probe.half_m}, fixed_(slots) {
+    listed_.reserve(slots);
+  }
+
+  /// Another body is in a slot: it is watched from now on. @rt safe
+  void forget(std::size_t slot, const body_facts& now) noexcept {
+    watched& w = fixed_[slot];
+    w.of_probe.forget();
+    w.of_fixed.forget();
+    w.reach = {now.half_m};
+    w.farthest_m = 0.5 * now.smallest_m;
   }
 
   /// @param planes of this tick, with gaps
@@ -39,22 +55,27 @@ class plane_watch {
   /// @pre as many bodies as it was made for   @rt safe
   [[nodiscard]] tick_flag look(const field_scene& bodies, const scene_pose& at, std::span<const support_plane> planes,
                                const vec3& c_a_w) noexcept {
-    for (watched& w : fixed_) w.deepest = nullptr;
+    for (const std::uint32_t b : listed_) fixed_[b].deepest = nullptr;
     for (const support_plane& p : planes) {
-      const support_plane*& deepest = fixed_[p.body].deepest;
-      if (deepest == nullptr || p.depth_m > deepest->depth_m) deepest = &p;
+      watched& w = fixed_[p.body];
+      if (!std::exchange(w.listed, true)) listed_.push_back(p.body);
+      if (w.deepest == nullptr || p.depth_m > w.deepest->depth_m) w.deepest = &p;
     }
     tick_flag out = tick_flag::none;
-    for (std::size_t b = 0; b < fixed_.size(); ++b) {
-      const watched& w = fixed_[b];
+    std::size_t kept = 0;
+    for (const std::uint32_t b : listed_) {
+      watched& w = fixed_[b];
       // Where nothing is near and no point is followed, there is nothing to say.
-      if (w.deepest == nullptr && !w.of_probe.active() && !w.of_fixed.active()) continue;
+      w.listed = w.deepest != nullptr || w.of_probe.active() || w.of_fixed.active();
+      if (!w.listed) continue;
       out |= look_at(b, bodies, at, c_a_w);
+      listed_[kept++] = b;
     }
+    listed_.resize(kept);
     return out;
   }
 
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_, listed_); }
 
  private:
   struct watched {
@@ -62,6 +83,8 @@ class plane_watch {
     passage of_probe{}, of_fixed{};  // a point of the probe in the body's field, and the other way round
     pose T_ba{};
     const support_plane* deepest = nullptr;  // of the planes that look() is given
+    double farthest_m = 0.0;                 // that a hand can have moved the probe from it
+    bool listed = false;
   };
 
   [[nodiscard]] tick_flag look_at(std::size_t b, const field_scene& bodies, const scene_pose& at,
@@ -71,7 +94,7 @@ class plane_watch {
     watched& w = fixed_[b];
     tick_flag out = tick_flag::none;
     constexpr double least_cosine = 0.97;  // of half the turn: half a radian
-    if (glm::distance(T_ba.position, w.T_ba.position) > farthest_m_ ||
+    if (glm::distance(T_ba.position, w.T_ba.position) > w.farthest_m ||
         std::fabs(glm::dot(T_ba.rotation, w.T_ba.rotation)) < least_cosine) {
       w.of_probe.forget();
       w.of_fixed.forget();
@@ -104,7 +127,7 @@ class plane_watch {
 
   field_reach probe_;
   std::vector<watched> fixed_;
-  double farthest_m_ = 0.0;
+  std::vector<std::uint32_t> listed_;  // the bodies that are watched
 };
 
 }  // namespace asperity

@@ -30,6 +30,8 @@ constexpr std::array<flag_words, wall_summary::flags> words{{
      "touch fewer bodies at once"},
     {tick_flag::body_lost, "body_lost", "a moving body was told of too late, or not as a motion, and stood still",
      "tell of it ten times a second or more often, with poses of unit quaternions"},
+    {tick_flag::stands_back, "stands_back", "a body came where the probe was, and is felt further in until it leaves",
+     "put bodies where the probe is not"},
 }};
 
 std::string first_text(std::int64_t first_ns) { return brief(1e-9 * static_cast<double>(first_ns)) + " s"; }

@@ -13,7 +13,7 @@ namespace asperity::command {
 /// Counts the flags of device ticks. Constant size.
 class wall_summary {
  public:
-  static constexpr std::size_t flags = 7;
+  static constexpr std::size_t flags = 8;
 
   void add(const session_record& tick) noexcept;
 

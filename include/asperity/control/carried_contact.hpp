@@ -50,7 +50,7 @@ class carried_contact {
     velocities.clear();
     const vec6 moved = pose_difference(T_wc, contact_->T_wc);
     for (const body_place& then : contact_->bodies) {
-      const body_way* const way = way_of(then.body);
+      const body_way* const way = way_of(then);
       if (way == nullptr) continue;
       const pose T_wb = way->after(part);
       vec6 v;
@@ -89,7 +89,7 @@ class carried_contact {
     double most = 0.0;
     if (!contact_->known.is_limited()) return most;
     for (const body_place& then : contact_->bodies) {
-      const body_way* const way = way_of(then.body);
+      const body_way* const way = way_of(then);
       if (way == nullptr) continue;
       const pose X = way->after(part) * inverse(then.T_wb);
       most = std::max(most, contact_->known.share({X * T_wc.position - T_wc.position, log_rotation(X.rotation)}));
@@ -98,8 +98,10 @@ class carried_contact {
   }
 
  private:
-  [[nodiscard]] const body_way* way_of(std::uint32_t body) const noexcept {
-    const auto found = std::find_if(ways_.begin(), ways_.end(), [&](const body_way& w) { return w.body == body; });
+  [[nodiscard]] const body_way* way_of(const body_place& b) const noexcept {
+    const auto found = std::find_if(ways_.begin(), ways_.end(), [&](const body_way& w) {
+      return w.body == b.body && w.generation == b.generation;
+    });
     return found == ways_.end() ? nullptr : &*found;
   }
 

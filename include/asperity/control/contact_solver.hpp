@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -61,6 +62,11 @@ struct contact_laws {
   [[nodiscard]] double dissipation_s_per_m(std::uint32_t body) const noexcept {
     const surface_pair* const p = pair(body);
     return p != nullptr ? p->dissipation_s_per_m : usual.dissipation_s_per_m;
+  }
+
+  /// Another body is in a slot. Slots beyond the pairs that there were room for go on with the usual law. @rt safe
+  void put(std::uint32_t body, const std::optional<surface_pair>& pair) noexcept {
+    if (body < pairs.size()) pairs[body] = pair;
   }
 
   contact_law usual;

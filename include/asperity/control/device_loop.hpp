@@ -48,6 +48,8 @@ namespace asperity {
 ///   not felt. Letting it go would bury the probe in the body, and the next contact would throw it out.
 /// - Bodies that the application moves (exchange::bodies) are followed from tick to tick (body_follower), and planes go
 ///   with them. What they do to the probe is theirs in the guard's book.
+/// - A contact of another version of a changing scene comes into use as a whole: planes, laws, and whom bristles hold on
+///   to. So a body that was removed is not felt from the tick on that exchange::scene tells.
 /// - Lateness past rate_limits shuts the gate (stalled, contact_stalled, overloaded) while the device may put out.
 /// - A rejected sample: the wanted wrench is zero in this tick, and the probe goes on towards the last good pose. After
 ///   sample_check_settings::reject_limit rejections in a row the gate shuts (bad_samples).
@@ -121,7 +123,9 @@ class device_loop {
         guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0), given_j, raised_j);
         raised_j_ += raised_j;
       }
+      const std::uint64_t version = shared_->contacts.front().version;
       const bool surprised = take_contact(now_ns);
+      take_scene(version, now_ns);
       rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
       probe_status = move_probe(dt_s, accepted, rates);
       if (accepted) transient_.observe(last_seen_.T_dh.position);
@@ -158,6 +162,7 @@ class device_loop {
       felt_bodies& felt = shared_->felt.back();
       felt = motion_.felt();
       felt.time_ns = now_ns;
+      felt.version = shared_->contacts.front().version;
       shared_->felt.publish();
     }
     report(now_ns, verdict, probe_status, guarded, rates, sent.on_hand);
@@ -262,6 +267,18 @@ class device_loop {
            glm::length(change.torque) > rates_.limits().surprise_n_m;
   }
 
+  // A contact of another version of the scene: from this tick on nothing of a body that is gone is felt, and the editing
+  // thread is told. @param before version of the contact that was in use
+  void take_scene(std::uint64_t before, std::int64_t now_ns) noexcept {
+    const linear_contact& contact = shared_->contacts.front();
+    if (contact.version == 0) return;
+    bodies_.keep_only(contact.bodies, contact.time_ns);
+    if (contact.version == before) return;
+    motion_.take_scene(before, contact);
+    shared_->scene.back() = {contact.version, sequence_ + 1, now_ns};
+    shared_->scene.publish();
+  }
+
   [[nodiscard]] pose pose_of_sample() const noexcept { return clutch_.T_wh() * T_hc_; }
 
   // After the guard, which would take a weight from the motors and give it to the hand.
@@ -360,7 +377,7 @@ class device_loop {
     r.unbalanced_n = motion_.pressed().residual_n;
     r.overlap_m = motion_.pressed().deepest_m;
     r.flags = contact.flags | flags_of(motion_, !contact.planes.empty() && probe_status == status::not_finite);
-    if (bodies_.is_lost() || bodies_.refused()) r.flags |= tick_flag::body_lost;
+    if (bodies_.is_lost() || bodies_.refused() || bodies_.gone()) r.flags |= tick_flag::body_lost;
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
     r.surplus_j = guard_.surplus_j();

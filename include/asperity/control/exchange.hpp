@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/moving_bodies.hpp"
@@ -34,6 +36,76 @@ class heartbeat {
   std::atomic<std::uint64_t> beats_{0};
 };
 
+/// Hands single values from one thread to another without a lock: one is on its way at a time, and none is lost. Values
+/// are moved, so that nothing is made or freed on either side.
+/// @rt safe on both sides, where moving a T is
+template <class T>
+class mailbox {
+ public:
+  /// Whether the value that was posted last has not been taken. From either side.
+  [[nodiscard]] bool full() const noexcept { return full_.load(std::memory_order_acquire); }
+  /// Posts a value. Producer only. @return false where the one before was not taken: the value stays with the caller
+  [[nodiscard]] bool post(T&& value) noexcept {
+    if (full()) return false;
+    value_ = std::move(value);
+    full_.store(true, std::memory_order_release);
+    return true;
+  }
+  /// Gives the value that was posted to use(T&&); until that returns, the mailbox is full. Consumer only.
+  /// @return false where there is none
+  template <class Use>
+  bool take(Use&& use) noexcept {
+    if (!full()) return false;
+    use(std::move(value_));
+    full_.store(false, std::memory_order_release);
+    return true;
+  }
+
+ private:
+  T value_{};
+  alignas(64) std::atomic<bool> full_{false};
+};
+
+/// The way of scenes between the thread that edits them and the contact thread: a new one comes, the old one goes back,
+/// because it must not be freed in a tick.
+template <class Scene>
+class scene_hand_over {
+ public:
+  using scene_ptr = std::shared_ptr<const Scene>;
+
+  /// Whether a scene waits to be taken. Editing thread.
+  [[nodiscard]] bool pending() const noexcept { return next_.full(); }
+  /// Offers a scene, and frees the one that came back. Editing thread. @return false while another one is pending
+  [[nodiscard]] bool offer(scene_ptr next) {
+    if (pending()) return false;
+    collect();
+    return next_.post(std::move(next));
+  }
+  /// Frees the scene that came back, if one did. Editing thread.
+  void collect() {
+    old_.take([](scene_ptr&& old) { const scene_ptr freed = std::move(old); });
+  }
+
+  /// Gives the scene that waits to exchange(next), which returns the one that it replaces. Contact thread.
+  /// @return whether there was one   @rt safe
+  template <class Exchange>
+  bool take(Exchange&& exchange) noexcept {
+    // A scene is pending until the one before has been given back. So there is room for that one whenever there is a
+    // next one: offer() has made it.
+    return next_.take([&](scene_ptr&& next) { static_cast<void>(old_.post(exchange(std::move(next)))); });
+  }
+
+ private:
+  mailbox<scene_ptr> next_, old_;
+};
+
+/// Which version of a changing scene the hand feels, and since when.
+struct scene_use {
+  std::uint64_t version = 0;  ///< placed_scene::version; 0: of a scene that never changes, or none yet
+  std::uint64_t tick = 0;     ///< the first device tick with it; the session's first is 1
+  std::int64_t time_ns = 0;   ///< of that tick, on the session's clock
+};
+
 /// Data goes round once: the device thread publishes poses, the contact thread publishes contacts. Neither waits. An
 /// application may tell of moving bodies, from one thread, and take what bodies feel, from one thread.
 struct exchange {
@@ -41,6 +113,7 @@ struct exchange {
   triple_buffer<linear_contact> contacts;  ///< written by the contact thread
   triple_buffer<moving_bodies> bodies;     ///< written by the application
   triple_buffer<felt_bodies> felt;         ///< written by the device thread
+  triple_buffer<scene_use> scene;          ///< written by the device thread, read by whoever edits the scene
   std::atomic<bool> let_go{false};         ///< set by the application; see clutch_settings::by_application
   heartbeat application;                   ///< beaten by the application, never by a loop; see watchdog_ns
 };

@@ -68,7 +68,9 @@ class ASPERITY_API friction {
 
   /// Lets go of all bodies; what the bristles hold is lost.
   void forget() noexcept;
-  /// The same, and the energy book begins anew.
+  /// Lets go of one body: it has been taken away, or another one is in its place. @rt safe
+  void forget(std::uint32_t body) noexcept;
+  /// The same of all, and the energy book begins anew.
   void reset() noexcept {
     forget();
     energy_ = {};

@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "asperity/control/moving_bodies.hpp"
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/model/material.hpp"
 #include "asperity/render/support_plane.hpp"
 
 namespace asperity {
@@ -24,6 +26,13 @@ inline constexpr std::size_t most_selected_planes = 20;
 
 /// Support planes of one contact; dropped() tells how many more were wanted than it could keep.
 using support_planes = fixed_vector<support_plane, most_support_planes>;
+
+/// A body of a changing scene that a contact has planes of.
+struct contact_body {
+  std::uint32_t body = 0;                 ///< its slot
+  std::uint64_t since = 0;                ///< placed_scene::since of the slot
+  std::optional<surface_pair> surface{};  ///< of the probe and it
+};
 
 /// Contact wrench on the probe, linear in the probe's pose: W(q) = W0 + J (q - q0). World axes, torque about c_A.
 /// The probe's frame c here has its origin in the centre of mass c_A and the body's axes.
@@ -45,6 +54,8 @@ struct linear_contact {
   body_places bodies{};               ///< where the moving bodies were at q0; the others stand still
   known_motion known{};               ///< how far the probe may go from q0; unlimited where nobody says
   tick_flag flags = tick_flag::none;  ///< what the planes do not answer
+  std::uint64_t version = 0;          ///< of the scene that was rendered; 0: one that never changes
+  fixed_vector<contact_body, most_support_planes> of{};  ///< whose planes these are; empty where the version is 0
 };
 
 /// How long a contact may be felt. An older one goes on holding the probe, and nothing is put out.

@@ -22,6 +22,8 @@ struct body_motion {
   std::uint32_t body = 0;  ///< index in scene::fixed
   pose T_wb{};             ///< of the body frame b in the world
   twist velocity_w{};      ///< of the origin of b, world axes, m/s and rad/s
+  /// body_handle::generation of the body, in a scene that changes: what is told of one that is gone moves nobody.
+  std::uint32_t generation = 0;
 };
 
 /// What an application tells of all bodies that move, or have moved, at one time. A body that is not listed any more
@@ -35,6 +37,7 @@ struct moving_bodies {
 struct body_place {
   std::uint32_t body = 0;
   pose T_wb{};
+  std::uint32_t generation = 0;
 };
 using body_places = fixed_vector<body_place, most_moving_bodies>;
 
@@ -43,6 +46,7 @@ struct body_way {
   std::uint32_t body = 0;
   pose from_T_wb{};
   vec6 way{};  ///< translation of the origin of b, m, and rotation vector about it, rad; world axes
+  std::uint32_t generation = 0;
 
   /// After a part of its way, 0 to 1. @rt safe
   [[nodiscard]] pose after(double part) const noexcept {
@@ -54,7 +58,7 @@ using body_ways = fixed_vector<body_way, most_moving_bodies>;
 
 /// The way that a body goes in dt_s seconds. @rt safe
 [[nodiscard]] inline body_way way_of(const body_motion& m, double dt_s) noexcept {
-  return {m.body, m.T_wb, dt_s * to_vec6(m.velocity_w)};
+  return {m.body, m.T_wb, dt_s * to_vec6(m.velocity_w), m.generation};
 }
 
 /// Follows the bodies of a session in its device ticks.
@@ -77,7 +81,7 @@ class body_follower {
     refused_ = told.list.dropped() > 0;
     for (followed& f : bodies_) f.is_told = false;
     for (const body_motion& m : told.list) {
-      followed* const f = is_plausible(m) ? find_or_add(m.body) : nullptr;
+      followed* const f = is_plausible(m) ? find_or_add(m, now_ns) : nullptr;
       if (f == nullptr) {
         refused_ = true;
         continue;
@@ -112,14 +116,33 @@ class body_follower {
     lost_ = false;
     for (followed& f : bodies_) {
       const pose T_wb = f.at(now_ns);
-      static_cast<void>(ways_.push_back({f.told.body,
-                                         f.last_T_wb,
-                                         {T_wb.position - f.last_T_wb.position,
-                                          log_rotation(T_wb.rotation * glm::conjugate(f.last_T_wb.rotation))}}));
-      static_cast<void>(places_.push_back({f.told.body, T_wb}));
+      static_cast<void>(ways_.push_back(
+          {f.told.body,
+           f.last_T_wb,
+           {T_wb.position - f.last_T_wb.position, log_rotation(T_wb.rotation * glm::conjugate(f.last_T_wb.rotation))},
+           f.told.generation}));
+      static_cast<void>(places_.push_back({f.told.body, T_wb, f.told.generation}));
       f.last_T_wb = T_wb;
       lost_ = lost_ || (f.moves() && now_ns - f.told_ns > longest_guess_ns);
     }
+  }
+
+  /// Lets go of the bodies that a scene does not have any more: of those that were told of when a contact was rendered,
+  /// the ones that it does not list. @param at_ns time of the contact's pose
+  void keep_only(const body_places& there, std::int64_t at_ns) noexcept {
+    gone_ = false;
+    std::size_t kept = 0;
+    for (const followed& f : bodies_) {
+      const bool is_there = std::any_of(there.begin(), there.end(), [&](const body_place& p) {
+        return p.body == f.told.body && p.generation == f.told.generation;
+      });
+      if (is_there || at_ns < f.since_ns) {
+        bodies_[kept++] = f;
+      } else {
+        gone_ = gone_ || f.is_told;
+      }
+    }
+    bodies_.truncate(kept);
   }
 
   [[nodiscard]] const body_ways& ways() const noexcept { return ways_; }
@@ -129,11 +152,14 @@ class body_follower {
   [[nodiscard]] bool is_lost() const noexcept { return lost_; }
   /// Whether something that was told last was no motion of a body, or one body too many.
   [[nodiscard]] bool refused() const noexcept { return refused_; }
+  /// Whether keep_only() has let go of a body that was still told of.
+  [[nodiscard]] bool gone() const noexcept { return gone_; }
 
  private:
   struct followed {
     body_motion told{};
     std::int64_t told_ns = 0, taken_ns = 0, over_ns = 1;
+    std::int64_t since_ns = 0;  // told of for the first time
     vec6 off{};  // from where the told motion leads to where the body is, when it was taken; gone after over_ns
     pose last_T_wb{};
     bool is_new = true, is_told = false;
@@ -164,19 +190,26 @@ class body_follower {
            glm::dot(v.angular, v.angular) <= fastest_rad_per_s * fastest_rad_per_s;
   }
 
-  [[nodiscard]] followed* find_or_add(std::uint32_t body) noexcept {
-    followed* const known =
-        std::find_if(bodies_.begin(), bodies_.end(), [&](const followed& f) { return f.told.body == body; });
-    if (known != bodies_.end()) return known;
+  [[nodiscard]] followed* find_or_add(const body_motion& told, std::int64_t now_ns) noexcept {
     followed added;
-    added.told.body = body;
+    added.told.body = told.body;
+    added.told.generation = told.generation;
+    added.since_ns = now_ns;
+    followed* const known =
+        std::find_if(bodies_.begin(), bodies_.end(), [&](const followed& f) { return f.told.body == told.body; });
+    if (known != bodies_.end()) {
+      // Another body is in its slot, or the one that is told of was there before.
+      if (known->told.generation > told.generation) return nullptr;
+      if (known->told.generation < told.generation) *known = added;
+      return known;
+    }
     return bodies_.push_back(added) ? &bodies_.back() : nullptr;
   }
 
   fixed_vector<followed, most_moving_bodies> bodies_;
   body_ways ways_;
   body_places places_;
-  bool lost_ = false, refused_ = false;
+  bool lost_ = false, refused_ = false, gone_ = false;
 };
 
 /// The push of the probe on one body: the opposite of what the body does to the probe, friction included.
@@ -195,6 +228,7 @@ struct felt_bodies {
   std::int64_t time_ns = 0;  ///< of the device tick, on the session's clock
   vec3 point_w{0.0};         ///< the probe's centre of mass c_A, which all torques are about
   fixed_vector<body_wrench, most> list;
+  std::uint64_t version = 0;  ///< of the scene whose slots these are: placed_scene::version
 
   /// Adds to what a body feels. @return false where there is no more room   @rt safe
   bool add(std::uint32_t body, const wrench& on_body_w) noexcept {

@@ -1,6 +1,8 @@
 // The support planes of the pose where the probe will come to rest: what planes of its present pose cannot know.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <utility>
 
 #include "asperity/control/contact_solver.hpp"
@@ -39,6 +41,8 @@ class ASPERITY_API rest_prediction {
 
   /// Forgets the pose of rest: the next search begins where the probe is.
   void forget() noexcept { known_ = false; }
+  /// Another body is in a slot. @rt safe
+  void put(std::uint32_t body, const std::optional<surface_pair>& pair) noexcept { laws_.put(body, pair); }
 
   /// @param pull of the coupling at T_wc; nothing is done where it is not known
   /// @param T_wc pose of c_A at which pull and planes were reported

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
@@ -62,6 +63,16 @@ class probe_motion {
     touched_ = {};
     pressed_ = {};
     friction_.forget();
+  }
+
+  /// A contact of another scene comes: the probe rubs anew on the bodies that were not where they are, and the laws are
+  /// those of the bodies that are there.
+  /// @param before version of the contact that was in use   @param now comes into use
+  void take_scene(std::uint64_t before, const linear_contact& now) noexcept {
+    for (const contact_body& b : now.of) {
+      laws_.put(b.body, b.surface);
+      if (b.since > before) friction_.forget(b.body);
+    }
   }
 
   /// From the present target to another pose: translation (m) and rotation vector (rad), world axes.

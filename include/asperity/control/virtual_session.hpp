@@ -91,6 +91,14 @@ class virtual_session {
   /// Has the handle let go of the probe, or take it up again; needs clutch_settings::by_application. From any thread.
   /// @rt safe
   void let_go(bool wanted) noexcept { shared_.let_go.store(wanted, std::memory_order_relaxed); }
+  /// The way by which versions of a scene that changes come into the session; see scene_editor::commit(). From one
+  /// thread, while the session runs.
+  [[nodiscard]] auto& scenes() noexcept requires scene_taker<Renderer> { return contact_.scenes(); }
+  /// Which version of the scene the hand feels. From the thread that edits the scene. @rt safe
+  [[nodiscard]] scene_use scene_in_use() noexcept {
+    shared_.scene.refresh();
+    return shared_.scene.front();
+  }
   /// A sign of life of the application. Only these feed control_settings::watchdog_ns.
   void beat() noexcept { shared_.application.beat(); }
   /// Time of the next device tick.

@@ -54,6 +54,7 @@ enum class error_code : std::uint8_t {
   bad_texture,       ///< a haptic texture that cannot be used
   limit_exceeded,    ///< larger than a stated limit
   cancelled,
+  busy,  ///< the same is still under way; try again later
 };
 
 /// The code as it stands in JSON documents.
@@ -75,6 +76,8 @@ enum class error_code : std::uint8_t {
       return "limit_exceeded";
     case error_code::cancelled:
       return "cancelled";
+    case error_code::busy:
+      return "busy";
   }
   return "unknown_error";
 }

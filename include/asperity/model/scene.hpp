@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,10 +15,35 @@
 
 namespace asperity {
 
-/// The probe A, which the user moves, and the bodies B that it may touch. Fixed for the life of a renderer.
+/// The probe A, which the user moves, and the bodies B that it may touch. Fixed for the life of a renderer, unless the
+/// renderer takes a placed_scene.
 struct scene {
   model_ptr probe;
   std::vector<model_ptr> fixed;
+};
+
+/// Names a body of a scene that changes. A slot is used again after its body was removed; the generation tells the two
+/// bodies apart.
+struct body_handle {
+  std::uint32_t slot = 0;        ///< index in scene::fixed, as in support_plane::body and body_motion::body
+  std::uint32_t generation = 0;  ///< of the body in that slot; 0 names no body
+
+  friend bool operator==(const body_handle&, const body_handle&) = default;
+};
+
+/// One version of a scene that changes: which body is in which slot, and where. It does not change once it is shared.
+struct placed_scene {
+  std::uint64_t version = 0;              ///< counts from 1; 0 is a scene that never changes
+  scene bodies;                           ///< fixed: one per slot, null where the slot is free
+  std::vector<pose> T_wb;                 ///< one per slot
+  std::vector<std::uint32_t> generation;  ///< one per slot: body_handle::generation of its body, 0 where it is free
+  /// One per slot: the version that put this body there, by adding, exchanging or placing it, or that removed the last.
+  std::vector<std::uint64_t> since;
+  surface_pairs surfaces;  ///< one per slot: what the probe and the body make of a touch
+
+  [[nodiscard]] bool has(const body_handle& body) const noexcept {
+    return body.generation != 0 && body.slot < generation.size() && generation[body.slot] == body.generation;
+  }
 };
 
 /// Checks that a scene has a body for the probe to touch. @return invalid_argument
@@ -48,6 +75,10 @@ struct scene_pose {
   std::span<const pose> T_wb;
   /// Gaps are wanted up to this, m; a renderer may tell larger ones, and tells none beyond its own reach.
   double gaps_m = std::numeric_limits<double>::infinity();
+  /// Not 0: every body is where the placed_scene of this version has it, but for those in `moved`, which are in it from
+  /// their first motion on. It spares a renderer the look at each of them.
+  std::uint64_t version = 0;
+  std::span<const std::uint32_t> moved{};
 };
 
 /// Centre of mass of the probe in the world: the point c_A that torques and gradients are about.

@@ -25,6 +25,7 @@ class first_met;
 class known_branches;
 class known_depths;
 class leaf_reader;
+struct plane_scene;
 
 /// Reads the field at every near sample and keeps the deepest of each leaf, with its slope, as a support plane. Edge
 /// across edge needs nothing of its own: the samples along one edge lie in the field of the other's body.
@@ -39,12 +40,22 @@ class leaf_reader;
 /// bounds of patches and leaves, so most samples are not read; what is reported has exact depths and slopes. What
 /// earlier ticks know of samples spares readings as well and changes nothing: planes follow from the pose alone.
 ///
+/// A body of a scene that changes may come into it (be added, exchanged or placed) where the probe is. Where it would be
+/// deeper in the probe than what was in its slot before, by more than let_in_m, it stands back: its surface is felt that
+/// much further in, so that it pushes as hard as what was there, and flags() tell it (tick_flag::stands_back). It comes
+/// forward behind a probe that leaves it, as far away as gaps are told, so a change puts no more energy into the probe
+/// than springs that are let_in_m deeper hold.
+///
 /// A reading whose depth is -infinity stands for a leaf that has no plane.
 class ASPERITY_API plane_depth {
  public:
   using policy_tag = depth_tag;
   using found_type = near_samples;
   using reading_type = near_plane;
+  using placed_type = plane_scene;
+
+  /// By this much deeper than what was in its slot a body comes into a scene as it is, m: 4 N of a plane of 200 N/mm.
+  static constexpr double let_in_m = 2e-5;
 
   /// @param bodies   the scene's, in its order
   /// @param reach_m  gaps up to this are reported, m
@@ -52,9 +63,16 @@ class ASPERITY_API plane_depth {
   /// @param branches shared with the finder, which this teaches; or nullptr
   plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
               std::shared_ptr<known_branches> branches = nullptr);
+  /// Of a scene that changes. @param first its first version
+  plane_depth(const plane_scene& first, double reach_m, std::size_t most, std::shared_ptr<known_branches> branches);
   plane_depth(plane_depth&&) noexcept;
   plane_depth& operator=(plane_depth&&) noexcept;
   ~plane_depth();
+
+  /// Goes on with another version of the scene, which outlives its use here. @pre as many slots   @rt safe
+  void take(const plane_scene& next) noexcept;
+  /// The version of the scene; null where it never changes.
+  [[nodiscard]] const placed_scene* placed() const noexcept;
 
   /// @return ok
   /// @rt safe
@@ -81,8 +99,11 @@ class ASPERITY_API plane_depth {
   [[nodiscard]] std::size_t heap_bytes() const noexcept;
 
  private:
+  void reserve(std::size_t most);
   // What known bounds grow by: how far samples have gone since the tick before.
-  void learn_ways(const scene_pose& at) noexcept;
+  void learn_ways(const scene_pose& at, const near_samples& found) noexcept;
+  // Makes what was read of bodies that stand back less deep.
+  void stand_back(const near_samples& found, std::span<near_plane> out) noexcept;
   // The deepest first, roughly.
   void sort_by_depth(std::span<const near_patch> patches) noexcept;
   // The planes of a patch's leaves, where they can matter.
@@ -94,16 +115,22 @@ class ASPERITY_API plane_depth {
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
   double reach_m_;
-  double told_m_;     // of the last measure(): no gap beyond this is told
-  double sinking_m_;  // of a sample that looks away
+  double told_m_;  // of the last measure(): no gap beyond this is told
   std::vector<support_plane> reported_;
   std::vector<std::uint32_t> order_;  // of patches
   // How the probe has moved from the tick before, seen from each body.
   struct way {
     pose T_ba{}, before_ba{}, before_ab{};
     double chord = 0.0;
+    double sinking_m = 0.0;                 // of a sample that looks away
+    bool comes = false;                     // since the last tick ...
+    double was_m = 0.0;                     // ... in the place of one that was so deep
+    double back_m = 0.0;                    // its surface stands back by this
+    double deepest_m = 0.0, bound_m = 0.0;  // of its planes and patches, where bodies come or stand back
   };
   std::vector<way> ways_;
+  const plane_scene* placed_ = nullptr;
+  bool come_ = false;  // a body comes or stands back
   std::unique_ptr<plane_watch> watch_;
   std::unique_ptr<first_met> met_;
   std::unique_ptr<known_depths> known_;

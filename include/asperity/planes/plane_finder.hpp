@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -15,20 +16,30 @@
 namespace asperity {
 
 class known_branches;
+struct body_facts;
+struct plane_scene;
 
 /// Lists the patches of samples whose depth may be more than -reach, with a bound of it: of the probe in each fixed
 /// body's field, and of each fixed body in the probe's. Bodies that are too far away as a whole are known by a sphere
-/// around each. What earlier ticks know spares it most looks. What it lists decides nothing, because a patch that is
+/// around each; of a scene that changes, where bodies stand still (scene_pose::version), a tree of these spheres knows
+/// them without a look at each. What earlier ticks know spares it most looks. What it lists decides nothing, because a patch that is
 /// listed and has no sample within reach gives no plane.
 class ASPERITY_API plane_finder {
  public:
   using policy_tag = collision_tag;
   using found_type = near_samples;
+  using placed_type = plane_scene;
 
   /// @param reach_m gaps up to this are reported, m
   /// @param known   of the renderer's ticks, shared with its depth backend, which knows more; or nullptr
   plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m,
                std::shared_ptr<known_branches> known = nullptr);
+
+  /// Of a scene that changes. @param first its first version
+  plane_finder(const plane_scene& first, double reach_m, std::shared_ptr<known_branches> known);
+
+  /// Goes on with another version of the scene, which outlives its use here. @pre as many slots   @rt safe
+  void take(const plane_scene& next) noexcept;
 
   /// @return ok | capacity_reached
   /// @rt safe
@@ -37,20 +48,26 @@ class ASPERITY_API plane_finder {
   /// Fixed bodies that the last find() looked into.
   [[nodiscard]] std::size_t near_bodies() const noexcept { return near_bodies_; }
   /// Without the bodies, which others share.
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_, near_); }
 
  private:
+  friend ASPERITY_API body_facts facts_of(const field_body&, double, double);
   // Nothing of two bodies whose spheres are further apart than the reach is listed.
   struct sphere {
     vec3 centre_b{0.0};
     double radius_m = 0.0;
   };
   [[nodiscard]] static sphere around(const field_body& body) noexcept;
+  // The samples of the probe and one fixed body, where their spheres are near enough.
+  void look_into(std::uint32_t body, const scene_pose& at, const vec3& probe_w, double reach_m,
+                 near_samples& out) noexcept;
 
   std::shared_ptr<const field_scene> bodies_;
   std::shared_ptr<known_branches> known_;
   sphere probe_;
   std::vector<sphere> fixed_;
+  const plane_scene* placed_ = nullptr;
+  std::vector<std::uint32_t> near_;  // of the tick, by the tree
   double reach_m_;
   std::size_t near_bodies_ = 0;
 };

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -34,7 +36,24 @@ struct tick {
   depth_work work{};                      ///< what it took
 };
 
+/// A policy that can go on with another version of its scene; what it refers to of the version before is let go.
+template <class P>
+concept takes_scenes = requires(P& policy, const typename P::placed_type& next) {
+  { policy.take(next) }
+  noexcept;
+};
+
 namespace detail {
+
+struct no_placed_scene {};
+template <class P>
+struct placed_for {
+  using type = no_placed_scene;
+};
+template <takes_scenes P>
+struct placed_for<P> {
+  using type = typename P::placed_type;
+};
 
 /// From what each body does to the probe, about c_A, to what it feels itself, about its own centre of mass; in place.
 /// @rt safe
@@ -69,6 +88,8 @@ class basic_renderer {
   using found_type = found_by<Finder>;
   using reading_type = reading_of<Depth>;
   using limits_type = typename found_type::limits_type;
+  /// Versions of a scene that changes; no_placed_scene where the policies take none.
+  using placed_type = typename detail::placed_for<Depth>::type;
 
   basic_renderer(asperity::scene scene, Finder finder, Depth depth, Force force, limits_type limits = {})
       : scene_(std::move(scene)),
@@ -82,19 +103,40 @@ class basic_renderer {
     if constexpr (reports_planes_nearby<Depth>) at_.T_wb.resize(scene_.fixed.size());
   }
 
+  /// For a scene that changes.
+  /// @param placed its first version, which finder and depth have taken
+  basic_renderer(std::shared_ptr<const placed_type> placed, Finder finder, Depth depth, Force force,
+                 limits_type limits = {}) requires takes_scenes<Finder> && takes_scenes<Depth>
+      : basic_renderer(asperity::scene{}, std::move(finder), std::move(depth), std::move(force), limits) {
+    placed_ = std::move(placed);
+    by_body_.resize(scene().fixed.size());
+    at_.T_wb = depth_.placed()->T_wb;
+  }
+
+  /// Goes on with another version of the scene. @pre made for a scene that changes; as many slots
+  /// @return the version that it replaces: nothing of the renderer refers to it
+  /// @rt safe: nothing is allocated or freed
+  [[nodiscard]] std::shared_ptr<const placed_type> take(std::shared_ptr<const placed_type> next) noexcept requires
+      takes_scenes<Finder> && takes_scenes<Depth> {
+    finder_.take(*next);
+    depth_.take(*next);
+    return std::exchange(placed_, std::move(next));
+  }
+  /// The version of the scene; null where it never changes.
+  [[nodiscard]] const placed_scene* placed() const noexcept requires takes_scenes<Finder> && takes_scenes<Depth> {
+    return depth_.placed();
+  }
+
   /// Wrench on the probe at these poses.
-  /// @pre at.T_wb.size() == scene().fixed.size()
+  /// @pre at.T_wb.size() == scene().fixed.size(); at.version tells the truth
   /// @return ok | capacity_reached (a usable result that lacks something) | invalid_pose | not_ready | not_finite |
   ///         backend_failed; the last four leave a zero wrench
   /// @rt safe: no allocation, lock, throw, print or clock
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
     out = {};
     found_.clear();
-    if (at.T_wb.size() != scene_.fixed.size()) return status::not_ready;
-    if (!is_valid(at.T_wa)) return status::invalid_pose;
-    for (const pose& T : at.T_wb) {
-      if (!is_valid(T)) return status::invalid_pose;
-    }
+    if (at.T_wb.size() != scene().fixed.size()) return status::not_ready;
+    if (!is_valid(at.T_wa) || !has_valid_bodies(at)) return status::invalid_pose;
     const status found = finder_.find(at, found_);
     if (found != status::ok && found != status::capacity_reached) return found;
 
@@ -112,15 +154,14 @@ class basic_renderer {
     out.contacts = report.contacts;
     out.depths = report.depths;
     if (report.by_contact.size() == report.contacts.size()) out.by_contact = report.by_contact;
-    out.centre_of_mass_w = centre_of_mass_w(scene_, at.T_wa);
-    out.on_body = detail::as_felt_by_bodies(report.by_body, out.centre_of_mass_w, scene_, at);
+    out.centre_of_mass_w = centre_of_mass_w(scene(), at.T_wa);
+    out.on_body = detail::as_felt_by_bodies(report.by_body, out.centre_of_mass_w, scene(), at);
     out.dropped_contacts = found_.dropped();
     if constexpr (reports_known_motion<Depth>) out.known = depth_.known();
     if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
     if constexpr (reports_work<Depth>) out.work = depth_.work();
     if constexpr (reports_planes_nearby<Depth>) {
-      at_.T_wa = at.T_wa;
-      std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
+      keep(at);
       out.planes_near = plane_source(*this);
     }
     if constexpr (reports_support_planes<Depth>) out.planes = depth_.support_planes();
@@ -133,7 +174,7 @@ class basic_renderer {
   [[nodiscard]] status planes_at(const vec6& moved, double above_m,
                                  plane_list& out) noexcept requires reports_planes_nearby<Depth> {
     out.clear();
-    const vec3 c_a_w = centre_of_mass_w(scene_, at_.T_wa);
+    const vec3 c_a_w = centre_of_mass_w(scene(), at_.T_wa);
     const quat turn = exp_rotation(moved.angular);
     const pose T_wa{glm::normalize(turn * at_.T_wa.rotation),
                     c_a_w + moved.linear + turn * (at_.T_wa.position - c_a_w)};
@@ -141,7 +182,12 @@ class basic_renderer {
     return depth_.planes_at({T_wa, at_.T_wb}, found_, std::span(readings_).first(found_.size()), moved, above_m, out);
   }
 
-  [[nodiscard]] const asperity::scene& scene() const noexcept { return scene_; }
+  [[nodiscard]] const asperity::scene& scene() const noexcept {
+    if constexpr (takes_scenes<Depth>) {
+      if (const placed_scene* const s = depth_.placed(); s != nullptr) return s->bodies;
+    }
+    return scene_;
+  }
   /// What the finder found in the last tick: contacts with their patches, or near samples.
   [[nodiscard]] const found_type& found() const noexcept { return found_; }
   /// Memory that the renderer takes, bytes: itself, its policies and all that they hold, whether a tick has used it or
@@ -168,11 +214,39 @@ class basic_renderer {
   struct kept_poses {
     pose T_wa{};
     std::vector<pose> T_wb;
+    std::uint64_t version = 0;
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(T_wb); }
   };
   struct nothing {
     [[nodiscard]] std::size_t heap_bytes() const noexcept { return 0; }
   };
+
+  [[nodiscard]] bool stands_still(const scene_pose& at) const noexcept {
+    if constexpr (takes_scenes<Depth>) {
+      return at.version != 0 && depth_.placed() != nullptr && depth_.placed()->version == at.version;
+    } else {
+      return false;
+    }
+  }
+
+  // Of bodies that are where the scene has them nothing has to be asked.
+  [[nodiscard]] bool has_valid_bodies(const scene_pose& at) const noexcept {
+    if (!stands_still(at))
+      return std::all_of(at.T_wb.begin(), at.T_wb.end(), [](const pose& T) { return is_valid(T); });
+    return std::all_of(at.moved.begin(), at.moved.end(),
+                       [&](std::uint32_t b) { return b < at.T_wb.size() && is_valid(at.T_wb[b]); });
+  }
+
+  // For planes_at().
+  void keep(const scene_pose& at) noexcept {
+    at_.T_wa = at.T_wa;
+    if (stands_still(at) && at_.version == at.version) {
+      for (const std::uint32_t b : at.moved) at_.T_wb[b] = at.T_wb[b];
+      return;
+    }
+    std::copy(at.T_wb.begin(), at.T_wb.end(), at_.T_wb.begin());
+    at_.version = at.version;
+  }
 
   /// Most contacts that a force model reports.
   [[nodiscard]] static std::size_t reported_by(const limits_type& limits) noexcept {
@@ -191,6 +265,7 @@ class basic_renderer {
   std::vector<reading_type> readings_;
   std::vector<wrench> by_body_, by_contact_;
   [[no_unique_address]] std::conditional_t<reports_planes_nearby<Depth>, kept_poses, nothing> at_;
+  std::shared_ptr<const placed_type> placed_;
 };
 
 }  // namespace asperity

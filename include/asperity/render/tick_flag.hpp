@@ -22,8 +22,10 @@ enum class tick_flag : std::uint8_t {
   /// A body was pressed without friction, because as many as can be rubbed on at once were; device ticks only.
   friction_left_out = 32,
   /// A moving body was told of no more, or what was told of it is no motion of a body, or there were too many: it stands
-  /// still; device ticks only.
+  /// still. Or one was told of that the scene does not have any more. Device ticks only.
   body_lost = 64,
+  /// A body of a changing scene came where the probe is: its surface is felt further in, until the probe has left it.
+  stands_back = 128,
 };
 
 /// Overlap beyond which planes do not hold the probe, m: the load of one plane of the usual 200 N/mm is 200 N there.

@@ -447,9 +447,9 @@ TEST_F(documents, run_with_support_planes) {
   const json d = expect_document(above, "asperity.run/1");
   EXPECT_EQ(d["formulation"], "planes");
   expect_keys(d["wall"], {"largest_overlap", "beyond_field", "passed", "not_held", "planes_left_out", "unbalanced",
-                          "friction_left_out", "body_lost"});
-  for (const char* flag :
-       {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out", "body_lost"}) {
+                          "friction_left_out", "body_lost", "stands_back"});
+  for (const char* flag : {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out",
+                           "body_lost", "stands_back"}) {
     EXPECT_EQ(d["wall"][flag]["ticks"], 0) << flag;
     EXPECT_TRUE(d["wall"][flag]["first"].is_null()) << flag;
   }

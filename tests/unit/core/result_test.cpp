@@ -38,7 +38,7 @@ TEST(status, every_value_has_words) {
   for (int s = 0; s <= static_cast<int>(status::backend_failed); ++s) {
     EXPECT_STRNE(to_string(static_cast<status>(s)), "unknown status");
   }
-  for (int c = 0; c <= static_cast<int>(error_code::cancelled); ++c) {
+  for (int c = 0; c <= static_cast<int>(error_code::busy); ++c) {
     EXPECT_STRNE(to_string(static_cast<error_code>(c)), "unknown_error");
   }
 }
