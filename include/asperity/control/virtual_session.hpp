@@ -91,6 +91,7 @@ class virtual_session {
   /// Has the handle let go of the probe, or take it up again; needs clutch_settings::by_application. From any thread.
   /// @rt safe
   void let_go(bool wanted) noexcept { shared_.let_go.store(wanted, std::memory_order_relaxed); }
+
   /// The way by which versions of a scene that changes come into the session; see scene_editor::commit(). From one
   /// thread, while the session runs.
   [[nodiscard]] auto& scenes() noexcept requires scene_taker<Renderer> { return contact_.scenes(); }
