@@ -190,10 +190,10 @@ result<void> context::take_memory(std::size_t bytes, const std::string& what) {
   const std::size_t before = device_bytes_.fetch_add(bytes);
   if (memory_limit_bytes_ == 0 || before + bytes <= memory_limit_bytes_) return {};
   device_bytes_ -= bytes;
-  return error{error_code::limit_exceeded, "OpenGL: " + what + " needs " + std::to_string(bytes) +
-                                               " bytes of device memory; " + std::to_string(before) + " of at most " +
-                                               std::to_string(memory_limit_bytes_) +
-                                               " are taken: raise the limit, or use smaller textures or fewer contacts"};
+  return error{error_code::limit_exceeded,
+               "OpenGL: " + what + " needs " + std::to_string(bytes) + " bytes of device memory; " +
+                   std::to_string(before) + " of at most " + std::to_string(memory_limit_bytes_) +
+                   " are taken: raise the limit, or use smaller textures or fewer contacts"};
 }
 
 current_scope::current_scope(context_ptr c) noexcept : context_(std::move(c)), state_(status::ok) {

@@ -182,10 +182,12 @@ result<void> plane_batch::parts::compile() {
   };
   if (result<void> r = make(leaves, of_leaves, "the plane batch's leaves"); !r) return r;
   if (result<void> r = make(directions, of_directions, "the plane batch's directions"); !r) return r;
-  for (const auto& [program, of] : {std::pair{&leaves, &of_leaves_pass}, {&directions, &of_directions_pass}}) {
-    const auto find = [&](const char* name) { return gl.GetUniformLocation((*program)->get(), name); };
-    *of = {find("first_pose"), find("meetings"), find("room"), find("at_once")};
-  }
+  const auto uniforms_of = [&](const program_ptr& program) -> uniforms {
+    const auto find = [&](const char* name) { return gl.GetUniformLocation(program->get(), name); };
+    return {find("first_pose"), find("meetings"), find("room"), find("at_once")};
+  };
+  of_leaves_pass = uniforms_of(leaves);
+  of_directions_pass = uniforms_of(directions);
   return {};
 }
 

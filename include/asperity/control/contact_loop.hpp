@@ -154,8 +154,8 @@ class contact_loop {
       if (!scenes_.take([&](auto next) noexcept { return renderer_.take(std::move(next)); })) return;
       const placed_scene& now = *renderer_.placed();
       std::size_t kept = 0;
-      for (std::size_t i = 0; i < moved_.size(); ++i) {
-        if (now.since[moved_[i]] <= version) moved_[kept++] = moved_[i];
+      for (const std::uint32_t b : moved_) {
+        if (now.since[b] <= version) moved_[kept++] = b;
       }
       moved_.truncate(kept);
       for (std::uint32_t b = 0; b < now.since.size(); ++b) {
