@@ -124,8 +124,8 @@ TEST(changing_scenes, each_comes_once_and_goes_back) {
 
 TEST(changing_scenes, from_another_thread_inside_the_trap) {
   // ThreadSanitizer makes a contact tick forty times as long.
-  const int changes = ASPERITY_THREAD_SANITIZER ? extent(200, 4'000) : extent(4'000, 100'000);
-  drawn d(fresh_seed("changing_scenes", "4e3 changes, 1e5 at length; under ThreadSanitizer 200 and 4e3"));
+  const int changes = ASPERITY_THREAD_SANITIZER ? extent(80, 4'000) : extent(4'000, 100'000);
+  drawn d(fresh_seed("changing_scenes", "4e3 changes, 1e5 at length; under ThreadSanitizer 80 and 4e3"));
   scene_editor editor = scene_editor::make(boxes().tool, {.bodies = slots}, few_samples).value();
   plane_renderer feel = make_plane_renderer(editor, {.reach_m = 0.0018, .limits = {.leaves = 4096}}).value();
   auto shared = std::make_unique<exchange>();
