@@ -86,7 +86,10 @@ struct edited_session {
       for (const body_wrench& w : felt.list) stale += of.bodies.fixed[w.body] ? 0U : 1U;
       EXPECT_EQ(felt.version, on->scene_in_use().version);
     }
-    if (felt.version != last_version) rise_m = std::max(rise_m, r.overlap_m - last_overlap_m);
+    passed.push_back({r.time_ns, r.T_wa});
+    if (felt.version != last_version) {
+      rise_m = std::max(rise_m, r.overlap_m - last_overlap_m - way_since(r.time_ns - r.contact_age_ns));
+    }
     last_version = felt.version;
     last_overlap_m = r.overlap_m;
     const double delivered_j = dev.delivered_j() - r.from_bodies_j;
@@ -94,8 +97,25 @@ struct edited_session {
     most_surplus_j = std::max(most_surplus_j, surplus_j);
     before_j = delivered_j;
   }
+  // A version is rendered where the probe was; what it has gone since, it may overlap. At most, of its points.
+  [[nodiscard]] double way_since(std::int64_t then_ns) const {
+    const double furthest_m = boxes().tool->box.diagonal();
+    double way_m = 0.0;
+    for (std::size_t i = passed.size() - 1; i > 0 && passed[i].time_ns > then_ns; --i) {
+      const quat turn = passed[i].T_wa.rotation * glm::conjugate(passed[i - 1].T_wa.rotation);
+      way_m += glm::distance(passed[i].T_wa.position, passed[i - 1].T_wa.position) +
+               furthest_m * glm::length(log_rotation(turn));
+    }
+    return way_m;
+  }
+  struct passed_pose {
+    std::int64_t time_ns;
+    pose T_wa;
+  };
+  std::vector<passed_pose> passed;
   double most_surplus_j = 0.0;
-  double rise_m = 0.0, last_overlap_m = 0.0;  // by how much an overlap was deeper in the first tick of a version
+  // By how much an overlap was deeper in the first tick of a version, but for what the probe has gone meanwhile.
+  double rise_m = 0.0, last_overlap_m = 0.0;
   std::uint64_t last_version = 0;
   [[nodiscard]] double force_n() const { return glm::length(on->device().observer().last.on_hand_d.force); }
 };
