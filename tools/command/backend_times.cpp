@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <random>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "asperity/gl/uploaded_model.hpp"
 #include "asperity/window/window_renderer.hpp"
 #include "interrupt.hpp"
+#include "wall_seconds.hpp"
 #include "window_on_gpu.hpp"
 
 namespace asperity::command {
@@ -18,13 +18,6 @@ namespace {
 
 constexpr std::array<std::size_t, 4> sizes{1, 7, 64, 256};
 constexpr std::size_t pairs = 4096;
-
-template <class Call>
-double wall_seconds(Call&& call) {
-  const auto begin = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 double median(std::vector<double> seconds) {
   const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>((seconds.size() - 1) / 2);

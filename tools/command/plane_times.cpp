@@ -1,7 +1,6 @@
 #include "plane_times.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <memory>
 #include <random>
@@ -13,16 +12,10 @@
 #include "asperity/planes/plane_renderer.hpp"
 #include "interrupt.hpp"
 #include "statistics.hpp"
+#include "wall_seconds.hpp"
 
 namespace asperity::command {
 namespace {
-
-template <class Call>
-double wall_seconds(Call&& call) {
-  const auto begin = std::chrono::steady_clock::now();
-  call();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
 
 error not_answered(status s) {
   return {error_code::unsupported,
