@@ -7,36 +7,9 @@
 #include <span>
 #include <string>
 
-#include "core/cholesky.hpp"
+#include "control/bristle.hpp"
 
 namespace asperity {
-
-namespace {
-
-double squared(const mat6& metric, const vec6& z) noexcept { return std::max(0.0, dot(z, metric * z)); }
-
-// Adds a point that presses with a share of the force: how its way along the surface follows from the probe's motion.
-void add_point(mat6& to, double share, const support_plane& p) noexcept {
-  const vec3 u = any_orthogonal(p.n_ab_w), v = glm::cross(p.n_ab_w, u);
-  // (T x) . u = u . (x.linear + x.angular x r) = u . x.linear + (r x u) . x.angular
-  add_outer(to, share, {u, glm::cross(p.r_w, u)});
-  add_outer(to, share, {v, glm::cross(p.r_w, v)});
-  if (p.spread_m > 0.0) add_outer(to, share * p.spread_m * p.spread_m, {vec3(0.0), p.n_ab_w});
-}
-
-// The shortest motion that stretches the points as z does. What stretches none of them, as rolling, would count when
-// others press. The metric has no inverse; a billionth of its size makes one, and takes less than 0.1 nm/s off z.
-vec6 without_rest(const mat6& metric, const vec6& z) noexcept {
-  constexpr double of_its_size = 1e-9;
-  const double linear = (metric(0, 0) + metric(1, 1) + metric(2, 2)) / 3.0;
-  const double angular = (metric(3, 3) + metric(4, 4) + metric(5, 5)) / 3.0;
-  mat6 regular = metric;
-  for (std::size_t i = 0; i < 6; ++i) regular(i, i) += of_its_size * (i < 3 ? linear : angular + 1e-9 * linear);
-  const cholesky6 factors(regular);
-  return factors.positive() ? factors.solve(metric * z) : vec6{};
-}
-
-}  // namespace
 
 result<void> check(const friction_settings& s) {
   const auto bad = [](std::string what) { return error{error_code::invalid_argument, "friction: " + what}; };
@@ -77,11 +50,6 @@ void friction::forget(std::uint32_t body) noexcept {
   bristles_.truncate(kept);
 }
 
-double friction::coefficient(const bristle& b, double slip_m_per_s) const noexcept {
-  const double ratio = slip_m_per_s / settings_.stribeck_m_per_s;
-  return b.dynamic_coefficient + (b.static_coefficient - b.dynamic_coefficient) * std::exp(-ratio * ratio);
-}
-
 void friction::find_bodies(const support_planes& planes, const contact_solution& by, const contact_laws& laws,
                            std::span<const body_velocity> carried) noexcept {
   leaves_out_ = false;
@@ -103,7 +71,6 @@ void friction::find_bodies(const support_planes& planes, const contact_solution&
 }
 
 void friction::measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept {
-  const double k = settings_.stiffness_n_per_m;
   std::array<double, most_support_planes> force_n;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const vec3& slope = planes[i].gradient.linear;
@@ -115,16 +82,11 @@ void friction::measure(const support_planes& planes, const contact_solution& by,
     for (std::size_t i = 0; i < planes.size(); ++i) b.normal_n += planes[i].body == b.body ? force_n[i] : 0.0;
     if (!(b.normal_n > 0.0)) continue;
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      if (planes[i].body == b.body && force_n[i] > 0.0) add_point(b.metric, force_n[i] / b.normal_n, planes[i]);
+      if (planes[i].body == b.body && force_n[i] > 0.0) detail::add_point(b.metric, force_n[i] / b.normal_n, planes[i]);
     }
-    const double held_j = 0.5 * k * squared(b.metric, b.stretch);
-    b.held = held_j > b.stored_j ? std::sqrt(b.stored_j / held_j) * b.stretch : b.stretch;
-    // What the bristle gave up in the pass before, or the step before, has slipped; the rest is its own stretch.
-    const vec6 slide = v - b.carried;
-    const double slip_m_per_s = (1.0 - b.theta) * std::sqrt(squared(b.metric, b.held + h_s * slide)) / h_s;
-    const double most_m = coefficient(b, slip_m_per_s) * b.normal_n / k;
-    const double stretch_m = std::sqrt(squared(b.metric, b.held + (h_s + settings_.damping_s) * slide));
-    b.theta = stretch_m > most_m ? most_m / stretch_m : 1.0;
+    b.held = detail::held_in(b.metric, b.stretch, b.stored_j, settings_.stiffness_n_per_m);
+    b.theta = detail::share_held(settings_, b.metric, b.held, v - b.carried, h_s, b.theta, b.normal_n,
+                                 b.static_coefficient, b.dynamic_coefficient);
   }
 }
 
@@ -146,8 +108,8 @@ void friction::settle(double h_s, const vec6& v) noexcept {
     on_probe_w_ += b.on_probe_w;
     energy_.from_bodies_j += h_s * dot(f, b.carried);
     slips_ = slips_ || b.theta < 1.0;
-    b.stretch = without_rest(b.metric, b.stretch);
-    const double now_j = 0.5 * k * squared(b.metric, b.stretch);
+    b.stretch = detail::without_rest(b.metric, b.stretch);
+    const double now_j = 0.5 * k * detail::squared(b.metric, b.stretch);
     energy_.lost_j += b.stored_j - h_s * dot(f, slide) - now_j;
     b.stored_j = now_j;
     stored_j += now_j;

@@ -77,8 +77,8 @@ result<void> check(const plane_selection& s) {
   return {};
 }
 
-status select_planes(std::span<const support_plane> candidates, const plane_selection& s,
-                     support_planes& out) noexcept {
+status select_planes(std::span<const support_plane> candidates, const plane_selection& s, support_planes& out,
+                     std::size_t most) noexcept {
   out.clear();
   fixed_vector<plane_group, most_selected_planes> groups;
   for (const support_plane& p : candidates) {
@@ -96,14 +96,14 @@ status select_planes(std::span<const support_plane> candidates, const plane_sele
     if (!groups.push_back({.body = deepest->body, .axis_w = deepest->n_ab_w})) break;
     groups.back().find(candidates, s);
   }
-  std::array<std::uint32_t, most_selected_planes> taken{};
+  std::array<std::uint32_t, most_support_planes> taken{};
   bool all = groups.dropped() == 0;
   for (std::size_t motion = 0; motion < plane_group::motions; ++motion) {
     for (const plane_group& g : groups) {
       const std::uint32_t chosen = g.first_met[motion];
       const auto end = taken.begin() + static_cast<std::ptrdiff_t>(out.size());
       if (std::find(taken.begin(), end, chosen) != end) continue;
-      if (out.size() == taken.size()) {
+      if (out.size() == most) {
         all = false;
         continue;
       }

@@ -118,7 +118,6 @@ class ASPERITY_API friction {
     vec6 carried{};  // velocity of the body about c_A
   };
 
-  [[nodiscard]] double coefficient(const bristle& b, double slip_m_per_s) const noexcept;
   // The bristles of the bodies that are pressed and have friction; new ones are at rest.
   void find_bodies(const support_planes& planes, const contact_solution& by, const contact_laws& laws,
                    std::span<const body_velocity> carried) noexcept;

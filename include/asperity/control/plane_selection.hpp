@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -41,11 +42,12 @@ struct plane_selection {
 
 /// The planes that become active first under small motions of the probe, per body and direction. Directions are taken
 /// from the deepest plane that has none yet; each test motion is made for every direction before the next, so that a
-/// full list lacks diagonals and not a wall. At most most_selected_planes are taken.
+/// full list lacks diagonals and not a wall.
 /// The same candidates in the same order give the same planes.
+/// @param most so many are taken
 /// @return ok | capacity_reached | not_finite (a candidate has a number that is not finite; out is empty)
-/// @pre check(s)   @rt safe
+/// @pre check(s), most <= most_support_planes   @rt safe
 [[nodiscard]] ASPERITY_API status select_planes(std::span<const support_plane> candidates, const plane_selection& s,
-                                                support_planes& out) noexcept;
+                                                support_planes& out, std::size_t most = most_selected_planes) noexcept;
 
 }  // namespace asperity
