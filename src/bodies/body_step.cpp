@@ -95,12 +95,28 @@ void body_step::forget(std::uint32_t mover) noexcept {
   bristles_.resize(kept);
 }
 
-wrench body_step::rubbing_on(std::uint32_t mover) const noexcept {
-  wrench out;
-  for (const bristle& b : bristles_) {
-    if (b.of.a == mover) out += b.on_a_w;
+void body_step::feel(const pair_of& of, const wrench& impulse_on_a, std::span<const mover> movers,
+                     std::span<const vec3> standing_centres_w) noexcept {
+  const vec3 other_w = is_mover(of.b) ? movers[of.b].T_wc.position : standing_centres_w[of.b - movers_];
+  impulses_[of.a] += impulse_on_a;
+  impulses_[of.b] += -1.0 * transport(impulse_on_a, movers[of.a].T_wc.position, other_w);
+}
+
+void body_step::add_sleepers(double dt_s, std::span<const mover> movers, std::span<const mover_contacts> contacts,
+                             std::span<const vec3> standing_centres_w) noexcept {
+  for (std::uint32_t a = 0; a < movers_; ++a) {
+    if (!movers[a].sleeps) continue;
+    const mover_contacts& of = contacts[a];
+    for (std::size_t i = 0; i < of.contact.planes.size(); ++i) {
+      const support_plane& p = of.contact.planes[i];
+      const std::uint32_t b = of.others[p.body].number;
+      if (moves(movers, b)) continue;
+      feel({a, b}, to_wrench(-dt_s * of.lambda_n[i] * p.gradient), movers, standing_centres_w);
+    }
   }
-  return out;
+  for (const bristle& b : bristles_) {
+    if (!moves(movers, b.of.a) && !moves(movers, b.of.b)) feel(b.of, dt_s * b.on_a_w, movers, standing_centres_w);
+  }
 }
 
 bool body_step::gather(double h_s, std::span<const mover> movers, std::span<const mover_contacts> contacts) noexcept {
@@ -115,16 +131,12 @@ bool body_step::gather(double h_s, std::span<const mover> movers, std::span<cons
     const mover_contacts& of = contacts[a];
     const vec6 gone = pose_difference(movers[a].T_wc, of.contact.T_wc);
     for (const support_plane& told : of.contact.planes) {
-      const std::uint32_t b = of.others[told.body];
+      const std::uint32_t b = of.others[told.body].number;
       if (!moves(movers, a) && !moves(movers, b)) continue;
       support_plane p = told;
       vec6 gradient_b;
       if (is_mover(b)) {
-        const pose X = movers[b].T_wb() * inverse(of.T_wb[told.body]);
-        p.depth_m += dot(p.gradient, pose_difference(inverse(X) * movers[a].T_wc, of.contact.T_wc));
-        p.gradient = {X.rotation * p.gradient.linear, X.rotation * p.gradient.angular};
-        p.n_ab_w = X.rotation * p.n_ab_w;
-        p.r_w = X.rotation * p.r_w;
+        p = carried(told, movers[a].T_wc, of.contact.T_wc, movers[b].T_wb(), of.T_wb[told.body]);
         const vec3 arm_w = movers[a].T_wc.position - movers[b].T_wc.position;
         gradient_b = {-p.gradient.linear, -p.gradient.angular - glm::cross(arm_w, p.gradient.linear)};
       } else {
@@ -350,11 +362,7 @@ void body_step::settle(double h_s, std::span<mover> movers, std::span<const vec3
     kept_j += 0.5 * p.stiffness_n_per_m * (after_m - before_m) * (after_m + before_m);
     springs_j += 0.5 * p.stiffness_n_per_m * after_m * after_m;
     if (!(p.lambda_n > 0.0)) continue;
-    const pair_of of = bodies_[i];
-    const wrench on_a = to_wrench(-h_s * p.lambda_n * turned_[i].gradient);
-    impulses_[of.a] += on_a;
-    const vec3 other_w = is_mover(of.b) ? movers[of.b].T_wc.position : standing_centres_w[of.b - movers_];
-    impulses_[of.b] += -1.0 * transport(on_a, movers[of.a].T_wc.position, other_w);
+    feel(bodies_[i], to_wrench(-h_s * p.lambda_n * turned_[i].gradient), movers, standing_centres_w);
   }
   double bristles_j = 0.0;
   std::size_t kept = 0;
@@ -371,10 +379,7 @@ void body_step::settle(double h_s, std::span<mover> movers, std::span<const vec3
     const vec6 slide = slide_of(b, v_);
     b.stretch = b.theta * (b.held + h_s * slide);
     b.on_a_w = to_wrench(-k * (b.metric * (b.stretch + (b.theta * settings_.friction.damping_s) * slide)));
-    const vec3& from_w = movers[b.of.a].T_wc.position;
-    const vec3 other_w = is_mover(b.of.b) ? movers[b.of.b].T_wc.position : standing_centres_w[b.of.b - movers_];
-    impulses_[b.of.a] += h_s * b.on_a_w;
-    impulses_[b.of.b] += -1.0 * transport(h_s * b.on_a_w, from_w, other_w);
+    feel(b.of, h_s * b.on_a_w, movers, standing_centres_w);
     b.stretch = without_rest(b.metric, b.stretch);
     const double now_j = 0.5 * k * squared(b.metric, b.stretch);
     kept_j += now_j - b.stored_j;
@@ -433,7 +438,10 @@ status body_step::step(double h_s, std::span<mover> movers, std::span<mover_cont
   }
   energy_.by_rendering_j += springs_j - energy_.springs_j;
   energy_.springs_j = springs_j;
-  if (at_place_.empty()) return status::ok;
+  if (at_place_.empty()) {
+    energy_.kinetic_j = 0.0;
+    return status::ok;
+  }
   turn_freely(h_s, movers);
   load(h_s, movers, hand);
   bool solved = solve(h_s, movers, contacts);

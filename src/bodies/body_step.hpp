@@ -34,8 +34,6 @@ class body_step {
 
   /// What contacts did to each body since begin(), times the seconds that they did it, about its centre of mass.
   [[nodiscard]] std::span<const wrench> impulses() const noexcept { return impulses_; }
-  /// Friction of the last step on a mover. @rt safe
-  [[nodiscard]] wrench rubbing_on(std::uint32_t mover) const noexcept;
   /// Calls visit(a, b) for bodies that pressed each other in the last step, or press while they sleep. @rt safe
   template <class Visit>
   void for_each_touch(Visit&& visit) const noexcept {
@@ -44,6 +42,9 @@ class body_step {
     }
   }
   void begin() noexcept;
+  /// Adds to impulses() what bodies that sleep do to each other and to what stands, as they did in their last step.
+  void add_sleepers(double dt_s, std::span<const mover> movers, std::span<const mover_contacts> contacts,
+                    std::span<const vec3> standing_centres_w) noexcept;
   void forget(std::uint32_t mover) noexcept;  ///< its bristles
   void lose(double energy_j) noexcept { energy_.lost_j += energy_j; }
   [[nodiscard]] bool has_braked() const noexcept { return braked_; }
@@ -80,6 +81,9 @@ class body_step {
   [[nodiscard]] bool gather(double h_s, std::span<const mover> movers,
                             std::span<const mover_contacts> contacts) noexcept;
   void order(std::span<const mover> movers) noexcept;
+  // A wrench on a about its centre for some time, and its opposite on b.
+  void feel(const pair_of& of, const wrench& impulse_on_a, std::span<const mover> movers,
+            std::span<const vec3> standing_centres_w) noexcept;
   void turn_freely(double h_s, std::span<mover> movers) noexcept;
   void load(double h_s, std::span<const mover> movers, const hand_pull& hand) noexcept;
   [[nodiscard]] bool solve(double h_s, std::span<const mover> movers,

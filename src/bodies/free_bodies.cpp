@@ -97,6 +97,9 @@ struct free_bodies::parts {
   tick_flag flags = tick_flag::none;
   bool left_out = false;
   std::array<std::uint64_t, most_free_bodies + 1> touches{};
+  support_planes chosen{};
+  std::vector<support_plane> biased{};
+  std::vector<pose> now_T_wb{};
 
   [[nodiscard]] std::size_t first() const noexcept { return has_probe ? 1 : 0; }
   [[nodiscard]] detail::mover* free(std::size_t body) noexcept {
@@ -137,7 +140,7 @@ struct free_bodies::parts {
     const double soon_s = 1.5 * render_period_s();
     for (std::uint32_t a = 0; a < movers.size(); ++a) {
       for (const support_plane& p : contacts[a].contact.planes) {
-        const std::uint32_t b = contacts[a].others[p.body];
+        const std::uint32_t b = contacts[a].others[p.body].number;
         if (b >= movers.size()) continue;
         const vec6 slide = movers[a].velocity -
                            detail::seen_from(movers[b].velocity, movers[a].T_wc.position - movers[b].T_wc.position);
@@ -192,27 +195,59 @@ struct free_bodies::parts {
     return 1.5 * render_period_s() * (fastest + next + 2.0 * begins_m_per_s);
   }
 
+  // A plane that pressed, where it is now.
+  struct kept_plane {
+    support_plane plane{};
+    double carried_m = 0.0;
+  };
+
   // The planes that pressed and those that small motions meet first. Those that press stay as long as they are told: a
-  // body at rest on many points of the same height would be given others in every period, and tremble.
+  // body at rest on many points of the same height would be given others in every period, and tremble. Of a few
+  // neighbouring samples the deepest alone is told; where that is another one than before, the plane that pressed is
+  // carried on for 20 um. Between free
+  // bodies and what they lie on the samples of the smaller body are taken where those of the larger are not deeper by
+  // 10 um: a block that slides takes its own corners along, and loses the table's points behind it one by one.
   [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection,
-                              detail::mover_contacts& of) noexcept {
-    detail::support_points pressed;
-    for (std::size_t i = 0; i < of.contact.planes.size(); ++i) {
+                              const detail::mover& body, detail::mover_contacts& of) noexcept {
+    constexpr std::size_t most_kept = most_support_planes / 2;
+    constexpr double held_back = 1e-5, furthest_carried_m = 2e-5;
+    fixed_vector<kept_plane, most_kept> pressed;
+    for (std::size_t i = 0; i < of.contact.planes.size() && pressed.size() < most_kept; ++i) {
       const support_plane& p = of.contact.planes[i];
-      if (of.lambda_n[i] > 0.0 && p.sample != 0) static_cast<void>(pressed.push_back({p.body, p.sample}));
-    }
-    constexpr std::size_t most_others = 40;
-    const status out = select_planes(told, selection, of.contact.planes, most_others);
-    if (out != status::ok && out != status::capacity_reached) return out;
-    const auto is_among = [](const auto& list, const support_plane& p) {
-      return std::any_of(list.begin(), list.end(),
-                         [&](const auto& q) { return q.body == p.body && q.sample == p.sample; });
-    };
-    for (const support_plane& p : told) {
-      if (!is_among(pressed, p) || is_among(of.contact.planes, p)) continue;
-      static_cast<void>(of.contact.planes.push_back(p));
+      if (!(of.lambda_n[i] > 0.0) || p.sample == 0) continue;
+      const pose T_wb = T_wb_of(of.others[p.body].number);
+      const vec6 gone = pose_difference(body.T_wc, of.contact.T_wc), came = pose_difference(T_wb, of.T_wb[p.body]);
+      const double way_m = glm::length(gone.linear) + body.radius_m * glm::length(gone.angular) +
+                           glm::length(came.linear) + body.radius_m * glm::length(came.angular);
+      static_cast<void>(pressed.push_back(
+          {detail::carried(p, body.T_wc, of.contact.T_wc, T_wb, of.T_wb[p.body]), of.carried_m[i] + way_m}));
     }
     of.lambda_n.fill(0.0);
+    of.carried_m.fill(0.0);
+    of.contact.planes.clear();
+    const auto held_back_m = [&](const support_plane& p) {
+      const detail::other_body& o = of.others[p.body];
+      return o.holds_back != 0 && p.sample != 0 && p.sample % 2 == o.holds_back % 2 ? held_back : 0.0;
+    };
+    biased.assign(told.begin(), told.end());
+    for (support_plane& p : biased) p.depth_m -= held_back_m(p);
+    const status out = select_planes(biased, selection, chosen, most_support_planes - most_kept);
+    if (out != status::ok && out != status::capacity_reached) return out;
+    for (support_plane& p : chosen) p.depth_m += held_back_m(p);
+    const auto same = [](const auto& p, const auto& q) { return p.body == q.body && p.sample == q.sample; };
+    for (const kept_plane& q : pressed) {
+      const auto now = std::find_if(told.begin(), told.end(), [&](const support_plane& p) { return same(p, q.plane); });
+      const bool is_told = now != told.end();
+      if (!is_told && !(q.carried_m < furthest_carried_m)) continue;
+      of.carried_m[of.contact.planes.size()] = is_told ? 0.0 : q.carried_m;
+      static_cast<void>(of.contact.planes.push_back(is_told ? *now : q.plane));
+    }
+    const std::size_t kept = of.contact.planes.size();
+    for (const support_plane& p : chosen) {
+      const bool is_kept = p.sample != 0 && std::any_of(of.contact.planes.begin(), of.contact.planes.begin() + kept,
+                                                        [&](const support_plane& q) { return same(p, q); });
+      if (!is_kept) static_cast<void>(of.contact.planes.push_back(p));
+    }
     return out;
   }
 
@@ -229,31 +264,34 @@ struct free_bodies::parts {
       rendered& r = renderers[a];
       detail::mover_contacts& of = contacts[a];
       if (!r.renderer) continue;
-      const bool all_sleep = movers[a].sleeps && std::all_of(of.others.begin(), of.others.end(), [&](std::uint32_t b) {
-                               return b >= movers.size() || movers[b].sleeps;
-                             });
+      const bool all_sleep =
+          movers[a].sleeps && std::all_of(of.others.begin(), of.others.end(), [&](const detail::other_body& b) {
+            return b.number >= movers.size() || movers[b.number].sleeps;
+          });
       if (all_sleep) continue;
-      for (std::size_t i = 0; i < of.others.size(); ++i) of.T_wb[i] = T_wb_of(of.others[i]);
-      const status s = r.renderer->step({movers[a].T_wb(), of.T_wb, gaps}, r.found);
+      for (std::size_t i = 0; i < of.others.size(); ++i) now_T_wb[i] = T_wb_of(of.others[i].number);
+      const std::span<const pose> at(now_T_wb.data(), of.others.size());
+      const status s = r.renderer->step({movers[a].T_wb(), at, gaps}, r.found);
       const bool usable = s == status::ok || s == status::capacity_reached;
-      const status chosen = usable ? choose(r.found.planes, selection, of) : s;
-      if (chosen != status::ok && chosen != status::capacity_reached) {
-        answer = chosen;
+      const status told = usable ? choose(r.found.planes, selection, movers[a], of) : s;
+      if (told != status::ok && told != status::capacity_reached) {
+        answer = told;
         continue;
       }
       of.contact.T_wc = movers[a].T_wc;
+      std::copy(at.begin(), at.end(), of.T_wb.begin());
       of.contact.known = r.found.known;
       of.contact.flags = r.found.flags;
       left_out = left_out || s == status::capacity_reached ||
-                 (chosen == status::capacity_reached &&
+                 (told == status::capacity_reached &&
                   lacks_a_wall(r.found.planes, of.contact.planes, selection.same_direction));
       flags |= of.contact.flags;
       if (!of.contact.known.is_limited()) continue;
       // Half of the way for each of two.
       const double half_m = 0.5 * of.contact.known.way_m;
       movers[a].known_m = std::min(movers[a].known_m, half_m);
-      for (const std::uint32_t b : of.others) {
-        if (b < movers.size()) movers[b].known_m = std::min(movers[b].known_m, half_m);
+      for (const detail::other_body& b : of.others) {
+        if (b.number < movers.size()) movers[b.number].known_m = std::min(movers[b.number].known_m, half_m);
       }
     }
     wake_touched();
@@ -285,6 +323,7 @@ struct free_bodies::parts {
         return;
       }
     }
+    step.add_sleepers(dt_s, movers, contacts, standing_centres_w);
     spent_s = dt_s;
     find_touches();
     step.for_each_touch([&](std::uint32_t a, std::uint32_t b) noexcept { meet(a, b); });
@@ -353,6 +392,8 @@ result<free_bodies> free_bodies::make(const free_scene& scene, const free_bodies
     made->standing_T_wb.push_back(b.T_wb);
     made->standing_centres_w.push_back(b.T_wb * b.model->mass.centre_of_mass);
   }
+  detail::reserve_resident(made->biased, settings.most_leaves);
+  made->now_T_wb.resize(models.size());
   made->contacts.resize(movers.size());
   made->renderers.resize(movers.size());
   for (std::size_t a = 0; a < movers.size(); ++a) {
@@ -364,7 +405,10 @@ result<free_bodies> free_bodies::make(const free_scene& scene, const free_bodies
     for (std::size_t b = a + 1; b < models.size(); ++b) {
       of_these->fixed.push_back(field_of(b));
       smallest_m = std::min(smallest_m, models[b]->box.diagonal());
-      made->contacts[a].others.push_back(static_cast<std::uint32_t>(b));
+      const bool is_smaller = models[a]->box.diagonal() <= models[b]->box.diagonal();
+      const std::uint32_t larger = is_smaller ? detail::of_other : detail::of_mover;
+      const bool feels_all = has_probe && a == 0;  // a hand feels the texture of both
+      made->contacts[a].others.push_back({static_cast<std::uint32_t>(b), feels_all ? 0 : larger});
     }
     made->contacts[a].T_wb.resize(bodies.fixed.size());
     made->contacts[a].laws = {settings.contact, surfaces_of(bodies)};

@@ -38,19 +38,37 @@ struct mover {
   }
 };
 
-/// A point of a surface that a plane stands for.
-struct support_point {
-  std::uint32_t body = 0, sample = 0;
+/// Whose sample a plane stands for: its number is odd or even.
+inline constexpr std::uint32_t of_mover = 1, of_other = 2;
+
+/// A body that a mover may touch.
+struct other_body {
+  std::uint32_t number = 0;      ///< movers, then standing bodies
+  std::uint32_t holds_back = 0;  ///< of_mover or of_other: those samples are taken where no others are as deep; 0: none
 };
-using support_points = fixed_vector<support_point, most_support_planes>;
 
 /// The contacts of one mover with bodies that come after it: other movers first to last, then what stands.
 struct mover_contacts {
-  std::vector<std::uint32_t> others;  ///< support_plane::body is an index into it; movers, then standing bodies
-  contact_laws laws{};                ///< by the same index
-  linear_contact contact{};           ///< planes and poses as last told ...
-  std::vector<pose> T_wb;             ///< ... with the others here
-  std::array<double, most_support_planes> lambda_n{};  ///< of its planes, in the last step
+  std::vector<other_body> others;                       ///< support_plane::body is an index into it
+  contact_laws laws{};                                  ///< by the same index
+  linear_contact contact{};                             ///< planes and poses as last told ...
+  std::vector<pose> T_wb;                               ///< ... with the others here
+  std::array<double, most_support_planes> lambda_n{};   ///< of its planes, in the last step
+  std::array<double, most_support_planes> carried_m{};  ///< so far a plane has been carried on since it was told
 };
+
+/// A plane of a mover with another mover that has gone from where it was when the plane was told: it goes with both, which
+/// is exact for planes. Its depth is at a_T_wc.
+/// @param then_T_wc, then_T_wb of the mover and the body frame of the other, then
+/// @rt safe
+[[nodiscard]] inline support_plane carried(support_plane p, const pose& a_T_wc, const pose& then_T_wc, const pose& T_wb,
+                                           const pose& then_T_wb) noexcept {
+  const pose X = T_wb * inverse(then_T_wb);
+  p.depth_m += dot(p.gradient, pose_difference(inverse(X) * a_T_wc, then_T_wc));
+  p.gradient = {X.rotation * p.gradient.linear, X.rotation * p.gradient.angular};
+  p.n_ab_w = X.rotation * p.n_ab_w;
+  p.r_w = X.rotation * p.r_w;
+  return p;
+}
 
 }  // namespace asperity::detail

@@ -48,18 +48,23 @@ class surface_samples {
   /// All samples, body frame. Points without a surface (NaN texels) are left out.
   [[nodiscard]] std::vector<field_sample> make() const {
     std::vector<field_sample> out;
+    std::vector<double> lean_rad(model_.mesh.triangles.size());
+    for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) lean_rad[t] = add_face(t, out);
     for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) {
-      add_face(t, out);
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t across = index_.neighbour[t][k];
-        if ((across == surface_index::none || t < across) && is_sharp(t, across)) add_edge(t, k, out);
+        if ((across == surface_index::none || t < across) && is_sharp(t, across)) add_edge(t, k, lean_rad, out);
       }
     }
-    add_vertices(out);
+    add_vertices(lean_rad, out);
     return out;
   }
 
  private:
+  struct texel_block {
+    std::size_t column, row, size;
+  };
+
   static void add(const vec3& p_b, const vec3& axis_b, double cone_rad, std::vector<field_sample>& to) {
     if (is_finite(p_b)) to.push_back({glm::vec3(p_b), glm::vec3(axis_b), static_cast<float>(cone_rad)});
   }
@@ -70,9 +75,45 @@ class surface_samples {
     return across == surface_index::none || !(glm::dot(index_.normal[t], index_.normal[across]) > cos_smooth);
   }
 
-  void add_face(std::uint32_t t, std::vector<field_sample>& to) const {
+  // How far the fine surface leans away from a triangle, rad, where its neighbours turn away without an edge.
+  [[nodiscard]] double turn_to_neighbours(std::uint32_t t) const noexcept {
+    double most = 0.0;
+    for (const std::uint32_t across : index_.neighbour[t]) {
+      if (!is_sharp(t, across)) most = std::max(most, angle(index_.normal[t], index_.normal[across]));
+    }
+    return most;
+  }
+
+  // The largest angle between a triangle's normal and the fine surface from texel to texel in a block and around it.
+  [[nodiscard]] double lean_in(std::uint32_t t, const texel_block& block) const noexcept {
     const texel_triangle& z = index_.texels[t];
-    if (!z.usable) return;
+    const auto is_inside = [&](std::size_t i, std::size_t j) {
+      const vec3 bary = z.barycentric({static_cast<double>(i), static_cast<double>(j)});
+      return bary.x >= 0.0 && bary.y >= 0.0 && bary.z >= 0.0;
+    };
+    double least_cosine = 1.0;
+    for (std::size_t j = block.row - std::min<std::size_t>(block.row, 1);
+         j < std::min<std::size_t>(block.row + block.size, model_.texture.height - 1); ++j) {
+      for (std::size_t i = block.column - std::min<std::size_t>(block.column, 1);
+           i < std::min<std::size_t>(block.column + block.size, model_.texture.width - 1); ++i) {
+        if (!is_inside(i, j) || !is_inside(i + 1, j) || !is_inside(i, j + 1)) continue;
+        const vec3 p = model_.texture.at(i, j);
+        const vec3 across = glm::cross(model_.texture.at(i + 1, j) - p, model_.texture.at(i, j + 1) - p);
+        const double length = glm::length(across);
+        if (!(length > 0.0)) continue;  // NaN too
+        // Charts may be mirrored.
+        least_cosine = std::min(least_cosine, std::fabs(glm::dot(across, index_.normal[t])) / length);
+      }
+    }
+    return std::acos(std::clamp(least_cosine, -1.0, 1.0));
+  }
+
+  // @return how far the fine surface leans away from the triangle, rad
+  double add_face(std::uint32_t t, std::vector<field_sample>& to) const {
+    const texel_triangle& z = index_.texels[t];
+    const double turn_rad = turn_to_neighbours(t);
+    double most_rad = turn_rad;
+    if (!z.usable) return most_rad;
     const auto c = corners(model_.mesh, t);
     const auto [per_x, per_y] = z.per_texel(c);
     const double texel_m = std::sqrt(glm::length(glm::cross(per_x, per_y)));
@@ -83,22 +124,23 @@ class surface_samples {
     const std::size_t before = to.size();
     for (std::size_t row = rows.first / block; row <= rows.last / block; ++row) {
       for (std::size_t column = columns.first / block; column <= columns.last / block; ++column) {
-        add_highest(t, {column * block, row * block, block}, texel_m, to);
+        const texel_block here{column * block, row * block, block};
+        const double lean_rad = std::max(turn_rad, lean_in(t, here));
+        most_rad = std::max(most_rad, lean_rad);
+        add_highest(t, here, texel_m, lean_rad, to);
       }
     }
     // A sliver that holds no texel centre gets a sample too.
     if (to.size() == before) {
       const coarse_triangle& tri = model_.mesh.triangles[t];
-      add(model_.texture.sample((tri.uv[0] + tri.uv[1] + tri.uv[2]) / 3.0), index_.normal[t], 0.0, to);
+      add(model_.texture.sample((tri.uv[0] + tri.uv[1] + tri.uv[2]) / 3.0), index_.normal[t], most_rad, to);
     }
+    return most_rad;
   }
 
-  struct texel_block {
-    std::size_t column, row, size;
-  };
-
   // The highest texel of a block; between equals the one nearest to its middle.
-  void add_highest(std::uint32_t t, const texel_block& block, double texel_m, std::vector<field_sample>& to) const {
+  void add_highest(std::uint32_t t, const texel_block& block, double texel_m, double lean_rad,
+                   std::vector<field_sample>& to) const {
     const auto c = corners(model_.mesh, t);
     const double middle = 0.5 * static_cast<double>(block.size - 1);
     double best_score = -1e30;
@@ -120,16 +162,18 @@ class surface_samples {
         }
       }
     }
-    if (best_score > -1e30) add(best, index_.normal[t], 0.0, to);
+    if (best_score > -1e30) add(best, index_.normal[t], lean_rad, to);
   }
 
-  void add_edge(std::uint32_t t, std::size_t k, std::vector<field_sample>& to) const {
+  void add_edge(std::uint32_t t, std::size_t k, const std::vector<double>& lean_rad,
+                std::vector<field_sample>& to) const {
     const auto c = corners(model_.mesh, t);
     const double length_m = glm::length(c[(k + 1) % 3] - c[k]);
     const std::uint32_t across = index_.neighbour[t][k];
     const vec3 here = index_.normal[t], there = across == surface_index::none ? here : index_.normal[across];
     const vec3 axis = middle_of(here + there, here);
-    const double cone_rad = angle(axis, here);
+    const double leans_rad = std::max(lean_rad[t], across == surface_index::none ? 0.0 : lean_rad[across]);
+    const double cone_rad = angle(axis, here) + leans_rad;
     const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m / pitch_m_)));
     for (std::size_t i = 0; i < count; ++i) {
       const double f = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
@@ -146,7 +190,7 @@ class surface_samples {
   }
 
   // At the mean position that the charts around a vertex give it, facing as all its triangles do.
-  void add_vertices(std::vector<field_sample>& to) const {
+  void add_vertices(const std::vector<double>& lean_rad, std::vector<field_sample>& to) const {
     const std::size_t vertices = model_.mesh.positions.size();
     std::vector<vec3> place(vertices, vec3(0.0)), axis(vertices, vec3(0.0));
     std::vector<std::uint32_t> corners_at(vertices, 0);
@@ -164,7 +208,7 @@ class surface_samples {
     for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) {
       for (const std::uint32_t v : model_.mesh.triangles[t].vertex) {
         const vec3 middle = middle_of(axis[v], index_.normal[t]);
-        cone_rad[v] = std::max(cone_rad[v], angle(middle, index_.normal[t]));
+        cone_rad[v] = std::max(cone_rad[v], angle(middle, index_.normal[t]) + lean_rad[t]);
       }
     }
     for (std::size_t v = 0; v < vertices; ++v) {

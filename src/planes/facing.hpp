@@ -18,9 +18,11 @@ struct cosines {
   double full = -1.0, none = -1.0;
 };
 
-/// In full up to 35 degrees beyond its cone, since relief leans, and not at all from 60 degrees on. @rt safe
+/// In full up to 2 degrees beyond its cone and not at all from 10 degrees on. Where the surface about a sample is plain,
+/// a field that would push it elsewhere is that of a rounded edge: the samples of that edge tell the contact, and this one
+/// would plough. @rt safe
 [[nodiscard]] inline cosines cosines_of(double cone_rad) noexcept {
-  constexpr double full_rad = 35.0 * std::numbers::pi / 180.0, none_rad = 60.0 * std::numbers::pi / 180.0;
+  constexpr double full_rad = 2.0 * std::numbers::pi / 180.0, none_rad = 10.0 * std::numbers::pi / 180.0;
   return {std::cos(std::min(cone_rad + full_rad, std::numbers::pi)),
           std::cos(std::min(cone_rad + none_rad, std::numbers::pi))};
 }

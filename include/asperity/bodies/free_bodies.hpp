@@ -25,7 +25,7 @@ inline constexpr std::size_t most_free_bodies = 32;
 
 /// A body that forces move. Its inertia is that of a solid of uniform density.
 struct free_body {
-  model_ptr model;
+  model_ptr model{};
   pose T_wb{};
   double mass_kg = 0.0;               ///< 0: by the density
   double density_kg_per_m3 = 1000.0;  ///< not used where the mass is given
@@ -33,15 +33,15 @@ struct free_body {
 
 /// A body that nothing moves.
 struct standing_body {
-  model_ptr model;
+  model_ptr model{};
   pose T_wb{};
 };
 
 /// What a free_bodies is made of.
 struct free_scene {
-  model_ptr probe;  ///< behind the handle; null: nobody touches the bodies
-  std::vector<standing_body> standing;
-  std::vector<free_body> free;  ///< 1 to most_free_bodies
+  model_ptr probe{};  ///< behind the handle; null: nobody touches the bodies
+  std::vector<standing_body> standing{};
+  std::vector<free_body> free{};  ///< 1 to most_free_bodies
 };
 
 struct free_bodies_settings {

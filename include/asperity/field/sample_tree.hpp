@@ -21,12 +21,12 @@ namespace detail {
 class field_parts;
 }
 
-/// A point of a body's fine surface, and the directions that the coarse surface looks to there: one on a face, a fan on
-/// an edge, a cone on a vertex. Body frame.
+/// A point of a body's fine surface, and the directions that the surface looks to there: one on a plain face, a fan on an
+/// edge, a cone on a vertex or where the surface leans or bends within the distance between samples. Body frame.
 struct field_sample {
   glm::vec3 position_b{0.0F};
   glm::vec3 axis_b{0.0F, 0.0F, 1.0F};  ///< unit, outwards: the middle of the cone
-  float cone_rad = 0.0F;               ///< half its opening: 0 on a face
+  float cone_rad = 0.0F;               ///< half its opening: 0 on a plain face
 };
 
 /// Where a few samples lie: within radius_m of a centre, and within half_m of the plane through it across an axis. On a

@@ -179,7 +179,8 @@ TEST(ToldPlanes, HoldEverySampleThatIsNear) {
             const double steep = glm::length(d.slope);
             // One that looks away sinks, and holds nothing.
             const double facing = glm::dot(T_yx.rotation * vec3(s.axis_b), d.slope) / std::max(1e-9, steep);
-            if (!(d.value_m > above_m) || !(steep > 0.06) || !(facing > 0.9)) continue;
+            const double full = std::cos(std::min(3.1, static_cast<double>(s.cone_rad) + 0.03));
+            if (!(d.value_m > above_m) || !(steep > 0.06) || !(facing > full)) continue;
             ++count;
             const vec3 r_w = T_wx * vec3(s.position_b) - T * c_a;
             const bool held = std::any_of(planes.begin(), planes.end(), [&](const support_plane& p) {
