@@ -261,6 +261,7 @@ class device_loop {
     }
     const wrench before = motion_.push_of(contact, bodies_.ways());
     if (!shared_->contacts.refresh()) return false;
+    if (shared_->contacts.front().version != 0) motion_.take_laws(shared_->contacts.front());
     wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
     change.force *= settings_.map.scale;  // as the hand would come to feel it
     return glm::length(change.force) > rates_.limits().surprise_n ||
