@@ -203,6 +203,74 @@ TEST(material_map, planes_tell_the_texel) {
   EXPECT_LE(wrong, all / 200);
 }
 
+/// The same materials without what takes energy, so that nothing hides what a seam gives.
+material slick(material m) {
+  m.dissipation_s_per_m = m.static_friction = m.dynamic_friction = 0.0;
+  return m;
+}
+scene slick_scene(bool probe_too, bool rough) {
+  const auto of = [](textured_model m) {
+    m.surface = slick(*m.surface);
+    m.surface_map.others = {slick(m.surface_map.others[0])};
+    return shared(std::move(m));
+  };
+  return {probe_too ? of(in_two(*boxes().tool, steel, rubber, right_half)) : boxes().tool, {of(*slab(rough))}};
+}
+
+// A corner that is led into the slab, over the seam to and fro, and out again: what the planes' springs have done on it in
+// all is no work, though they are 28 times as stiff where it leaves. To a few tenths of what was stored, as without
+// materials: a point that leaves over an edge sinks, and a plane's slope does not say so. Edges and faces do that more,
+// so that they tell nothing here.
+TEST(material_map, the_springs_do_no_work_on_a_way_over_the_seam) {
+  drawn d(seed_of(fresh_seed("material_map.the_springs_do_no_work", "16 ways"), "ways"));
+  double most = -1.0;
+  for (const bool probe_too : {false, true}) {
+    const scene bodies = slick_scene(probe_too, false);
+    const auto made = std::make_shared<const field_scene>(fields_of(bodies.probe, bodies.fixed[0]));
+    plane_renderer renderer = make_plane_renderer(bodies, made, {.reach_m = 0.0018}).value();
+    const contact_laws laws({}, surfaces_of(bodies));
+    for (int n = 0; n < 8; ++n) {
+      const quat turned = corner_down({n % 2 == 0 ? 1.0 : -1.0, 1.0, 1.0}, d.between(0.0, 6.28));
+      double low_m = 0.0;
+      for (const vec3& p : boxes().tool->mesh.positions) low_m = std::min(low_m, (turned * p).z);
+      const double top_m = table_half_m.z - low_m, deep_m = d.between(1e-4, 5e-4), far_m = d.between(0.003, 0.006);
+      const int passes = 1 + static_cast<int>(d.bits() % 4);  // over the seam, from either side
+      const double from_m = (n / 2 % 2 == 0 ? 1.0 : -1.0) * far_m;
+      std::vector<vec3> corners{{from_m, 0, top_m + 1e-5}, {from_m, 0, top_m - deep_m}};
+      for (int i = 1; i <= passes; ++i) corners.push_back({i % 2 == 1 ? -from_m : from_m, 0, top_m - deep_m});
+      corners.push_back({corners.back().x, 0, top_m + 1e-3});
+      double work_j = 0.0, most_stored_j = 0.0;
+      std::optional<vec3> before_n;
+      const auto visit = [&](const vec3& at, const vec3& step) {
+        const pose T_wa{turned, at}, T_wb;
+        tick found;
+        EXPECT_EQ(renderer.step({T_wa, {&T_wb, 1}}, found), status::ok);
+        vec3 force_n(0.0);
+        double stored_j = 0.0;
+        for (const support_plane& p : found.planes) {
+          const double pressed_n = laws.stiffness_n_per_m(p) * std::max(0.0, p.depth_m);
+          force_n -= pressed_n * p.gradient.linear;
+          stored_j += 0.5 * pressed_n * std::max(0.0, p.depth_m);
+        }
+        work_j += glm::dot(0.5 * (before_n.value_or(force_n) + force_n), step);
+        most_stored_j = std::max(most_stored_j, stored_j);
+        before_n = force_n;
+      };
+      visit(corners[0], vec3(0.0));
+      for (std::size_t i = 1; i < corners.size(); ++i) {
+        const vec3 way = corners[i] - corners[i - 1];
+        const bool sinks = std::fabs(way.z) > 0.0;
+        const auto steps = static_cast<int>(std::ceil(glm::length(way) / (sinks ? 5e-6 : 2e-5)));
+        for (int k = 1; k <= steps; ++k)
+          visit(corners[i - 1] + (static_cast<double>(k) / steps) * way, way / (1.0 * steps));
+      }
+      EXPECT_LE(work_j, 0.3 * most_stored_j) << "way " << n << " probe " << probe_too << " passes " << passes;
+      most = std::max(most, work_j / most_stored_j);
+    }
+  }
+  std::printf("  at most %.3f of what was stored\n", most);
+}
+
 /// A session with a hand that goes to and fro over the seam; the most energy that the hand was given.
 struct seam_outcome {
   double surplus_j = 0.0;
@@ -255,18 +323,18 @@ TEST(material_map, a_seam_makes_no_energy) {
     double device_hz, contact_hz;
   };
   constexpr std::array<rates, 4> of{{{10'000, 10'000}, {4000, 1000}, {1000, 1000}, {200, 200}}};
+  const double length_s = at_length() ? 1.2 : 0.6;
   double most_j = 0.0;
   std::uint64_t crossings = 0;
   for (const bool probe_too : {false, true}) {
     for (const bool rough : {false, true}) {
-      const model_ptr probe = probe_too ? shared(in_two(*boxes().tool, steel, rubber, right_half)) : boxes().tool;
-      const scene bodies{probe, {slab(rough)}};
+      const scene bodies = slick_scene(probe_too, rough);
       const auto made = std::make_shared<const field_scene>(fields_of(bodies.probe, bodies.fixed[0]));
       for (const rates& r : of) {
-        for (int n = 0; n < extent(2, 12); ++n) {
+        for (int n = 0; n < extent(1, 12); ++n) {
           simulated_settings hand;
           hand.seed = d.bits();
-          hand.hand = n % 2 == 0 ? soft_hand() : firm_hand();
+          hand.hand = d.bits() % 2 == 0 ? soft_hand() : firm_hand();
           const int how = static_cast<int>(d.bits() % 3);
           const quat turned =
               how == 0
@@ -288,7 +356,7 @@ TEST(material_map, a_seam_makes_no_energy) {
                                           .contact_one_period_late = true};
           const double reach_m = reach_for(1e-9 * static_cast<double>(schedule.periods().renewal_ns()));
           const seam_outcome o = scrub_over_seam(make_plane_renderer(bodies, made, {.reach_m = reach_m}).value(),
-                                                 surfaces_of(bodies), hand, schedule, turned, 1.2);
+                                                 surfaces_of(bodies), hand, schedule, turned, length_s);
           EXPECT_EQ(o.not_ok, 0U);
           EXPECT_LE(o.surplus_j, no_surplus_j)
               << "device " << r.device_hz << " contact " << r.contact_hz << " how " << how << " hand " << n << " probe "
