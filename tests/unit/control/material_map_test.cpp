@@ -217,10 +217,8 @@ scene slick_scene(bool probe_too, bool rough) {
   return {probe_too ? of(in_two(*boxes().tool, steel, rubber, right_half)) : boxes().tool, {of(*slab(rough))}};
 }
 
-// A corner that is led into the slab, over the seam to and fro, and out again: what the planes' springs have done on it in
-// all is no work, though they are 28 times as stiff where it leaves. To a few tenths of what was stored, as without
-// materials: a point that leaves over an edge sinks, and a plane's slope does not say so. Edges and faces do that more,
-// so that they tell nothing here.
+// A corner that is led into the slab, over the seam to and fro, and out again: what its points' springs have done on it in
+// all is no work, though they are 28 times as stiff where it leaves. (Of the slab's own points each stays of its material.)
 TEST(material_map, the_springs_do_no_work_on_a_way_over_the_seam) {
   drawn d(seed_of(fresh_seed("material_map.the_springs_do_no_work", "16 ways"), "ways"));
   double most = -1.0;
@@ -248,6 +246,7 @@ TEST(material_map, the_springs_do_no_work_on_a_way_over_the_seam) {
         vec3 force_n(0.0);
         double stored_j = 0.0;
         for (const support_plane& p : found.planes) {
+          if (p.sample % 2 == 0) continue;  // of the slab's samples
           const double pressed_n = laws.stiffness_n_per_m(p) * std::max(0.0, p.depth_m);
           force_n -= pressed_n * p.gradient.linear;
           stored_j += 0.5 * pressed_n * std::max(0.0, p.depth_m);
@@ -264,7 +263,7 @@ TEST(material_map, the_springs_do_no_work_on_a_way_over_the_seam) {
         for (int k = 1; k <= steps; ++k)
           visit(corners[i - 1] + (static_cast<double>(k) / steps) * way, way / (1.0 * steps));
       }
-      EXPECT_LE(work_j, 0.3 * most_stored_j) << "way " << n << " probe " << probe_too << " passes " << passes;
+      EXPECT_LE(work_j, 0.02 * most_stored_j) << "way " << n << " probe " << probe_too << " passes " << passes;
       most = std::max(most, work_j / most_stored_j);
     }
   }
@@ -331,6 +330,7 @@ TEST(material_map, a_seam_makes_no_energy) {
       const scene bodies = slick_scene(probe_too, rough);
       const auto made = std::make_shared<const field_scene>(fields_of(bodies.probe, bodies.fixed[0]));
       for (const rates& r : of) {
+        if (r.device_hz > 5e3 && !at_length()) continue;
         for (int n = 0; n < extent(1, 12); ++n) {
           simulated_settings hand;
           hand.seed = d.bits();
