@@ -40,6 +40,9 @@ double difference(const map_image& image, std::size_t pixel, const std::array<st
   return most;
 }
 
+/// The last pixel of a map and not the first of the next tile, where the map ends with the mesh.
+double within_map(double x) noexcept { return x >= 1.0 && x < 1.0 + 1e-6 ? 1.0 - 1e-6 : x; }
+
 vec2 uv_at(const triangle_mesh& mesh, std::uint32_t t, const vec3& p) noexcept {
   const auto c = corners(mesh.positions, mesh.triangles[t]);
   const vec3 n = area_normal(c);
@@ -94,8 +97,8 @@ result<laid_materials> lay_materials(const textured_model& model, const triangle
       if (!is_finite(p)) continue;
       const triangle_bvh::nearest at = tree.closest(p);
       const vec2 uv = uv_at(full, at.triangle, at.point);
-      const std::size_t column = wrapped(std::floor(uv.x * image.width), image.width, settings.wrap_u);
-      const std::size_t row = wrapped(std::floor(uv.y * image.height), image.height, settings.wrap_v);
+      const std::size_t column = wrapped(std::floor(within_map(uv.x) * image.width), image.width, settings.wrap_u);
+      const std::size_t row = wrapped(std::floor(within_map(uv.y) * image.height), image.height, settings.wrap_v);
       const std::size_t pixel = row * image.width + column;
       out.map.texels[i] = number[pixel];
       ++mine;

@@ -261,7 +261,6 @@ class device_loop {
     }
     const wrench before = motion_.push_of(contact, bodies_.ways());
     if (!shared_->contacts.refresh()) return false;
-    if (shared_->contacts.front().version != 0) motion_.take_laws(shared_->contacts.front());
     wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
     change.force *= settings_.map.scale;  // as the hand would come to feel it
     return glm::length(change.force) > rates_.limits().surprise_n ||
@@ -273,6 +272,7 @@ class device_loop {
   void take_scene(std::uint64_t before, std::int64_t now_ns) noexcept {
     const linear_contact& contact = shared_->contacts.front();
     if (contact.version == 0) return;
+    motion_.take_laws(contact);
     bodies_.keep_only(contact.bodies, contact.time_ns);
     if (contact.version == before) return;
     motion_.take_scene(before, contact);
