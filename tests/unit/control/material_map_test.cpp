@@ -149,6 +149,82 @@ TEST(material_map, the_probe_has_one_as_well) {
   }
 }
 
+// Two feet of one body on two materials: what holds is the mean of both, by how hard each presses.
+TEST(material_map, friction_is_the_mean_of_what_presses) {
+  drawn d(seed_of(fresh_seed("material_map.friction_is_the_mean", "20 pairs of feet"), "feet"));
+  constexpr double h_s = 1e-4, mass_kg = 0.05, load_n = 4.0, foot_m = 0.01;
+  for (int n = 0; n < 20; ++n) {
+    const double mu_first = n % 5 == 0 ? 0.0 : d.between(0.0, 1.0), mu_other = d.between(0.0, 1.0);
+    const double on_other = n % 4 == 0 ? 0.0 : d.between(0.05, 0.95);  // share of the load
+    surface_pairs pairs{surface_pair{.static_friction = mu_first, .dynamic_friction = mu_first}};
+    pairs.mapped = {{0, 0, 1, {.static_friction = mu_other, .dynamic_friction = mu_other}}};
+    const contact_laws laws({}, pairs);
+    friction rubbing;
+    vec6 v{};
+    vec3 rubbed_n(0.0), at(0.0);
+    double tilt_rad = 0.0;
+    for (int i = 0; i < 6000; ++i) {
+      const auto foot = [&](double x, std::uint8_t of_body) {
+        const vec3 r(x, 0.0, 0.0), slope(0, 0, -1);
+        return support_plane{.depth_m = -at.z + tilt_rad * x,
+                             .gradient = {slope, glm::cross(r, slope)},
+                             .n_ab_w = slope,
+                             .r_w = r,
+                             .body = 0,
+                             .sample = of_body + 1U,
+                             .of_body = of_body};
+      };
+      support_planes planes;
+      static_cast<void>(planes.push_back(foot(-foot_m, 0)));
+      if (on_other > 0.0) static_cast<void>(planes.push_back(foot(foot_m, 1)));
+      mat6 a;
+      for (std::size_t k = 0; k < 6; ++k) a(k, k) = (k < 3 ? mass_kg : 1e-4) / h_s;
+      // The load is where it presses the feet by their shares; a push along the surface, far beyond what holds.
+      const double x = on_other > 0.0 ? foot_m * (2.0 * on_other - 1.0) : -foot_m;
+      const vec6 load{{0.0, 2.0 * load_n, -load_n}, {0.0, x * load_n, 0.0}};
+      const contact_solution s = rubbing.solve(a, load, v, h_s, planes, {}, laws);
+      ASSERT_TRUE(s.solved);
+      v = s.velocity;
+      v.angular.z = 0.0;
+      rubbing.settle(h_s, v);
+      rubbed_n = rubbing.on_probe_w().force;
+      at += h_s * v.linear;
+      tilt_rad += h_s * v.angular.y;
+    }
+    const double mean = (1.0 - on_other) * mu_first + on_other * mu_other;
+    EXPECT_NEAR(-rubbed_n.y, mean * load_n, 0.02 * load_n) << mu_first << ' ' << mu_other << ' ' << on_other;
+  }
+}
+
+// A slab with a map that comes into a scene, in the place of one without, is felt by its map where the hand is.
+TEST(material_map, is_felt_in_a_scene_that_changes) {
+  for (const double side : {-1.0, 1.0}) {
+    for (const bool late : {false, true}) {  // far from the hand when it comes, or under it
+      scene_editor editor = scene_editor::make(boxes().tool, {.bodies = 4}, few_samples).value();
+      const body_handle table = editor.add(boxes().table, boxes().field_of(boxes().table), pose{}).value();
+      simulated_settings hand =
+          hand_that_presses(0.3, {side * 0.01, 0.0, table_half_m.z + corner_m()}, {0, 0, -1}, 2000.0);
+      simulated_device dev(hand);
+      ASSERT_TRUE(dev.open() && dev.arm());
+      control_settings control;
+      control.surfaces = editor.surfaces();
+      control.map.T_ha.rotation = corner_down();
+      virtual_session<plane_renderer, simulated_device> session(make_plane_renderer(editor).value(), {{}, vec3(0.0)},
+                                                                dev, control);
+      static_cast<void>(session.run_until(late ? 800'000'000 : 10'000'000));
+      ASSERT_TRUE(editor.exchange(table, slab(), boxes().field_of(boxes().table)));
+      ASSERT_TRUE(editor.commit(session.scenes()));
+      static_cast<void>(session.run_until(1'600'000'000));
+      const double depth_m = table_half_m.z + corner_m() - session.device().probe().state().T_wc.position.z;
+      const double pressed_n = session.device().pressed().on_probe_w.force.z;
+      EXPECT_GT(pressed_n, 0.1);
+      EXPECT_NEAR(pressed_n / depth_m, side > 0.0 ? rubber.stiffness_n_per_m : ice.stiffness_n_per_m,
+                  0.05 * (side > 0.0 ? rubber.stiffness_n_per_m : ice.stiffness_n_per_m))
+          << side << ' ' << late;
+    }
+  }
+}
+
 // A plane tells of which material its point is on either body, to a texel, whosever sample it is of.
 TEST(material_map, planes_tell_the_texel) {
   drawn d(seed_of(fresh_seed("material_map.planes_tell", "60 poses"), "poses"));
