@@ -5,7 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -61,11 +64,13 @@ class plane_materials {
 
   /// Whether planes of a fixed body and the probe may be of several materials.
   [[nodiscard]] bool has_map(std::uint32_t body) const noexcept {
-    return any_ && (of_probe() != nullptr || of_body(body) != nullptr);
+    return of_probe() != nullptr || of_body(body) != nullptr;
   }
   [[nodiscard]] bool any() const noexcept { return any_; }
-  [[nodiscard]] const material_places* of_probe() const noexcept { return (*places_)[0].get(); }
-  [[nodiscard]] const material_places* of_body(std::uint32_t body) const noexcept { return (*places_)[body + 1].get(); }
+  [[nodiscard]] const material_places* of_probe() const noexcept { return any_ ? (*places_)[0].get() : nullptr; }
+  [[nodiscard]] const material_places* of_body(std::uint32_t body) const noexcept {
+    return any_ ? (*places_)[body + 1].get() : nullptr;
+  }
 
   /// By how much the surface that a leaf presses is felt further in, m, where its plane is so deep. @rt safe
   [[nodiscard]] double back_m(const near_leaf& leaf, bool of_probe, const support_plane& p) const noexcept {

@@ -135,7 +135,7 @@ TEST(SurfaceMap, ThatDoesNotFitIsRefusedWithItsPlace) {
   with("version", "1", "materials.version is not a whole number");
   with("image", 2, "materials.image is 2, but there are only 2");
   with("image", -1, "materials.image is not a whole number");
-  with("image", 0, "images[0]");  // the picture of the relief, of another size or with numbers beyond the list
+  with("image", 0, "names material 128 of 3 in column 0, row 0");  // the picture of the relief
   with("physicsMaterials", json::array({0}), "lists 1 materials, not 2 to 8");
   with("physicsMaterials", json::array({0, 1, 2, 0, 1, 2, 0, 1, 2}), "lists 9 materials, not 2 to 8");
   with("physicsMaterials", json::array({0, 1, 3}), "physicsMaterials[2] is not the number of one of 3");
@@ -189,7 +189,7 @@ TEST(SurfaceMap, ImagesThatAreNoneAreRefused) {
   with(test_support::grey_png_bytes(24, 23, false, false, zeros), "24 x 24 texels of the haptic texture");
   with(test_support::grey_png_bytes(24, 24, true, false, zeros), "is not a grey image of 8 bits");
   with(test_support::compressed_png_bytes(24, 24, false), "names material");
-  with("", "images[1]");
+  with("", "bufferViews[");
   with("no image at all", "images[1]");
   with(test_support::jpeg_bytes(24, 24, 90, false, true), "images[1]");
   with(test_support::flat_png_bytes(16384, 16384, false), "images[1]");  // a bomb
