@@ -208,7 +208,7 @@ TEST(material_map, is_felt_in_a_scene_that_changes) {
       ASSERT_TRUE(dev.open() && dev.arm());
       control_settings control;
       control.surfaces = editor.surfaces();
-      control.map.T_ha.rotation = corner_down();
+      control.map.T_ha.rotation = test_support::corner_down();
       virtual_session<plane_renderer, simulated_device> session(make_plane_renderer(editor).value(), {{}, vec3(0.0)},
                                                                 dev, control);
       static_cast<void>(session.run_until(late ? 800'000'000 : 10'000'000));
