@@ -19,8 +19,9 @@ function documentOf(bytes) {
 
 // JSON pointers to the buffer views, and to the image of materials, that the extension's object names.
 function partsOfExtension(document) {
-  const {meshVertices, texture, pieces, materials} = document.meshes[0].extensions[extension];
+  const {meshVertices, texture, pieces, field, materials} = document.meshes[0].extensions[extension];
   const views = [meshVertices.bufferView, texture.bufferView, pieces.table, pieces.vertices, pieces.hull, pieces.triangles];
+  if (field) views.push(field.bufferView);
   return new Set([...views.map((v) => `/bufferViews/${v}`), ...(materials ? [`/images/${materials.image}`] : [])]);
 }
 
