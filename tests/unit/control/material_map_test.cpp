@@ -407,7 +407,7 @@ TEST(material_map, a_seam_makes_no_energy) {
       const auto made = std::make_shared<const field_scene>(fields_of(bodies.probe, bodies.fixed[0]));
       for (const rates& r : of) {
         if (r.device_hz > 5e3 && !at_length()) continue;
-        for (int n = 0; n < extent(1, 4); ++n) {
+        for (int n = 0; n < extent(1, 2); ++n) {
           simulated_settings hand;
           hand.seed = d.bits();
           hand.hand = d.bits() % 2 == 0 ? soft_hand() : firm_hand();
