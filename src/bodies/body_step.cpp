@@ -59,7 +59,7 @@ body_step::body_step(const free_bodies_settings& settings, const virtual_couplin
   reserve_resident(planes_, settings.most_planes);
   reserve_resident(bodies_, settings.most_planes);
   reserve_resident(turned_, settings.most_planes);
-  reserve_resident(index_, settings.most_planes);
+  reserve_resident(told_, settings.most_planes);
   reserve_resident(bristles_, most_pairs);
   reserve_resident(springs_, most_pairs);
   reserve_resident(at_place_, movers);
@@ -72,7 +72,7 @@ body_step::body_step(const free_bodies_settings& settings, const virtual_couplin
 }
 
 std::size_t body_step::heap_bytes() const noexcept {
-  return solver_.heap_bytes() + asperity::heap_bytes(planes_, bodies_, turned_, index_, bristles_, springs_, place_,
+  return solver_.heap_bytes() + asperity::heap_bytes(planes_, bodies_, turned_, told_, bristles_, springs_, place_,
                                                      at_place_, touches_, inertia_, a_, load_, v0_, v_, brake_,
                                                      impulses_);
 }
@@ -123,7 +123,7 @@ bool body_step::gather(double h_s, std::span<const mover> movers, std::span<cons
   planes_.clear();
   bodies_.clear();
   turned_.clear();
-  index_.clear();
+  told_.clear();
   // A plane that is further away than two bodies can go in a step cannot be met in it.
   const double far_m = -2.0 * h_s * settings_.fastest_m_per_s;
   bool all = true;
@@ -147,17 +147,17 @@ bool body_step::gather(double h_s, std::span<const mover> movers, std::span<cons
         all = false;
         continue;
       }
-      const double alpha = of.laws.dissipation_s_per_m(told.body);
+      const double alpha = of.laws.dissipation_s_per_m(told);
       planes_.push_back({.a = a,
                          .b = b,
                          .gradient_a = p.gradient,
                          .gradient_b = gradient_b,
                          .depth_m = p.depth_m,
-                         .stiffness_n_per_m = of.laws.stiffness_n_per_m(told.body),
+                         .stiffness_n_per_m = of.laws.stiffness_n_per_m(told),
                          .horizon_s = h_s + 1.5 * alpha * std::max(0.0, p.depth_m)});
       bodies_.push_back({a, b});
       turned_.push_back(p);
-      index_.push_back({told.body, static_cast<std::uint32_t>(&told - of.contact.planes.begin())});
+      told_.push_back(static_cast<std::uint32_t>(&told - of.contact.planes.begin()));
     }
   }
   return all;
@@ -255,14 +255,19 @@ void body_step::load(double h_s, std::span<const mover> movers, const hand_pull&
   brake_.assign(v0_.size(), 0.0);
 }
 
+body_step::of_friction body_step::coefficients(std::size_t plane,
+                                               std::span<const mover_contacts> contacts) const noexcept {
+  const surface_pair* const pair = contacts[bodies_[plane].a].laws.pair(turned_[plane]);
+  if (pair == nullptr) return {settings_.friction.static_coefficient, settings_.friction.dynamic_coefficient};
+  return {pair->static_friction, pair->dynamic_friction};
+}
+
 bool body_step::find_bristles(std::span<const mover> movers, std::span<const mover_contacts> contacts) noexcept {
   bool all = true;
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     if (!(planes_[i].lambda_n > 0.0)) continue;
     const pair_of of = bodies_[i];
-    const surface_pair* const pair = contacts[of.a].laws.pair(index_[i].other);
-    const double at_rest = pair != nullptr ? pair->static_friction : settings_.friction.static_coefficient;
-    const double slipping = pair != nullptr ? pair->dynamic_friction : settings_.friction.dynamic_coefficient;
+    const double at_rest = coefficients(i, contacts).at_rest;
     const bool known = std::any_of(bristles_.begin(), bristles_.end(),
                                    [&](const bristle& b) { return b.of.a == of.a && b.of.b == of.b; });
     if (!(at_rest > 0.0) || known) continue;
@@ -270,7 +275,7 @@ bool body_step::find_bristles(std::span<const mover> movers, std::span<const mov
       all = false;
       continue;
     }
-    bristles_.push_back({.of = of, .static_coefficient = at_rest, .dynamic_coefficient = slipping});
+    bristles_.push_back({.of = of});
   }
   for (bristle& b : bristles_) {
     b.solved_for = moves(movers, b.of.a) || moves(movers, b.of.b);
@@ -286,7 +291,7 @@ vec6 body_step::slide_of(const bristle& b, std::span<const vec6> v) const noexce
   return out;
 }
 
-void body_step::measure(double h_s, std::span<const vec6> v) noexcept {
+void body_step::measure(double h_s, std::span<const vec6> v, std::span<const mover_contacts> contacts) noexcept {
   for (bristle& b : bristles_) {
     if (!b.solved_for) continue;
     b.normal_n = 0.0;
@@ -297,8 +302,14 @@ void body_step::measure(double h_s, std::span<const vec6> v) noexcept {
     };
     for (std::size_t i = 0; i < planes_.size(); ++i) b.normal_n += force_n(i);
     if (!(b.normal_n > 0.0)) continue;
+    b.static_coefficient = b.dynamic_coefficient = 0.0;
     for (std::size_t i = 0; i < planes_.size(); ++i) {
-      if (const double n = force_n(i); n > 0.0) add_point(b.metric, n / b.normal_n, turned_[i]);
+      const double n = force_n(i);
+      if (!(n > 0.0)) continue;
+      add_point(b.metric, n / b.normal_n, turned_[i]);
+      const auto [at_rest, slipping] = coefficients(i, contacts);
+      b.static_coefficient += n / b.normal_n * at_rest;
+      b.dynamic_coefficient += n / b.normal_n * slipping;
     }
     b.held = held_in(b.metric, b.stretch, b.stored_j, settings_.friction.stiffness_n_per_m);
     b.theta = share_held(settings_.friction, b.metric, b.held, slide_of(b, v), h_s, b.theta, b.normal_n,
@@ -314,7 +325,7 @@ bool body_step::solve(double h_s, std::span<const mover> movers, std::span<const
   if (!solver_.solve(a_, load_, v0_, planes_, springs_, v_).solved) return false;
   for (int pass = 0; pass < most_passes; ++pass) {
     if (!find_bristles(movers, contacts)) left_out_ = true;
-    measure(h_s, pass == 0 ? v0_ : v_);
+    measure(h_s, pass == 0 ? v0_ : v_, contacts);
     springs_.clear();
     for (const bristle& b : bristles_) {
       if (!b.solved_for || !(b.normal_n > 0.0)) continue;
@@ -455,8 +466,7 @@ status body_step::step(double h_s, std::span<mover> movers, std::span<mover_cont
     bristles_.clear();
     return status::not_finite;
   }
-  for (std::size_t i = 0; i < planes_.size(); ++i)
-    contacts[bodies_[i].a].lambda_n[index_[i].told] = planes_[i].lambda_n;
+  for (std::size_t i = 0; i < planes_.size(); ++i) contacts[bodies_[i].a].lambda_n[told_[i]] = planes_[i].lambda_n;
   settle(h_s, movers, standing_centres_w);
   return left_out_ ? status::capacity_reached : status::ok;
 }

@@ -55,9 +55,8 @@ class body_step {
   struct pair_of {
     std::uint32_t a = 0, b = 0;
   };
-  // Of a plane: its support_plane::body, and where it is among its mover's planes.
-  struct place_in_list {
-    std::uint32_t other = 0, told = 0;
+  struct of_friction {
+    double at_rest = 0.0, slipping = 0.0;
   };
   struct bristle {
     pair_of of{};
@@ -89,7 +88,9 @@ class body_step {
   [[nodiscard]] bool solve(double h_s, std::span<const mover> movers,
                            std::span<const mover_contacts> contacts) noexcept;
   [[nodiscard]] bool find_bristles(std::span<const mover> movers, std::span<const mover_contacts> contacts) noexcept;
-  void measure(double h_s, std::span<const vec6> v) noexcept;
+  void measure(double h_s, std::span<const vec6> v, std::span<const mover_contacts> contacts) noexcept;
+  // What the materials of a plane make of friction.
+  [[nodiscard]] of_friction coefficients(std::size_t plane, std::span<const mover_contacts> contacts) const noexcept;
   [[nodiscard]] vec6 slide_of(const bristle& b, std::span<const vec6> v) const noexcept;
   // Bodies that would go further than is known get a brake. @return whether one did
   [[nodiscard]] bool brake(double h_s, std::span<const mover> movers) noexcept;
@@ -103,7 +104,7 @@ class body_step {
   std::vector<joint_plane> planes_;    // places instead of bodies
   std::vector<pair_of> bodies_;        // of each plane
   std::vector<support_plane> turned_;  // each plane where its bodies are now
-  std::vector<place_in_list> index_;
+  std::vector<std::uint32_t> told_;    // where each is among its mover's planes
   std::vector<bristle> bristles_;
   std::vector<joint_spring> springs_;
   std::vector<std::uint32_t> place_, at_place_;  // of each mover, and back

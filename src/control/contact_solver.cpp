@@ -58,9 +58,9 @@ struct plane_rows {
   rows.count = planes.size();
   for (std::size_t i = 0; i < rows.count; ++i) {
     const double d = planes[i].depth_m + dot(planes[i].gradient, moved);
-    const double alpha = moves ? laws.dissipation_s_per_m(planes[i].body) : 0.0;
+    const double alpha = moves ? laws.dissipation_s_per_m(planes[i]) : 0.0;
     out.deepest_m = std::max(out.deepest_m, d);
-    rows.stiffness_n_per_m[i] = laws.stiffness_n_per_m(planes[i].body);
+    rows.stiffness_n_per_m[i] = laws.stiffness_n_per_m(planes[i]);
     rows.horizon_s[i] = h_s + 1.5 * alpha * std::max(0.0, d);
     rows.depth_m[i] = d + rows.horizon_s[i] * dot(planes[i].gradient, v);
     if (moves) rows.depth_m[i] += rows.horizon_s[i] * planes[i].closing_m_per_s;

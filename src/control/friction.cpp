@@ -56,9 +56,7 @@ void friction::find_bodies(const support_planes& planes, const contact_solution&
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (!(by.lambda_n[i] > 0.0)) continue;
     const std::uint32_t body = planes[i].body;
-    const surface_pair* const pair = laws.pair(body);
-    const double at_rest = pair != nullptr ? pair->static_friction : settings_.static_coefficient;
-    const double slipping = pair != nullptr ? pair->dynamic_friction : settings_.dynamic_coefficient;
+    const auto [at_rest, slipping] = coefficients(planes[i], laws);
     if (!(at_rest > 0.0) ||
         std::any_of(bristles_.begin(), bristles_.end(), [&](const bristle& b) { return b.body == body; })) {
       continue;
@@ -70,7 +68,27 @@ void friction::find_bodies(const support_planes& planes, const contact_solution&
   for (bristle& b : bristles_) b.carried = velocity_of(carried, b.body);
 }
 
-void friction::measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept {
+friction::coefficients_of_plane friction::coefficients(const support_plane& p,
+                                                       const contact_laws& laws) const noexcept {
+  const surface_pair* const pair = laws.pair(p);
+  if (pair == nullptr) return {settings_.static_coefficient, settings_.dynamic_coefficient};
+  return {pair->static_friction, pair->dynamic_friction};
+}
+
+void friction::take_mean(bristle& b, const support_planes& planes,
+                         const std::array<double, most_support_planes>& force_n,
+                         const contact_laws& laws) const noexcept {
+  b.static_coefficient = b.dynamic_coefficient = 0.0;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    if (planes[i].body != b.body || !(force_n[i] > 0.0)) continue;
+    const auto [at_rest, slipping] = coefficients(planes[i], laws);
+    b.static_coefficient += force_n[i] / b.normal_n * at_rest;
+    b.dynamic_coefficient += force_n[i] / b.normal_n * slipping;
+  }
+}
+
+void friction::measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s,
+                       const contact_laws& laws) noexcept {
   std::array<double, most_support_planes> force_n;
   for (std::size_t i = 0; i < planes.size(); ++i) {
     const vec3& slope = planes[i].gradient.linear;
@@ -82,8 +100,11 @@ void friction::measure(const support_planes& planes, const contact_solution& by,
     for (std::size_t i = 0; i < planes.size(); ++i) b.normal_n += planes[i].body == b.body ? force_n[i] : 0.0;
     if (!(b.normal_n > 0.0)) continue;
     for (std::size_t i = 0; i < planes.size(); ++i) {
-      if (planes[i].body == b.body && force_n[i] > 0.0) detail::add_point(b.metric, force_n[i] / b.normal_n, planes[i]);
+      if (planes[i].body != b.body || !(force_n[i] > 0.0)) continue;
+      detail::add_point(b.metric, force_n[i] / b.normal_n, planes[i]);
+      b.on_map = b.on_map || planes[i].of_probe != 0 || planes[i].of_body != 0;
     }
+    if (b.on_map) take_mean(b, planes, force_n, laws);
     b.held = detail::held_in(b.metric, b.stretch, b.stored_j, settings_.stiffness_n_per_m);
     b.theta = detail::share_held(settings_, b.metric, b.held, v - b.carried, h_s, b.theta, b.normal_n,
                                  b.static_coefficient, b.dynamic_coefficient);
@@ -134,7 +155,7 @@ contact_solution friction::solve(mat6& a, const vec6& load, const vec6& v0, doub
   for (int pass = 0; pass < most_passes; ++pass) {
     find_bodies(planes, out, laws, carried);
     if (bristles_.empty()) return out;
-    measure(planes, out, pass == 0 ? v0 : out.velocity, h_s);
+    measure(planes, out, pass == 0 ? v0 : out.velocity, h_s, laws);
     with = a;
     vec6 pulled = load;
     for (const bristle& b : bristles_) {

@@ -37,7 +37,7 @@ bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, p
               0.5 * pull_.stiffness_n_m_per_rad * glm::dot(moved.angular, moved.angular);
   for (support_plane& p : out.planes) {
     if (!is_finite(p)) return false;
-    energy_j += 0.5 * laws_.stiffness_n_per_m(p.body) * std::max(0.0, p.depth_m) * std::max(0.0, p.depth_m);
+    energy_j += 0.5 * laws_.stiffness_n_per_m(p) * std::max(0.0, p.depth_m) * std::max(0.0, p.depth_m);
   }
   out.energy_j = energy_j;
   return std::isfinite(energy_j);

@@ -16,6 +16,7 @@
 #include "asperity/render/depth_backend.hpp"
 #include "field/quick_read.hpp"
 #include "field/quick_relief.hpp"
+#include "model/material_places.hpp"
 #include "planes/ball_bound.hpp"
 #include "planes/facing.hpp"
 #include "planes/slope_spread.hpp"
@@ -28,8 +29,10 @@ class leaf_reader {
  public:
   /// @param of_probe whether X is the probe; its motion takes Y's field along otherwise, and the slope's sign turns
   /// @param sinking_m of a sample that looks away, see plane_depth   @param work counts what is read
+  /// @param of_x,of_y where which material is; null without a map
   leaf_reader(const field_body& x, const pose& T_wx, const field_body& y, const pose& T_wy, std::uint32_t body,
-              bool of_probe, const vec3& c_a_w, double sinking_m, depth_work& work) noexcept
+              bool of_probe, const vec3& c_a_w, double sinking_m, const material_places* of_x,
+              const material_places* of_y, depth_work& work) noexcept
       : x_(&x),
         in_y_(&y.field),
         T_wx_(T_wx),
@@ -40,6 +43,8 @@ class leaf_reader {
         of_probe_(of_probe),
         c_a_w_(c_a_w),
         sinking_m_(sinking_m),
+        materials_x_(of_x),
+        materials_y_(of_y),
         work_(&work) {}
 
   [[nodiscard]] bool reads(const near_patch& patch) const noexcept {
@@ -142,6 +147,7 @@ class leaf_reader {
     const field_sample* sample = nullptr;
     double depth_m = -std::numeric_limits<double>::infinity();
     vec3 slope_y{0.0};
+    double sunk_m = 0.0;
   };
 
   // A sample is no deeper than this: bounds from the cheap to the sharp, as far as they are needed.
@@ -169,7 +175,7 @@ class leaf_reader {
     if (!(squared > facing::least_slope * facing::least_slope)) return {};
     const double cosine = glm::dot(vec3(s.axis_b), rotation_xy_ * d.slope) / std::sqrt(squared);
     const double sunk_m = sinking_m_ * (1.0 - facing_share(cosine, static_cast<double>(s.cone_rad)));
-    return {&s, d.value_m - sunk_m, d.slope};
+    return {&s, d.value_m - sunk_m, d.slope, sunk_m};
   }
 
   [[nodiscard]] static double facing_share(double cosine, double cone_rad) noexcept {
@@ -187,6 +193,19 @@ class leaf_reader {
     out.plane.r_w = out.point_w - c_a_w_;
     out.plane.gradient = {slope_w, glm::cross(out.plane.r_w, slope_w)};
     out.plane.n_ab_w = slope_w / std::sqrt(glm::dot(of.slope_y, of.slope_y));
+    if (materials_x_ != nullptr) {
+      (of_probe_ ? out.plane.of_probe : out.plane.of_body) = materials_x_->at(vec3(of.sample->position_b));
+    }
+    if (materials_y_ != nullptr) {
+      (of_probe_ ? out.plane.of_body : out.plane.of_probe) = materials_y_->at(foot_y(of));
+    }
+  }
+
+  // The point of Y's fine surface that a sample has its depth from.
+  [[nodiscard]] vec3 foot_y(const sample_depth& of) const noexcept {
+    const vec3 p_y = T_yx_ * vec3(of.sample->position_b);
+    const vec3 slope = in_y_->coarse(p_y).slope;
+    return p_y - (of.depth_m + of.sunk_m) / (glm::dot(slope, slope) + 1e-3) * slope;
   }
 
   const field_body* x_;
@@ -197,6 +216,7 @@ class leaf_reader {
   bool of_probe_;
   vec3 c_a_w_;
   double sinking_m_;
+  const material_places *materials_x_, *materials_y_;
   depth_work* work_;
 };
 

@@ -14,6 +14,7 @@
 #include "planes/known_branches.hpp"
 #include "planes/known_depths.hpp"
 #include "planes/leaf_reader.hpp"
+#include "planes/plane_materials.hpp"
 #include "planes/plane_watch.hpp"
 
 namespace asperity {
@@ -36,18 +37,19 @@ trial_motions trials_within(double reach_m) noexcept {
 // Readers of a pose, one for the patches of a body on either side; patches mostly come in long rows of the same two.
 class readers {
  public:
-  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w) noexcept
-      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w) {}
+  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w, const plane_materials& materials) noexcept
+      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), materials_(&materials) {}
 
   [[nodiscard]] const leaf_reader& of(const near_patch& patch, double sinking_m) noexcept {
     std::optional<leaf_reader>& out = patch.of_probe ? of_probe_ : of_fixed_;
     if (out && out->reads(patch)) return *out;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[patch.body];
     const pose &T_wa = at_->T_wa, &T_wb = at_->T_wb[patch.body];
+    const material_places *of_a = materials_->of_probe(), *of_b = materials_->of_body(patch.body);
     if (patch.of_probe) {
-      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m, work_);
+      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m, of_a, of_b, work_);
     } else {
-      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m, work_);
+      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m, of_b, of_a, work_);
     }
     return *out;
   }
@@ -57,6 +59,7 @@ class readers {
   const field_scene* bodies_;
   const scene_pose* at_;
   vec3 c_a_w_;
+  const plane_materials* materials_;
   depth_work work_;
   std::optional<leaf_reader> of_probe_, of_fixed_;
 };
@@ -100,6 +103,7 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
       branches_(std::move(branches)),
+      materials_(std::make_unique<plane_materials>(of, most)),
       asked_at_(std::make_unique<vec6>()) {
   for (way& w : ways_) w.sinking_m = facing::sinking_m(of);
   reserve(most);
@@ -116,6 +120,7 @@ plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t m
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
       branches_(std::move(branches)),
+      materials_(std::make_unique<plane_materials>(first, most)),
       asked_at_(std::make_unique<vec6>()) {
   reserve(most);
   take(first);
@@ -150,9 +155,11 @@ void plane_depth::take(const plane_scene& next) noexcept {
     come_ = true;
     watch_->forget(b, next.of[b]);
     known_->forget(b);
+    materials_->forget(b);
     if (branches_) branches_->forget(b);
   }
   bodies_ = next.fields;
+  materials_->take(next);
   placed_ = &next;
 }
 
@@ -160,7 +167,7 @@ const placed_scene* plane_depth::placed() const noexcept { return placed_; }
 
 status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
-  readers reading(*bodies_, at, c_a_w);
+  readers reading(*bodies_, at, c_a_w, *materials_);
   const auto reader_of = [&](const near_patch& patch) noexcept -> const leaf_reader& {
     return reading.of(patch, ways_[patch.body].sinking_m);
   };
@@ -187,6 +194,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
     read(patch, found.leaves_of(patch), reader_of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
   if (come_) stand_back(found, out);
+  if (materials_->any()) materials_->hold_back(found, out);
   for (const near_plane& p : out) {
     if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
   }
@@ -328,7 +336,7 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
 
 status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
                               const vec6& moved, double above_m, plane_list& out) const noexcept {
-  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_);
+  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, *materials_);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
   const double slid_m = std::sqrt(glm::dot(step.linear, step.linear));
@@ -346,9 +354,11 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
     const double least_m = std::max(deeper_m, come_to(asked, patch, reader, moved.angular) - told_m_ + of.back_m);
     if (!(static_cast<double>(asked.most_m) > least_m)) continue;
     known_->open(asked, patch);
+    const bool has_map = materials_->has_map(patch.body);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
       reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i), [&](support_plane plane) noexcept {
         plane.depth_m -= of.back_m;
+        if (has_map) plane.depth_m -= materials_->back_m(found.leaves()[i], patch.of_probe, plane);
         if (plane.depth_m > above_m) keep_deepest(plane, out);
       });
     }
@@ -359,9 +369,9 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
 
 std::size_t plane_depth::heap_bytes() const noexcept {
   return asperity::heap_bytes(reported_, order_, ways_) + sizeof(plane_watch) + watch_->heap_bytes() +
-         sizeof(first_met) + sizeof(known_depths) + sizeof(vec6) + known_->heap_bytes() +
-         (branches_ ? sizeof(known_branches) + branches_->heap_bytes() : 0) + sizeof(field_scene) +
-         bodies_->heap_bytes();
+         sizeof(plane_materials) + materials_->heap_bytes() + sizeof(first_met) + sizeof(known_depths) + sizeof(vec6) +
+         known_->heap_bytes() + (branches_ ? sizeof(known_branches) + branches_->heap_bytes() : 0) +
+         sizeof(field_scene) + bodies_->heap_bytes();
 }
 
 }  // namespace asperity

@@ -17,6 +17,18 @@ double usual_reach_m(const scene& bodies) noexcept {
   return reach_m;
 }
 
+// Maps of materials are looked up by the texels, so they have to fit them.
+result<void> check_maps(const scene& bodies) {
+  if (!bodies.probe->surface_map.empty()) {
+    if (const result<void> ok = check_materials(*bodies.probe); !ok) return ok;
+  }
+  for (const model_ptr& b : bodies.fixed) {
+    if (b->surface_map.empty()) continue;
+    if (const result<void> ok = check_materials(*b); !ok) return ok;
+  }
+  return {};
+}
+
 }  // namespace
 
 result<void> check_reach(double reach_m) {
@@ -29,6 +41,7 @@ result<plane_renderer> make_plane_renderer(scene bodies, std::shared_ptr<const f
   if (const result<void> ok = check_field_scene(bodies, made.get()); !ok) return ok.error();
   if (const result<void> ok = check_reach(settings.reach_m); !ok) return ok.error();
   if (const result<void> ok = check(settings.springs); !ok) return ok.error();
+  if (const result<void> ok = check_maps(bodies); !ok) return ok.error();
   const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : usual_reach_m(bodies);
   auto known = std::make_shared<known_branches>(*made, bodies.probe->mass.centre_of_mass);
   plane_depth depth(made, bodies, reach_m, settings.limits.readings(), known);

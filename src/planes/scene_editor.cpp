@@ -7,6 +7,7 @@
 #include "asperity/field/field_body.hpp"
 #include "asperity/planes/plane_depth.hpp"
 #include "asperity/planes/plane_finder.hpp"
+#include "model/material_places.hpp"
 #include "planes/body_tree.hpp"
 #include "planes/known_branches.hpp"
 
@@ -29,6 +30,7 @@ scene_editor::scene_editor(model_ptr probe, field_body_ptr made, const scene_lim
     : probe_(std::move(probe)),
       probe_field_(std::move(made)),
       probe_facts_(facts_of(*probe_field_, probe_->box.diagonal(), probe_->box.diagonal())),
+      probe_materials_(material_places::of(*probe_)),
       limits_(limits),
       fields_(fields),
       slots_(limits.bodies) {}
@@ -39,9 +41,7 @@ result<scene_editor> scene_editor::make(model_ptr probe, const scene_limits& lim
   constexpr std::size_t most_bodies = 1'000'000, most_balls = 100'000'000;
   if (limits.bodies < 1 || limits.bodies > most_bodies) return bad("scene_limits::bodies must be from 1 to 1000000");
   if (limits.balls < 1 || limits.balls > most_balls) return bad("scene_limits::balls must be from 1 to 100000000");
-  if (probe->surface) {
-    if (const result<void> ok = asperity::check(*probe->surface); !ok) return ok.error();
-  }
+  if (const result<void> ok = check_materials(*probe); !ok) return ok.error();
   result<field_body_ptr> made = field_of(probe, fields);
   if (!made) return made.error();
   return scene_editor(std::move(probe), std::move(*made), limits, fields);
@@ -49,15 +49,14 @@ result<scene_editor> scene_editor::make(model_ptr probe, const scene_limits& lim
 
 result<scene_editor::slot> scene_editor::fit(const model_ptr& model, field_body_ptr made) const {
   if (!model) return bad("a body has no model: give it a textured model");
-  if (model->surface) {
-    if (const result<void> ok = asperity::check(*model->surface); !ok) return ok.error();
-  }
+  if (const result<void> ok = check_materials(*model); !ok) return ok.error();
   const auto same = std::find_if(slots_.begin(), slots_.end(), [&](const slot& s) { return s.model == model; });
   if (same != slots_.end() && (!made || made == same->field)) {
     slot out;
     out.model = model;
     out.field = same->field;
     out.facts = same->facts;
+    out.materials = same->materials;
     return out;
   }
   if (!made) {
@@ -75,6 +74,7 @@ result<scene_editor::slot> scene_editor::fit(const model_ptr& model, field_body_
   out.model = model;
   out.facts = facts_of(*made, probe_->box.diagonal(), model->box.diagonal());
   out.field = std::move(made);
+  out.materials = material_places::of(*model);
   return out;
 }
 
@@ -162,7 +162,9 @@ std::size_t scene_editor::bodies() const noexcept {
 surface_pairs scene_editor::surfaces() const {
   surface_pairs out(slots_.size());
   for (std::size_t b = 0; b < slots_.size(); ++b) {
-    if (slots_[b].model) out[b] = combined(probe_->surface, slots_[b].model->surface);
+    if (!slots_[b].model) continue;
+    out[b] = combined(probe_->surface, slots_[b].model->surface);
+    add_mapped_pairs(*probe_, static_cast<std::uint32_t>(b), *slots_[b].model, out);
   }
   return out;
 }
@@ -178,6 +180,8 @@ std::shared_ptr<const plane_scene> scene_editor::prepare() {
   out->generation.resize(n);
   out->since.resize(n);
   out->of.resize(n);
+  out->materials.resize(n + 1);
+  out->materials[0] = probe_materials_;
   out->surfaces = surfaces();
   out->probe = probe_facts_;
   out->most_balls = limits_.balls;
@@ -194,6 +198,7 @@ std::shared_ptr<const plane_scene> scene_editor::prepare() {
     out->T_wb[b] = s.T_wb;
     out->generation[b] = s.generation;
     out->of[b] = s.facts;
+    out->materials[b + 1] = s.materials;
     fields->fixed[b] = s.field;
     spheres.push_back({b, s.T_wb * s.facts.centre_b, s.facts.radius_m});
   }

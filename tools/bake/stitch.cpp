@@ -36,13 +36,13 @@ footprint footprint_at(const haptic_texture& texture, const vec2& uv) {
           {(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy}};
 }
 
-// The smallest change of the texels that moves their mix by `step`.
-void move(haptic_texture& texture, const footprint& at, const vec3& step) {
+// The smallest change of the texels that moves their mix by `way`.
+void move(haptic_texture& texture, const footprint& at, const vec3& way) {
   double squares = 0.0;
   for (const double w : at.weight) squares += w * w;
   for (std::size_t k = 0; k < 4; ++k)
     if (at.weight[k] > 0.0)
-      texture.texels[at.texel[k]] = glm::vec3(vec3(texture.texels[at.texel[k]]) + at.weight[k] / squares * step);
+      texture.texels[at.texel[k]] = glm::vec3(vec3(texture.texels[at.texel[k]]) + at.weight[k] / squares * way);
 }
 
 struct seam {

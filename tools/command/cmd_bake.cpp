@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "asperity/bake/bake.hpp"
+#include "asperity/bake/map_materials.hpp"
 #include "asperity/bake/repair.hpp"
 #include "asperity/field/field_body.hpp"
+#include "asperity/io/image_file.hpp"
 #include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
 #include "bake_document.hpp"
@@ -35,6 +37,8 @@ struct bake_command {
   std::string picture;
   std::string name;
   std::string material;
+  std::string material_map;
+  std::vector<std::string> material_at;
   std::size_t triangles = 600;
   std::uint32_t texture = 1024;
   unsigned threads = 0;
@@ -52,9 +56,30 @@ result<void> check_paths(const bake_command& options) {
   inputs.insert(inputs.end(), coarse.begin(), coarse.end());
   for (const std::string& image : options.relief->inputs()) inputs.push_back({"the relief", image});
   if (!preset_material(options.material)) inputs.push_back({"--material", options.material});
+  inputs.push_back({"--material-map", options.material_map});
+  for (const std::string& at : options.material_at) inputs.push_back({"--material-at", file_of_material_at(at)});
   const std::vector<named_file> outputs{{"-o", options.out}, {"--picture", options.picture}};
   if (const result<void> ok = check_outputs(inputs, outputs); !ok) return ok;
   return check_writable(options.out);
+}
+
+/// An image of materials and what its colours stand for; nothing where none was asked for.
+struct material_image {
+  map_image image;
+  std::vector<bake::material_colour> colours;
+};
+result<std::optional<material_image>> read_material_map(const bake_command& options) {
+  if (options.material_map.empty()) return std::optional<material_image>{};
+  material_image out;
+  for (const std::string& at : options.material_at) {
+    result<bake::material_colour> colour = read_material_at(at);
+    if (!colour) return colour.error();
+    out.colours.push_back(std::move(*colour));
+  }
+  result<map_image> image = io::load_image(options.material_map, not_interrupted);
+  if (!image) return image.error();
+  out.image = std::move(*image);
+  return std::optional(std::move(out));
 }
 
 result<answer> run_bake(const bake_command& options, const common_options& common) {
@@ -65,6 +90,8 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     if (!read) return read.error();
     surface = std::move(*read);
   }
+  const result<std::optional<material_image>> mapped = read_material_map(options);
+  if (!mapped) return mapped.error();
 
   std::optional<output_file> drawing;
   if (!options.picture.empty()) {
@@ -101,6 +128,13 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     }
   }
 
+  if (*mapped && full->uvs.size() != full->triangles.size()) {
+    return error{error_code::bad_mesh, "--material-map: " + options.full +
+                                           " has no texture coordinates, so no image can be laid on it; export it with "
+                                           "its UVs (OBJ, glTF)" +
+                                           (holes.holes > 0 ? ", and close its holes there" : "")};
+  }
+
   bake::bake_settings settings;
   settings.name = options.name.empty() ? fs::path(options.full).stem().string() : options.name;
   settings.triangles = options.triangles;
@@ -124,10 +158,25 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   }
   // A mesh that the picture does not need is not kept twice.
   result<textured_model> model =
-      drawing && !settings.relief ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
+      (drawing && !settings.relief) || *mapped ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
   if (!model) return model.error();
   *model = io::as_saved(std::move(*model));
   model->surface = std::move(surface);
+  if (*mapped) {
+    if (!enter("materials", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
+    result<bake::laid_materials> laid =
+        bake::lay_materials(*model, *full, (*mapped)->image, (*mapped)->colours,
+                            {.threads = options.threads, .keep_going = not_interrupted});
+    if (!laid) return error{laid.error().code, options.material_map + ": " + laid.error().message};
+    model->surface = std::move(laid->surface);
+    model->surface_map = std::move(laid->map);
+    constexpr double many = 0.01;
+    if (laid->far_share > many) {
+      remarks.push_back(brief(100.0 * laid->far_share) +
+                        " % of the texels lie where the map of materials has a colour that none of --material-at is "
+                        "near to; they have the nearest one's material");
+    }
+  }
   if (!options.without_field) {
     if (!enter("field", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
     result<field_body> field = make_field_body(*model, {.field = {.threads = options.threads}});
@@ -199,8 +248,20 @@ void add_bake(command_line& line) {
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
       ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
-  sub.add_option("--material", o->material,
-                 "What the surface is like to touch: steel, wood, rubber, ice, or a material file (.json)");
+  auto* material =
+      sub.add_option("--material", o->material,
+                     "What the surface is like to touch: steel, wood, rubber, ice, or a material file (.json)");
+  auto* map = sub.add_option("--material-map", o->material_map,
+                             "Image of where which material is, by the full mesh's texture coordinates; with "
+                             "--material-at")
+                  ->excludes(material);
+  auto* at = sub.add_option("--material-at", o->material_at,
+                            "COLOUR=NAME or COLOUR=FILE: a colour of the map, as ff0000 or a grey level from 0 to 255, "
+                            "and its material; once for each, 2 to 8")
+                 ->expected(1)
+                 ->take_all()
+                 ->needs(map);
+  map->needs(at);
   sub.add_option("--threads", o->threads, "Threads to use; 0 takes all. The result does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();

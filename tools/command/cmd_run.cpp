@@ -270,11 +270,14 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (formulation_name(options.render) == "planes") control.surfaces = surfaces_of(feel->scene());
   if (!options.friction.empty()) {
     control.friction = friction_of(options.friction).value_or(friction_settings{});
+    const auto override_friction = [&](surface_pair& pair) {
+      pair.static_friction = control.friction.static_coefficient;
+      pair.dynamic_friction = control.friction.dynamic_coefficient;
+    };
     for (std::optional<surface_pair>& pair : control.surfaces) {
-      if (!pair) continue;
-      pair->static_friction = control.friction.static_coefficient;
-      pair->dynamic_friction = control.friction.dynamic_coefficient;
+      if (pair) override_friction(*pair);
     }
+    for (mapped_pair& m : control.surfaces.mapped) override_friction(m.pair);
   }
   found.surfaces = control.surfaces;
   found.rate = look_at_rate(chosen, *feel, {poses->T_wb, shape.centre_of_mass}, touch_T_wa, control);

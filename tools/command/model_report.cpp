@@ -131,6 +131,7 @@ json describe(const textured_model& model) {
         {"peak_to_valley", r.peak_to_valley_m},
         {"max_displacement", r.max_displacement_m}}},
       {"material", model.surface ? to_json(*model.surface) : json()},
+      {"materials", materials_json(model)},
       {"field", model.field ? to_json(*model.field) : json()},
       {"memory", memory_bytes(model)},
   };
@@ -163,7 +164,14 @@ std::string describe_text(const textured_model& model) {
   out += row("volume", brief(model.mass.volume_m3 * 1e6) + " cm^3");
   const vec3& c = model.mass.centre_of_mass;
   out += row("centre of mass", length_text(c.x) + ", " + length_text(c.y) + ", " + length_text(c.z));
-  if (model.surface) out += row("material", to_text(*model.surface));
+  if (model.surface && model.surface_map.empty()) out += row("material", to_text(*model.surface));
+  if (!model.surface_map.empty()) {
+    const std::vector<double> shares = material_shares(model);
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      out += row("material " + std::to_string(i),
+                 brief(100.0 * shares[i]) + " % of the surface, " + to_text(*material_of(model, i)));
+    }
+  }
   out += row("depth field", model.field ? to_text(*model.field) : "none kept; every load makes it");
   out += row("memory", memory_text(memory_bytes(model)));
   return out;

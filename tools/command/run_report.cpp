@@ -189,6 +189,12 @@ json friction_json(const run_command& options) {
 json surfaces_json(const surface_pairs& pairs) {
   json out = json::array();
   for (const std::optional<surface_pair>& p : pairs) out.push_back(p ? to_json(*p) : json());
+  for (const mapped_pair& m : pairs.mapped) {
+    json pair = to_json(m.pair);
+    pair["of_probe"] = m.of_probe;
+    pair["of_fixed"] = m.of_body;
+    out[m.body]["others"].push_back(std::move(pair));
+  }
   return out;
 }
 
@@ -281,7 +287,14 @@ answer report(const run_command& options, const session_findings& found) {
         row("friction", brief(mu->static_coefficient) + " at rest, " + brief(mu->dynamic_coefficient) + " slipping");
   }
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (surfaces[i]) out.text += row("surfaces", printable(file_stem(options.fixed[i])) + ": " + to_text(*surfaces[i]));
+    if (!surfaces[i]) continue;
+    const std::string name = printable(file_stem(options.fixed[i]));
+    out.text += row("surfaces", name + ": " + to_text(*surfaces[i]));
+    for (const mapped_pair& m : surfaces.mapped) {
+      if (m.body != i) continue;
+      out.text += row("", "material " + std::to_string(m.of_probe) + " of the probe, " + std::to_string(m.of_body) +
+                              " of " + name + ": " + to_text(m.pair));
+    }
   }
   for (const std::string& move : options.moves) out.text += row("moves", printable(move));
   out.text += row("contact loop", loop_text(options.contact_rate_hz, ended.contact, contact, real_time));

@@ -18,4 +18,8 @@ inline constexpr const char* row_order = "v0_first";
 inline constexpr std::size_t table_columns = 4;
 inline constexpr std::uint32_t flag_flat = 1;
 
+/// Of the map of materials.
+inline constexpr int materials_version = 1;
+inline constexpr const char* materials_mime_type = "image/png";
+
 }  // namespace asperity::io::extension

@@ -22,6 +22,9 @@ namespace asperity::io {
 [[nodiscard]] result<map_image> decode_jpeg(std::string_view bytes, const std::filesystem::path& file,
                                             reading_watch& watch);
 
+/// One byte a pixel, grey, as PNG, row by row. @pre bytes.size() == width * height, neither of them 0
+[[nodiscard]] std::string encode_grey_png(std::uint32_t width, std::uint32_t height, std::string_view bytes);
+
 /// The image in these bytes, whose first ones tell its format.
 [[nodiscard]] result<map_image> decode_image(std::string_view bytes, const std::filesystem::path& file,
                                              reading_watch watch = {});

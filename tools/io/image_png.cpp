@@ -154,4 +154,17 @@ result<map_image> decode_png(std::string_view bytes, const std::filesystem::path
   return sized;
 }
 
+std::string encode_grey_png(std::uint32_t width, std::uint32_t height, std::string_view bytes) {
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = width;
+  image.height = height;
+  image.format = PNG_FORMAT_GRAY;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string out(size, '\0');
+  if (png_image_write_to_memory(&image, out.data(), &size, 0, bytes.data(), 0, nullptr) == 0) throw std::bad_alloc();
+  out.resize(size);
+  return out;
+}
+
 }  // namespace asperity::io

@@ -1,5 +1,8 @@
 // Textured model from .glb: guard, then the extension, then the model check.
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -14,6 +17,7 @@
 #include "file_formats.hpp"
 #include "gltf_document.hpp"
 #include "haptic_texture_extension.hpp"
+#include "image_formats.hpp"
 #include "surface_json.hpp"
 
 namespace asperity::io {
@@ -234,8 +238,57 @@ field_body_ptr read_field(const gltf_document& document, const json_object& from
   return std::make_shared<const field_body>(std::move(*body));
 }
 
-/// The physics material of the colliders on the nodes that place this mesh; nothing where none has one.
-std::optional<material> read_surface(const json_object& root, std::size_t mesh) {
+/// A list of numbers of physics materials, each of which there is; the first is that of the colliders.
+std::vector<material> listed_materials(const json_object& root, const json_object& from, std::size_t first) {
+  const json_object bodies = root.object("extensions").object(extension::rigid_bodies);
+  const std::size_t known = bodies.array("physicsMaterials").size();
+  const json& list = from.array("physicsMaterials");
+  if (list.size() < 2 || list.size() > most_materials) {
+    reject(from.path("physicsMaterials") + " lists " + std::to_string(list.size()) + " materials, not 2 to " +
+           std::to_string(most_materials));
+  }
+  std::vector<material> out;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const std::string place = from.path("physicsMaterials") + "[" + std::to_string(i) + "]";
+    if (!list[i].is_number_unsigned() || list[i].get<std::uint64_t>() >= known) {
+      reject(place + " is not the number of one of " + std::to_string(known) + " physics materials");
+    }
+    const auto number = list[i].get<std::size_t>();
+    if (i == 0 && number != first) {
+      reject(place + " is " + std::to_string(number) + ", and the colliders of the mesh name " + std::to_string(first));
+    }
+    if (i > 0) out.push_back(read_material(bodies.element("physicsMaterials", number)));
+  }
+  return out;
+}
+
+/// The map of materials. @param first the physics material of the colliders
+material_map read_map(const gltf_document& document, const json_object& root, const json_object& from,
+                      const haptic_texture& texture, std::optional<std::size_t> first, reading_watch& watch) {
+  if (from.whole("version") != extension::materials_version) {
+    throw rejection{error_code::unsupported, from.path("version") + " is " + std::to_string(from.whole("version")) +
+                                                 ", and this build reads version 1; update asperity"};
+  }
+  if (!first) reject(from.path() + " maps materials, and no collider of the mesh names the first of them");
+  const json_object image = root.element("images", from.index("image", root.array("images").size()));
+  if (image.text("mimeType") != extension::materials_mime_type) reject(image.path("mimeType") + " is not image/png");
+  const std::string_view bytes = document.view_bytes(image.index("bufferView", document.geometry().bufferViews.size()));
+  const result<map_image> numbers = decode_png(bytes, image.path(), watch);
+  if (!numbers) throw rejection{numbers.error().code, numbers.error().message};
+  if (numbers->width != texture.width || numbers->height != texture.height || numbers->channels != 1 ||
+      numbers->bits != 8) {
+    throw rejection{error_code::bad_texture, image.path() + " is not a grey image of 8 bits with the " +
+                                                 std::to_string(texture.width) + " x " +
+                                                 std::to_string(texture.height) + " texels of the haptic texture"};
+  }
+  material_map out{.others = listed_materials(root, from, *first)};
+  out.texels.reserve(numbers->samples.size());
+  for (const float n : numbers->samples) out.texels.push_back(static_cast<std::uint8_t>(std::lround(255.0F * n)));
+  return out;
+}
+
+/// Which physics material the colliders on the nodes that place this mesh name; nothing where none has one.
+std::optional<std::size_t> named_material(const json_object& root, std::size_t mesh) {
   std::optional<std::size_t> named;
   for (std::size_t n = 0; n < root.array("nodes").size(); ++n) {
     const json_object node = root.element("nodes", n);
@@ -248,15 +301,18 @@ std::optional<material> read_surface(const json_object& root, std::size_t mesh) 
     if (named && *named != index) reject("nodes place the mesh with more than one physics material; leave it one");
     named = index;
   }
-  if (!named) return std::nullopt;
-  const json_object bodies = root.object("extensions").object(extension::rigid_bodies);
-  if (*named >= bodies.array("physicsMaterials").size()) {
-    reject(bodies.path("physicsMaterials") + " has no material " + std::to_string(*named) + ", which a node names");
-  }
-  return read_material(bodies.element("physicsMaterials", *named));
+  return named;
 }
 
-textured_model read_model(const gltf_document& document) {
+material read_surface(const json_object& root, std::size_t named) {
+  const json_object bodies = root.object("extensions").object(extension::rigid_bodies);
+  if (named >= bodies.array("physicsMaterials").size()) {
+    reject(bodies.path("physicsMaterials") + " has no material " + std::to_string(named) + ", which a node names");
+  }
+  return read_material(bodies.element("physicsMaterials", named));
+}
+
+textured_model read_model(const gltf_document& document, reading_watch& watch) {
   const json_object root(document.source(), "the document");
   const std::size_t m = find_mesh(root);
   const json_object mesh = root.element("meshes", m);
@@ -274,7 +330,11 @@ textured_model read_model(const gltf_document& document) {
   model.texture = read_texture(document, haptic.object("texture"));
   model.pieces = read_pieces(document, haptic.object("pieces"), model.mesh);
   model.report = read_report(haptic.object("report"));
-  model.surface = read_surface(root, m);
+  const std::optional<std::size_t> named = named_material(root, m);
+  if (named) model.surface = read_surface(root, *named);
+  if (haptic.has("materials")) {
+    model.surface_map = read_map(document, root, haptic.object("materials"), model.texture, named, watch);
+  }
   if (haptic.has("field")) model.field = read_field(document, haptic.object("field"), model);
   return model;
 }
@@ -282,7 +342,7 @@ textured_model read_model(const gltf_document& document) {
 result<textured_model> read_checked(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch) {
   static constexpr const char* mend = "bake the model again";
   result<textured_model> read = refusing(file, mend, [&]() -> result<textured_model> {
-    return read_model(gltf_document(bytes, file, buffer_policy::own_chunk_only, watch));
+    return read_model(gltf_document(bytes, file, buffer_policy::own_chunk_only, watch), watch);
   });
   if (!read) return read;
   if (const auto valid = validate(*read); !valid) {

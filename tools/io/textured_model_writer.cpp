@@ -17,6 +17,7 @@
 #include "asperity/model/validate.hpp"
 #include "file_bytes.hpp"
 #include "haptic_texture_extension.hpp"
+#include "image_formats.hpp"
 #include "relief_image.hpp"
 #include "report_object.hpp"
 #include "surface_json.hpp"
@@ -37,6 +38,7 @@ std::string as_utf8(const std::string& name) {
 textured_model rounded(textured_model model) {
   model.name = as_utf8(model.name);
   if (model.surface) model.surface->name = as_utf8(model.surface->name);
+  for (material& m : model.surface_map.others) m.name = as_utf8(m.name);
   for (vec3& p : model.mesh.positions) p = round_to_float32(p);
   for (coarse_triangle& t : model.mesh.triangles) {
     for (vec2& uv : t.uv) uv = round_to_float32(uv);
@@ -195,14 +197,31 @@ bool add_pieces(const textured_model& model, glb_builder& glb, object& to) {
   return true;
 }
 
-/// What the body is like to touch: a physics material, and a collider on the node that names it.
-void add_surface(const material& surface, tinygltf::Node& node, glb_builder& glb) {
+/// What the body is like to touch: physics materials, and a collider on the node that names the first of them.
+void add_surface(const textured_model& model, tinygltf::Node& node, glb_builder& glb) {
   const object collider{{"geometry", value(object{{"node", value(0)}})}, {"physicsMaterial", value(0)}};
   node.extensions[extension::rigid_bodies] = value(object{{"collider", value(collider)}});
-  const tinygltf::Value::Array materials{value(material_object(surface))};
+  tinygltf::Value::Array materials{value(material_object(*model.surface))};
+  for (const material& m : model.surface_map.others) materials.emplace_back(material_object(m));
   glb.model.extensions[extension::rigid_bodies] = value(object{{"physicsMaterials", value(materials)}});
   glb.model.extensionsUsed.emplace_back(extension::rigid_bodies);
   glb.model.extensionsUsed.emplace_back(extension::haptic_material);
+}
+
+/// Which texel is of which physics material: an image of numbers, and the list that they count in.
+object materials_object(const textured_model& model, glb_builder& glb) {
+  const std::string_view numbers(reinterpret_cast<const char*>(model.surface_map.texels.data()),
+                                 model.surface_map.texels.size());
+  tinygltf::Image image;
+  image.name = "materials";
+  image.mimeType = extension::materials_mime_type;
+  image.bufferView = glb.add_view(encode_grey_png(model.texture.width, model.texture.height, numbers));
+  glb.model.images.push_back(std::move(image));
+  tinygltf::Value::Array list;
+  for (std::size_t i = 0; i < material_count(model); ++i) list.emplace_back(static_cast<int>(i));
+  return {{"version", value(extension::materials_version)},
+          {"image", value(static_cast<int>(glb.model.images.size()) - 1)},
+          {"physicsMaterials", value(std::move(list))}};
 }
 
 result<void> write(const textured_model& given, const std::filesystem::path& file) {
@@ -250,6 +269,7 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
     field["bufferView"] = value(glb.add_view(pack_field(*model.field)));
     haptic["field"] = value(std::move(field));
   }
+  if (!model.surface_map.empty()) haptic["materials"] = value(materials_object(model, glb));
   mesh.extensions[extension::name] = value(std::move(haptic));
   glb.model.extensionsUsed.emplace_back(extension::name);
 
@@ -257,7 +277,7 @@ result<void> write(const textured_model& given, const std::filesystem::path& fil
   tinygltf::Node node;
   node.mesh = 0;
   node.name = model.name;
-  if (model.surface) add_surface(*model.surface, node, glb);
+  if (model.surface) add_surface(model, node, glb);
   glb.model.nodes.push_back(std::move(node));
   tinygltf::Scene scene;
   scene.nodes.push_back(0);

@@ -81,7 +81,10 @@ class contact_loop {
         selection_(selection),
         rest_(std::move(laws)) {
     if constexpr (scene_taker<Renderer>) {
-      if (const placed_scene* const s = renderer_.placed(); s != nullptr) placement_.T_wb = s->T_wb;
+      if (const placed_scene* const s = renderer_.placed(); s != nullptr) {
+        placement_.T_wb = s->T_wb;
+        rest_.look_in(s->surfaces);
+      }
     }
   }
 
@@ -163,6 +166,7 @@ class contact_loop {
         placement_.T_wb[b] = now.T_wb[b];
         rest_.put(b, now.surfaces[b]);
       }
+      rest_.look_in(now.surfaces);
     }
   }
 
@@ -185,9 +189,14 @@ class contact_loop {
     out.version = scene.version;
     out.bodies = there;
     for (const support_plane& p : out.planes) {
-      const bool known =
-          std::any_of(out.of.begin(), out.of.end(), [&](const contact_body& b) { return b.body == p.body; });
-      if (!known) static_cast<void>(out.of.push_back({p.body, scene.since[p.body], scene.surfaces[p.body]}));
+      const bool known = std::any_of(out.of.begin(), out.of.end(), [&](const contact_body& b) {
+        return b.body == p.body && b.of_probe == p.of_probe && b.of_body == p.of_body;
+      });
+      if (known) continue;
+      const surface_pair* const mapped = scene.surfaces.find(p.body, p.of_probe, p.of_body);
+      static_cast<void>(out.of.push_back({p.body, scene.since[p.body],
+                                          mapped != nullptr ? std::optional(*mapped) : scene.surfaces[p.body],
+                                          p.of_probe, p.of_body}));
     }
   }
 

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/core/export.hpp"
+#include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/material.hpp"
@@ -43,15 +45,34 @@ struct contact_law {
   return {};
 }
 
-/// The law of every body's planes: what its surface and the probe's make of a touch, and one law for all of which that
-/// is not known. Copied outside a tick only.
+/// The law of every body's planes: what its surface and the probe's make of a touch, where the plane is, and one law for
+/// all of which that is not known. Copied outside a tick only.
 struct contact_laws {
   contact_laws(const contact_law& of_the_others = {}, surface_pairs of_bodies = {}) noexcept
       : usual(of_the_others), pairs(std::move(of_bodies)) {}
 
-  /// The pair of a body (support_plane::body); null where the usual law holds. @rt safe
+  /// The pair of a body (support_plane::body) and the first materials; null where the usual law holds. @rt safe
   [[nodiscard]] const surface_pair* pair(std::uint32_t body) const noexcept {
     return body < pairs.size() && pairs[body] ? &*pairs[body] : nullptr;
+  }
+  /// The pair of a plane's own materials, and of the first ones where theirs is not known. @rt safe
+  [[nodiscard]] const surface_pair* pair(const support_plane& p) const noexcept {
+    if (p.of_probe == 0 && p.of_body == 0) return pair(p.body);
+    for (const mapped_pair& m : told) {
+      if (m.body == p.body && m.of_probe == p.of_probe && m.of_body == p.of_body) return &m.pair;
+    }
+    const surface_pair* const found = (of_scene != nullptr ? *of_scene : pairs).find(p.body, p.of_probe, p.of_body);
+    return found != nullptr ? found : pair(p.body);
+  }
+  /// @rt safe
+  [[nodiscard]] double stiffness_n_per_m(const support_plane& of) const noexcept {
+    const surface_pair* const p = pair(of);
+    return p != nullptr ? p->stiffness_n_per_m : usual.stiffness_n_per_m;
+  }
+  /// @rt safe
+  [[nodiscard]] double dissipation_s_per_m(const support_plane& of) const noexcept {
+    const surface_pair* const p = pair(of);
+    return p != nullptr ? p->dissipation_s_per_m : usual.dissipation_s_per_m;
   }
   /// @rt safe
   [[nodiscard]] double stiffness_n_per_m(std::uint32_t body) const noexcept {
@@ -68,9 +89,24 @@ struct contact_laws {
   void put(std::uint32_t body, const std::optional<surface_pair>& pair) noexcept {
     if (body < pairs.size()) pairs[body] = pair;
   }
+  /// What a contact of a changing scene tells of its planes' materials, in the place of what the last one told. @rt safe
+  void put(std::span<const contact_body> of_planes) noexcept {
+    told.clear();
+    for (const contact_body& b : of_planes) {
+      if (b.of_probe == 0 && b.of_body == 0) {
+        put(b.body, b.surface);
+      } else if (b.surface) {
+        static_cast<void>(told.push_back({b.body, b.of_probe, b.of_body, *b.surface}));
+      }
+    }
+  }
 
   contact_law usual;
   surface_pairs pairs;
+  /// Pairs of maps of materials are looked for here first; empty where the scene never changes.
+  fixed_vector<mapped_pair, most_support_planes> told{};
+  /// And then here, where it is not null, instead of in `pairs`: those of the scene that is rendered.
+  const surface_pairs* of_scene = nullptr;
 };
 
 /// Outcome of one step against support planes.
@@ -88,7 +124,7 @@ struct contact_solution {
 /// Velocity v and forces lambda at the end of a step of length h, with
 ///   A (v - v0) = load - sum lambda_i g_i,   lambda_i = k max(0, d_i + h_i (g_i . v + c_i)),
 ///   h_i = h + 1.5 alpha max(0, d_i),
-/// k and alpha those of the plane's body, c_i its own approach.
+/// k and alpha those of the plane's body and materials, c_i its own approach.
 /// These are the conditions for the least value of a convex function of v that is quadratic wherever the set of pressed
 /// planes is the same. Newton's method with an exact line search finds it in finitely many passes; each factorises one
 /// 6x6 matrix. It keeps no state: the same step has the same answer whatever came before.

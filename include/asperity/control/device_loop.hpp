@@ -272,6 +272,7 @@ class device_loop {
   void take_scene(std::uint64_t before, std::int64_t now_ns) noexcept {
     const linear_contact& contact = shared_->contacts.front();
     if (contact.version == 0) return;
+    motion_.take_laws(contact);
     bodies_.keep_only(contact.bodies, contact.time_ns);
     if (contact.version == before) return;
     motion_.take_scene(before, contact);

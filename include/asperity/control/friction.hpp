@@ -53,7 +53,8 @@ struct friction_energy {
 /// t being the damping and |x|^2 = x^T D x. It loses
 ///   k (|z - theta y|^2 / 2 + theta (1 - theta) |y|^2 + theta t h |v|^2),
 /// which is not negative for any theta from 0 to 1: friction makes no energy, however well the passes that find theta
-/// and D have converged. Where other points press than before and the new metric would raise what is stored, z is made
+/// and D have converged. On a body with a map of materials mu is the mean of what the pressed points have, weighted by
+/// their forces; it may change from step to step, because no theta makes energy. Where other points press than before and the new metric would raise what is stored, z is made
 /// shorter. On a moving body v is the probe's velocity less that of the body: the loss is the same, and f does work on the
 /// body, which it gives.
 /// @source bristles: Canudas de Wit et al., A new model for control of systems with friction, 1995; one cone for all
@@ -110,6 +111,7 @@ class ASPERITY_API friction {
     vec6 stretch{};  // z
     double stored_j = 0.0;
     wrench on_probe_w{};
+    bool on_map = false;  // pressed where a map says another material than the first: the coefficients are means
     // Of the step that is being solved.
     mat6 metric{};          // D
     vec6 held{};            // z in this metric
@@ -121,8 +123,16 @@ class ASPERITY_API friction {
   // The bristles of the bodies that are pressed and have friction; new ones are at rest.
   void find_bodies(const support_planes& planes, const contact_solution& by, const contact_laws& laws,
                    std::span<const body_velocity> carried) noexcept;
+  struct coefficients_of_plane {
+    double at_rest, slipping;
+  };
+  [[nodiscard]] coefficients_of_plane coefficients(const support_plane& p, const contact_laws& laws) const noexcept;
+  // The coefficients of a bristle as the mean over what is pressed.
+  void take_mean(bristle& b, const support_planes& planes, const std::array<double, most_support_planes>& force_n,
+                 const contact_laws& laws) const noexcept;
   // Metric, force and share of a bristle for these forces and this velocity.
-  void measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s) noexcept;
+  void measure(const support_planes& planes, const contact_solution& by, const vec6& v, double h_s,
+               const contact_laws& laws) noexcept;
 
   friction_settings settings_;
   fixed_vector<bristle, most_bodies> bristles_;

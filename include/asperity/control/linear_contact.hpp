@@ -27,11 +27,13 @@ inline constexpr std::size_t most_selected_planes = 20;
 /// Support planes of one contact; dropped() tells how many more were wanted than it could keep.
 using support_planes = fixed_vector<support_plane, most_support_planes>;
 
-/// A body of a changing scene that a contact has planes of.
+/// A body of a changing scene that a contact has planes of; once for each two materials of those planes.
 struct contact_body {
   std::uint32_t body = 0;                 ///< its slot
   std::uint64_t since = 0;                ///< placed_scene::since of the slot
   std::optional<surface_pair> surface{};  ///< of the probe and it
+  std::uint8_t of_probe = 0;              ///< numbers of the materials, as support_plane has them
+  std::uint8_t of_body = 0;
 };
 
 /// Contact wrench on the probe, linear in the probe's pose: W(q) = W0 + J (q - q0). World axes, torque about c_A.

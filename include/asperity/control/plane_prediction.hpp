@@ -43,6 +43,8 @@ class ASPERITY_API rest_prediction {
   void forget() noexcept { known_ = false; }
   /// Another body is in a slot. @rt safe
   void put(std::uint32_t body, const std::optional<surface_pair>& pair) noexcept { laws_.put(body, pair); }
+  /// Where pairs of maps of materials are from now on. @param now outlives its use here   @rt safe
+  void look_in(const surface_pairs& now) noexcept { laws_.of_scene = &now; }
 
   /// @param pull of the coupling at T_wc; nothing is done where it is not known
   /// @param T_wc pose of c_A at which pull and planes were reported

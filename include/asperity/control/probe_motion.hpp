@@ -65,15 +65,15 @@ class probe_motion {
     friction_.forget();
   }
 
-  /// A contact of another scene comes: the probe rubs anew on the bodies that were not where they are, and the laws are
-  /// those of the bodies that are there.
+  /// A contact of another scene comes: the probe rubs anew on the bodies that were not where they are.
   /// @param before version of the contact that was in use   @param now comes into use
   void take_scene(std::uint64_t before, const linear_contact& now) noexcept {
     for (const contact_body& b : now.of) {
-      laws_.put(b.body, b.surface);
       if (b.since > before) friction_.forget(b.body);
     }
   }
+  /// The laws of what a contact of a changing scene has planes of. To be told of each before it is felt.
+  void take_laws(const linear_contact& now) noexcept { laws_.put({now.of.data(), now.of.size()}); }
 
   /// From the present target to another pose: translation (m) and rotation vector (rad), world axes.
   [[nodiscard]] vec6 way_to(const pose& T_wc) const noexcept { return pose_difference(T_wc, target_T_wc_); }

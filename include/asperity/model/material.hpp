@@ -1,6 +1,7 @@
 // What a body's surface is like to touch, and what two surfaces make of a touch.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -34,7 +35,7 @@ enum class friction_combine : std::uint8_t { average, minimum, maximum, multiply
   return "unknown";
 }
 
-/// A surface, the same all over a body. The defaults are those of two bodies that make what planes do where no material
+/// What a surface, or a part of one, is like to touch. The defaults are those of two bodies that make what planes do where no material
 /// is known: 200 N/mm and 5 s/m, without friction.
 struct material {
   std::string name{};                ///< for people; may be empty
@@ -72,8 +73,49 @@ struct surface_pair {
 [[nodiscard]] ASPERITY_API std::optional<surface_pair> combined(const std::optional<material>& a,
                                                                 const std::optional<material>& b) noexcept;
 
+/// Most materials of one body: its first one, and those of its map.
+inline constexpr std::size_t most_materials = 8;
+
+/// Which material each texel of a body's haptic texture is of. Number 0 is the body's first material,
+/// textured_model::surface; number i is others[i - 1]. Without `others` there is no map.
+struct material_map {
+  std::vector<material> others;        ///< at most most_materials - 1
+  std::vector<std::uint8_t> texels{};  ///< a number for each texel, in the order of haptic_texture::texels
+
+  [[nodiscard]] bool empty() const noexcept { return others.empty(); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(others, texels); }
+};
+
+/// What two parts of two surfaces make of a touch, where one of the bodies has a material_map.
+struct mapped_pair {
+  std::uint32_t body = 0;     ///< of the fixed body: its place in surface_pairs
+  std::uint8_t of_probe = 0;  ///< number of the material of the probe, and ...
+  std::uint8_t of_body = 0;   ///< ... of the body
+  surface_pair pair{};
+
+  /// Grows with the body, then the probe's material, then the body's.
+  [[nodiscard]] constexpr std::uint64_t key() const noexcept {
+    return std::uint64_t{body} << 16U | std::uint64_t{of_probe} << 8U | of_body;
+  }
+};
+
 /// The pairs that the probe makes with each fixed body, in their order; nothing for a pair of which nothing is known.
-using surface_pairs = std::vector<std::optional<surface_pair>>;
+/// They are those of the bodies' first materials. `mapped` has the others, where bodies have maps.
+struct surface_pairs : std::vector<std::optional<surface_pair>> {
+  using std::vector<std::optional<surface_pair>>::vector;
+
+  /// The pairs with a material that is not the first of its body, in the order of mapped_pair::key().
+  std::vector<mapped_pair> mapped{};
+
+  /// The pair of these two materials; null where there is no such pair in `mapped`. @rt safe
+  [[nodiscard]] const surface_pair* find(std::uint32_t body, std::uint8_t of_probe,
+                                         std::uint8_t of_body) const noexcept {
+    const std::uint64_t key = mapped_pair{body, of_probe, of_body, {}}.key();
+    const auto at = std::lower_bound(mapped.begin(), mapped.end(), key,
+                                     [](const mapped_pair& p, std::uint64_t k) { return p.key() < k; });
+    return at != mapped.end() && at->key() == key ? &at->pair : nullptr;
+  }
+};
 
 /// Materials to begin with: steel, wood, rubber, ice. Their sources are in docs/how-to/materials.md.
 [[nodiscard]] ASPERITY_API std::span<const material> material_presets();

@@ -52,10 +52,26 @@ struct placed_scene {
   return error{error_code::invalid_argument, "the scene has no fixed body: give the probe something to touch"};
 }
 
-/// What the probe's surface and that of each fixed body make of a touch. @pre every model has been checked
+/// Adds the pairs of two bodies with maps to those that are known. @param body of the fixed one
+inline void add_mapped_pairs(const textured_model& probe, std::uint32_t body, const textured_model& fixed,
+                             surface_pairs& to) {
+  for (std::size_t a = 0; a < material_count(probe); ++a) {
+    for (std::size_t b = 0; b < material_count(fixed); ++b) {
+      const std::optional<surface_pair> pair = combined(material_of(probe, a), material_of(fixed, b));
+      if (a + b == 0 || !pair) continue;
+      to.mapped.push_back({body, static_cast<std::uint8_t>(a), static_cast<std::uint8_t>(b), *pair});
+    }
+  }
+}
+
+/// What the probe's surface and that of each fixed body make of a touch, all over where they have maps of materials.
+/// @pre every model has been checked
 [[nodiscard]] inline surface_pairs surfaces_of(const scene& bodies) {
   surface_pairs out;
-  for (const model_ptr& b : bodies.fixed) out.push_back(combined(bodies.probe->surface, b->surface));
+  for (const model_ptr& b : bodies.fixed) {
+    add_mapped_pairs(*bodies.probe, static_cast<std::uint32_t>(out.size()), *b, out);
+    out.push_back(combined(bodies.probe->surface, b->surface));
+  }
   return out;
 }
 

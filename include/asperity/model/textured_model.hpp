@@ -56,15 +56,31 @@ struct textured_model {
   bounds box;            ///< of the coarse mesh
   bake_report report;
   std::optional<material> surface;  ///< what it is like to touch; nothing where nobody said
+  /// Where its surface is of other materials; needs `surface`. Felt through support planes; see docs/how-to/materials.md.
+  material_map surface_map{};
   /// Made at bake and kept in the file, so that no renderer has to make it; nothing where each makes its own. One that was
   /// not made of this mesh and texture as they are now is not used.
   field_body_ptr field;
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
     return asperity::heap_bytes(name, mesh, texture, pieces) + (surface ? surface->heap_bytes() : 0) +
-           (field ? asperity::memory_bytes(*field) : 0);
+           surface_map.heap_bytes() + (field ? asperity::memory_bytes(*field) : 0);
   }
 };
+
+/// How many materials a model has: 1 and those of its map. One that says nothing has one that is not known.
+[[nodiscard]] inline std::size_t material_count(const textured_model& model) noexcept {
+  return 1 + model.surface_map.others.size();
+}
+/// Material of this number; nothing where it is not known. @pre number < material_count(model)
+[[nodiscard]] inline std::optional<material> material_of(const textured_model& model, std::size_t number) {
+  return number == 0 ? model.surface : model.surface_map.others[number - 1];
+}
+/// Which part of the coarse surface each material has; they add up to 1. Not for a tick. @pre validate(model)
+[[nodiscard]] ASPERITY_API std::vector<double> material_shares(const textured_model& model);
+/// Says what of a model's materials and their map is wrong.
+/// @return invalid_argument (a number out of range) | bad_texture (the map fits no list, or not the haptic texture)
+[[nodiscard]] ASPERITY_API result<void> check_materials(const textured_model& model);
 
 /// Memory that a model takes, bytes: itself and all that it holds. See heap_bytes() for what is counted.
 [[nodiscard]] inline std::size_t memory_bytes(const textured_model& model) noexcept {

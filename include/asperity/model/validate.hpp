@@ -329,8 +329,8 @@ inline result<void> check_pieces(const textured_model& model) {
 /// @return bad_mesh: indices, coordinates (finite, within 10 km), areas, closedness, orientation, one fan per vertex,
 ///         pieces;
 ///         limit_exceeded: more than max_coarse_triangles;
-///         bad_texture: size, coordinates, a texel under a chart that holds no position;
-///         invalid_argument: a number of its material. The message names the place.
+///         bad_texture: size, coordinates, a texel under a chart that holds no position, a map of materials that does not fit;
+///         invalid_argument: a number of its materials. The message names the place.
 [[nodiscard]] inline result<void> validate(const textured_model& model) {
   if (auto r = detail::check_triangles(model.mesh); !r) return r;
   if (auto r = detail::check_closed(model.mesh); !r) return r;
@@ -338,7 +338,7 @@ inline result<void> check_pieces(const textured_model& model) {
   if (auto r = detail::check_charts(model.mesh); !r) return r;
   if (auto r = detail::check_texels(model); !r) return r;
   if (auto r = detail::check_pieces(model); !r) return r;
-  return model.surface ? check(*model.surface) : result<void>{};
+  return check_materials(model);
 }
 
 }  // namespace asperity

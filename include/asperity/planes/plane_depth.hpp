@@ -25,6 +25,7 @@ class first_met;
 class known_branches;
 class known_depths;
 class leaf_reader;
+class plane_materials;
 struct plane_scene;
 
 /// Reads the field at every near sample and keeps the deepest of each leaf, with its slope, as a support plane. Edge
@@ -45,6 +46,9 @@ struct plane_scene;
 /// much further in, so that it pushes as hard as what was there, and flags() tell it (tick_flag::stands_back). It comes
 /// forward behind a probe that leaves it, as far away as gaps are told, so a change puts no more energy into the probe
 /// than springs that are let_in_m deeper hold.
+///
+/// Where a body has a map of materials, a plane tells of which its point is, on either body. Where what is pressed becomes
+/// harder under the probe, as at a seam, it stands back too, and pushes no harder than before: see docs/how-to/materials.md.
 ///
 /// A reading whose depth is -infinity stands for a leaf that has no plane.
 class ASPERITY_API plane_depth {
@@ -135,6 +139,7 @@ class ASPERITY_API plane_depth {
   std::unique_ptr<first_met> met_;
   std::unique_ptr<known_depths> known_;
   std::shared_ptr<known_branches> branches_;
+  std::unique_ptr<plane_materials> materials_;
   std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
   double farthest_m_ = 0.0;         // of the probe's samples from its centre of mass
   known_motion known_motion_;

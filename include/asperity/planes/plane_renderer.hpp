@@ -44,7 +44,8 @@ struct plane_renderer_settings {
 
 /// The plane renderer for bodies that were made before, by make_field_scene(): several renderers can share them.
 /// @pre made are of these bodies, in their order
-/// @return invalid_argument (no probe, no fixed body, bodies missing, a setting out of range)
+/// @return invalid_argument (no probe, no fixed body, bodies missing, a setting out of range) | bad_texture (a map of
+///         materials that does not fit)
 [[nodiscard]] ASPERITY_API result<plane_renderer> make_plane_renderer(scene bodies,
                                                                       std::shared_ptr<const field_scene> made,
                                                                       const plane_renderer_settings& settings = {});

@@ -97,6 +97,7 @@ class ASPERITY_API scene_editor {
     std::uint32_t generation = 0;  // of the last body that was here
     std::uint64_t since = 0;
     body_facts facts{};
+    std::shared_ptr<const material_places> materials;  // null without a map
   };
 
   scene_editor(model_ptr probe, field_body_ptr made, const scene_limits& limits, const field_body_settings& fields);
@@ -113,6 +114,7 @@ class ASPERITY_API scene_editor {
   model_ptr probe_;
   field_body_ptr probe_field_;
   body_facts probe_facts_;
+  std::shared_ptr<const material_places> probe_materials_;
   scene_limits limits_;
   field_body_settings fields_;
   std::vector<slot> slots_;

@@ -24,6 +24,8 @@ struct support_plane {
   std::uint32_t body = 0;        ///< index of B in scene::fixed
   std::uint32_t sample = 0;      ///< planes of one body with the same number stand for the same point; 0: not known
   double closing_m_per_s = 0.0;  ///< how fast the depth grows by the body's own motion; 0 for a body at rest
+  std::uint8_t of_probe = 0;     ///< number of the probe's material where the point is; see material_map
+  std::uint8_t of_body = 0;      ///< and of the body's
 };
 
 /// @rt safe

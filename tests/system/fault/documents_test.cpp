@@ -160,6 +160,66 @@ TEST_F(documents, a_bake_keeps_texture_coordinates) {
   EXPECT_EQ(read("alone.glb"), read("kept.glb"));
 }
 
+// A grey image of two pixels, 0 and 255, over the unwrapped cube: each face is half of one material, half of the other.
+TEST_F(documents, a_map_of_materials) {
+  constexpr unsigned char image[]{0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
+                                  0x44, 0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00,
+                                  0x00, 0xd1, 0x49, 0x20, 0x56, 0x00, 0x00, 0x00, 0x0b, 0x49, 0x44, 0x41, 0x54, 0x78,
+                                  0x9c, 0x63, 0x60, 0xf8, 0x0f, 0x00, 0x01, 0x02, 0x01, 0x00, 0x42, 0xbe, 0xbc, 0x68,
+                                  0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  write("halves.png", std::string(reinterpret_cast<const char*>(image), sizeof image));
+  write("cube.obj", unwrapped_cube());
+  const auto bake = [&](const std::string& mesh, std::initializer_list<std::string> more) {
+    std::vector<std::string> args{"bake", mesh, "--units", "mm", "--texture", "64", "-o", path("cube.glb")};
+    args.insert(args.end(), more.begin(), more.end());
+    return args;
+  };
+  const std::string map = path("halves.png");
+  const json baked = expect_document(
+      bake(path("cube.obj"), {"--material-map", map, "--material-at", "000000=ice", "--material-at", "255=rubber"}),
+      "asperity.bake/1");
+  ASSERT_EQ(baked["materials"].size(), 2U);
+  double whole = 0.0;
+  for (const json& m : baked["materials"]) {
+    expect_keys(m, {"name", "stiffness", "dissipation", "friction", "share"});
+    whole += m["share"].get<double>();
+    EXPECT_GT(m["share"], 0.1);
+  }
+  EXPECT_NEAR(whole, 1.0, 1e-9);
+  EXPECT_EQ(baked["material"]["name"], "ice");
+  EXPECT_EQ(baked["materials"][1]["name"], "rubber");
+  EXPECT_EQ(expect_document({"inspect", path("cube.glb")}, "asperity.inspect/1")["materials"], baked["materials"]);
+  const json felt =
+      expect_document({"run", "--probe", pin(), "--fixed", path("cube.glb"), "--seconds", "0.02"}, "asperity.run/1");
+  ASSERT_EQ(felt["surfaces"][0]["others"].size(), 1U);
+  expect_keys(felt["surfaces"][0]["others"][0], {"stiffness", "dissipation", "friction", "of_probe", "of_fixed"});
+  EXPECT_EQ(felt["surfaces"][0]["others"][0]["of_fixed"], 1);
+  EXPECT_NEAR(felt["surfaces"][0]["others"][0]["stiffness"], 3000.0, 1e-6);
+  const json rubbed =
+      expect_document({"run", "--probe", pin(), "--fixed", path("cube.glb"), "--seconds", "0.02", "--friction", "0.5"},
+                      "asperity.run/1");
+  EXPECT_EQ(rubbed["surfaces"][0]["others"][0]["friction"]["static"], 0.5);
+
+  const auto refused = [&](const std::vector<std::string>& args, int status, const char* code, const char* why) {
+    const std::string message = expect_failure(args, status, code);
+    EXPECT_NE(message.find(why), std::string::npos) << message;
+  };
+  const std::string ice = "0=ice", rubber = "255=rubber";
+  refused({"bake", block("block.ply"), "--texture", "64", "-o", path("cube.glb"), "--material-map", map,
+           "--material-at", ice, "--material-at", rubber},
+          1, "bad_mesh", "has no texture coordinates");
+  refused(bake(path("cube.obj"), {"--material-map", map, "--material-at", ice}), 1, "invalid_argument",
+          "2 to 8 colours");
+  refused(bake(path("cube.obj"), {"--material-map", map, "--material-at", ice, "--material-at", "255=felt"}), 1,
+          "invalid_argument", "there is no material 'felt'");
+  refused(bake(path("cube.obj"), {"--material-map", map, "--material-at", ice, "--material-at", "red=rubber"}), 1,
+          "invalid_argument", "six hexadecimal digits");
+  refused(bake(path("cube.obj"), {"--material-map", map, "--material-at", ice, "--material-at", "256=rubber"}), 1,
+          "invalid_argument", "a grey level from 0 to 255");
+  refused(bake(path("cube.obj"), {"--material-map", path("absent.png"), "--material-at", ice, "--material-at", rubber}),
+          1, "io_failed", "absent.png");
+}
+
 TEST_F(documents, inspect_takes_the_original_in_its_own_units) {
   write("cube.obj", unwrapped_cube());
   ASSERT_EQ(run({"bake", path("cube.obj"), "--units", "mm", "--texture", "64", "-o", path("cube.glb")}).exit_status, 0);

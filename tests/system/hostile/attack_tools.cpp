@@ -33,6 +33,27 @@ const std::string& good_model() {
   return bytes;
 }
 
+const std::string& good_mapped_model() {
+  static const std::string bytes = [] {
+    const auto file =
+        std::filesystem::temp_directory_path() / ("asperity_hostile_map_" + std::to_string(::getpid()) + ".glb");
+    textured_model model = test_support::make_flat_box({0.01, 0.01, 0.01}, 24);
+    model.surface = preset_material("ice").value();
+    model.surface_map.others = {preset_material("rubber").value(), preset_material("wood").value()};
+    for (std::size_t i = 0; i < model.texture.texels.size(); ++i) {
+      model.surface_map.texels.push_back(static_cast<std::uint8_t>(i / 7 % 3));
+    }
+    if (const auto saved = io::save_textured_model(model, file); !saved) {
+      throw std::runtime_error(saved.error().message);
+    }
+    std::ifstream in(file, std::ios::binary);
+    std::string out{std::istreambuf_iterator<char>(in), {}};
+    std::filesystem::remove(file);
+    return out;
+  }();
+  return bytes;
+}
+
 std::string tetrahedron_bytes() {
   constexpr std::array<float, 12> positions{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
   constexpr std::array<std::uint32_t, 12> indices{0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};

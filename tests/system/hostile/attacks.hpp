@@ -39,6 +39,8 @@ void write(const std::filesystem::path& file, const std::string& bytes);
 
 /// A textured model as a .glb.
 [[nodiscard]] const std::string& good_model();
+/// The same of a box of three materials, by a map.
+[[nodiscard]] const std::string& good_mapped_model();
 /// A tetrahedron: its document, with one buffer of bytes that `tetrahedron_bytes()` gives.
 [[nodiscard]] nlohmann::json tetrahedron();
 [[nodiscard]] std::string tetrahedron_bytes();

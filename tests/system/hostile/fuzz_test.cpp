@@ -28,6 +28,14 @@ TEST(Fuzz, TexturedModels) {
   EXPECT_LT(t.loaded(), 0.9);
 }
 
+TEST(Fuzz, ModelsWithAMapOfMaterials) {
+  const auto read = [](const std::string& bytes) { return io::read_textured_model(bytes, "fuzz.glb"); };
+  const tally t = fuzz(6'000 / one_in, 31, good_mapped_model(), mutated_glb, read);
+  t.print("models with a map of materials");
+  EXPECT_GE(t.kinds(), 60U) << "mutations stop at the first checks";
+  EXPECT_GT(t.loaded(), 0.1);
+}
+
 TEST(Fuzz, PlainGltf) {
   const auto read = [](const std::string& bytes) { return io::read_gltf(bytes, "fuzz.glb"); };
   const tally t = fuzz(15'000 / one_in, 7, glb(tetrahedron(), tetrahedron_bytes()), mutated_glb, read);

@@ -127,6 +127,27 @@ TEST(SchemaOfAMaterial, TheWriterKeepsItAndEveryKeyIsRequired) {
   }
 }
 
+// The map of materials, which a model need not have.
+TEST(SchemaOfAMap, TheWriterKeepsItAndEveryKeyIsRequired) {
+  const json schema = json::parse(test_support::read_all(std::filesystem::path(ASPERITY_SOURCE_DIR) /
+                                                         "docs/reference/ASPERITY_mesh_haptic_texture.schema.json"));
+  const test_support::scratch_folder folder;
+  textured_model model = test_support::make_flat_box({1, 1, 1}, 24);
+  model.surface = preset_material("rubber").value();
+  model.surface_map = {.others = {preset_material("ice").value()}, .texels = std::vector<std::uint8_t>(24 * 24, 1)};
+  ASSERT_TRUE(io::save_textured_model(model, folder.file("m.glb")));
+  const json written = test_support::glb_editor(test_support::read_all(folder.file("m.glb"))).haptic();
+  EXPECT_EQ(breach(written, schema, schema, ""), "");
+  EXPECT_EQ(written["materials"].size(), 3U);
+  for (const auto& [key, value] : written["materials"].items()) {
+    json damaged = written;
+    damaged["materials"].erase(key);
+    EXPECT_NE(breach(damaged, schema, schema, ""), "") << key << " can be left out";
+    damaged["materials"][key] = json::object();
+    EXPECT_NE(breach(damaged, schema, schema, ""), "") << key << " can be anything";
+  }
+}
+
 TEST_F(Schema, AReportWithoutQualityIsAnOlderOne) {
   extension_["report"].erase("quality");
   EXPECT_EQ(breach(extension_, schema_, schema_, ""), "");

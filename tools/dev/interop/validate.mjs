@@ -17,11 +17,12 @@ function documentOf(bytes) {
   return JSON.parse(bytes.subarray(20, 20 + bytes.readUInt32LE(12)).toString());
 }
 
-// JSON pointers to the buffer views that the extension's object names.
-function viewsOfExtension(document) {
-  const {meshVertices, texture, pieces} = document.meshes[0].extensions[extension];
+// JSON pointers to the buffer views, and to the image of materials, that the extension's object names.
+function partsOfExtension(document) {
+  const {meshVertices, texture, pieces, field, materials} = document.meshes[0].extensions[extension];
   const views = [meshVertices.bufferView, texture.bufferView, pieces.table, pieces.vertices, pieces.hull, pieces.triangles];
-  return new Set(views.map((v) => `/bufferViews/${v}`));
+  if (field) views.push(field.bufferView);
+  return new Set([...views.map((v) => `/bufferViews/${v}`), ...(materials ? [`/images/${materials.image}`] : [])]);
 }
 
 // Negative control: an index that points past the vertices has to be found.
@@ -37,7 +38,7 @@ function withBadIndex(bytes) {
 
 const bytes = await readFile(argv[2]);
 const {messages, numErrors, numWarnings, numInfos, numHints} = await validate(bytes);
-const ours = viewsOfExtension(documentOf(bytes));
+const ours = partsOfExtension(documentOf(bytes));
 const isAboutExtension = (m) => (m.code === 'UNSUPPORTED_EXTENSION' && unknown.some((name) => m.message.includes(name))) ||
                                 (m.code === 'UNUSED_OBJECT' && ours.has(m.pointer));
 const unexpected = messages.filter((m) => !isAboutExtension(m));
