@@ -204,7 +204,7 @@ struct free_bodies::parts {
   // The planes that pressed and those that small motions meet first. Those that press stay as long as they are told: a
   // body at rest on many points of the same height would be given others in every period, and tremble. Of a few
   // neighbouring samples the deepest alone is told; where that is another one than before, the plane that pressed is
-  // carried on for 20 um. Between free
+  // carried on until it has slid by 0.2 mm or sunk by 20 um. Between free
   // bodies and what they lie on the samples of the smaller body are taken where those of the larger are not deeper by
   // 10 um: a block that slides takes its own corners along, and loses the table's points behind it one by one.
   [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection,
@@ -216,11 +216,14 @@ struct free_bodies::parts {
       const support_plane& p = of.contact.planes[i];
       if (!(of.lambda_n[i] > 0.0) || p.sample == 0) continue;
       const pose T_wb = T_wb_of(of.others[p.body].number);
-      const vec6 gone = pose_difference(body.T_wc, of.contact.T_wc), came = pose_difference(T_wb, of.T_wb[p.body]);
-      const double way_m = glm::length(gone.linear) + body.radius_m * glm::length(gone.angular) +
-                           glm::length(came.linear) + body.radius_m * glm::length(came.angular);
-      static_cast<void>(pressed.push_back(
-          {detail::carried(p, body.T_wc, of.contact.T_wc, T_wb, of.T_wb[p.body]), of.carried_m[i] + way_m}));
+      const support_plane now = detail::carried(p, body.T_wc, of.contact.T_wc, T_wb, of.T_wb[p.body]);
+      // How the mover's point has gone against the other body's: a plane is one along itself, so a slide counts for a
+      // tenth.
+      const vec3 then_w = of.contact.T_wc.position + p.r_w;
+      const vec3 slid_w = body.T_wc * (inverse(of.contact.T_wc) * then_w) - T_wb * (inverse(of.T_wb[p.body]) * then_w);
+      const double sunk_m = glm::dot(slid_w, now.n_ab_w);
+      const double way_m = std::fabs(sunk_m) + 0.1 * glm::length(slid_w - sunk_m * now.n_ab_w);
+      static_cast<void>(pressed.push_back({now, of.carried_m[i] + way_m}));
     }
     of.lambda_n.fill(0.0);
     of.carried_m.fill(0.0);

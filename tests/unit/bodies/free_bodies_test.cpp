@@ -52,10 +52,9 @@ struct pushed {
 };
 
 // The probe comes at 10 mm/s to a block and pushes it over the table; its own friction is none.
-pushed push_over_table(double mass_kg, double friction, double angle_rad, double coupling_n_per_m, int render_every) {
+pushed push_over_table(double mass_kg, double friction, double angle_rad, double coupling_n_per_m) {
   free_bodies_settings s = quick_settings();
   s.coupling.stiffness_n_per_m = coupling_n_per_m;
-  s.render_every = render_every;
   free_bodies bodies = made({.probe = box_with(finger_half_m, 0.0),
                              .standing = {{box_with(table_of_blocks_half_m, 1.0)}},
                              .free = {{.model = box_with(block_half_m, friction),
@@ -91,15 +90,14 @@ TEST(free_bodies, are_pushed_with_their_friction) {
     // At most the 20 N of a device.
     const double friction = d.between(0.1, std::min(0.8, 20.0 / (mass_kg * gravity_m_per_s2)));
     const double stiffness = d.log_between(1000.0, 5000.0), angle_rad = d.between(-3.0, 3.0);
-    const int every = d.between(0.0, 1.0) < 0.5 ? 1 : 2;
-    const pushed of = push_over_table(mass_kg, friction, angle_rad, stiffness, every);
+    const pushed of = push_over_table(mass_kg, friction, angle_rad, stiffness);
     const double closed_n = friction * of.weight_n;
     std::printf("  %.3f kg, friction %.2f, turned %.2f, coupling %.0f N/m: hand %.4f, table %.4f of %.4f N\n", mass_kg,
                 friction, angle_rad, stiffness, of.hand_n, of.table_n, closed_n);
     EXPECT_NEAR(of.table_n, closed_n, 0.02 * closed_n);
     EXPECT_NEAR(of.hand_n, closed_n, 0.02 * closed_n);
   }
-  EXPECT_LT(std::fabs(push_over_table(0.1, 0.0, 0.4, 2000.0, 1).hand_n), 0.02) << "without friction it is no push";
+  EXPECT_LT(std::fabs(push_over_table(0.1, 0.0, 0.4, 2000.0).hand_n), 0.02) << "without friction it is no push";
 }
 
 // Five blocks on each other, each turned against the one below, stay where they are.

@@ -32,7 +32,7 @@ led lead(plane_renderer& feel, const model_ptr& block, double press_n, double fr
   tool.place({turned, {-0.03, 0.0, height_m + 0.001}});
   tick found;
   led out;
-  constexpr int steps = 2500, begins = 1500;
+  constexpr int steps = 1600, begins = 900;
   for (int i = 0; i < steps; ++i) {
     const double t_s = 1e-3 * i, come = std::min(1.0, t_s / 0.3);
     const status s = feel.step({tool.T_wa(), {&table, 1}}, found);
@@ -50,14 +50,14 @@ led lead(plane_renderer& feel, const model_ptr& block, double press_n, double fr
 }
 
 TEST(PlainFaces, RubWithTheirFrictionAlone) {
-  drawn d(seed_of(fresh_seed("PlainFaces.RubWithTheirFrictionAlone", "6 ways, 30 at length"), "ways"));
+  drawn d(seed_of(fresh_seed("PlainFaces.RubWithTheirFrictionAlone", "4 ways, 24 at length"), "ways"));
   const auto flat = [](const vec3& half, std::uint32_t texels) {
     return std::make_shared<const textured_model>(make_flat_box(half, texels));
   };
   const model_ptr table = flat({0.06, 0.03, 0.01}, 256), block = flat(vec3(0.012), 192);
   plane_renderer feel =
-      make_plane_renderer({block, {table}}, {.bodies = {.sample_pitch_m = 5e-4}, .reach_m = reach_for(1e-3)}).value();
-  for (int i = 0; i < extent(6, 30); ++i) {
+      make_plane_renderer({block, {table}}, {.bodies = {.sample_pitch_m = 1.5e-3}, .reach_m = reach_for(1e-3)}).value();
+  for (int i = 0; i < extent(4, 24); ++i) {
     const double press_n = d.log_between(0.5, 10.0), friction = i % 3 == 0 ? 0.0 : d.between(0.1, 0.6);
     const double turned_rad = i % 2 == 0 ? 0.0 : d.between(-0.8, 0.8);
     const led of = lead(feel, block, press_n, friction, turned_rad);
