@@ -19,9 +19,9 @@ using namespace asperity::test_support;
 
 // Dropped on the table, light and heavy, a block comes to rest where the table holds its weight; where it may, it sleeps.
 TEST(free_bodies, come_to_rest) {
-  drawn d(seed_of(fresh_seed("free_bodies", "6 blocks dropped, 40 at length"), "rest"));
+  drawn d(seed_of(fresh_seed("free_bodies", "3 blocks dropped, 40 at length"), "rest"));
   const model_ptr table = box_with(table_of_blocks_half_m, 1.0), block = box_with(block_half_m, 0.5);
-  for (int i = 0; i < extent(6, 40); ++i) {
+  for (int i = 0; i < extent(3, 40); ++i) {
     const bool may_sleep = i % 2 == 0;
     const double mass_kg = d.log_between(0.01, 10.0), height_m = d.between(0.0, 0.004);
     const pose at{exp_rotation({d.between(-0.1, 0.1), d.between(-0.1, 0.1), d.between(-3.0, 3.0)}),
@@ -83,8 +83,8 @@ pushed push_over_table(double mass_kg, double friction, double angle_rad, double
 }
 
 TEST(free_bodies, are_pushed_with_their_friction) {
-  drawn d(seed_of(fresh_seed("free_bodies", "5 pushes from 10 g to 10 kg, 25 at length"), "push"));
-  const int n = extent(5, 25);
+  drawn d(seed_of(fresh_seed("free_bodies", "3 pushes from 10 g to 10 kg, 25 at length"), "push"));
+  const int n = extent(3, 25);
   for (int i = 0; i < n; ++i) {
     const double mass_kg = 0.01 * std::pow(1000.0, static_cast<double>(i) / (n - 1));
     // At most the 20 N of a device.
@@ -102,7 +102,7 @@ TEST(free_bodies, are_pushed_with_their_friction) {
 
 // Five blocks on each other, each turned against the one below, stay where they are.
 TEST(free_bodies, stand_on_each_other) {
-  drawn d(seed_of(fresh_seed("free_bodies", "a stack of 5 for 3 s, 60 s at length"), "stack"));
+  drawn d(seed_of(fresh_seed("free_bodies", "a stack of 5 for 1.6 s, 60 s at length"), "stack"));
   for (const bool may_sleep : {false, true}) {
     const model_ptr block = box_with(block_half_m, 0.5);
     free_scene scene{.standing = {{box_with(table_of_blocks_half_m, 1.0)}}};
@@ -116,10 +116,10 @@ TEST(free_bodies, stand_on_each_other) {
     s.render_every = 4;
     if (!may_sleep) s.sleep_after_s = 0.0;
     free_bodies bodies = made(scene, s);
-    let_be(bodies, 1.0);
+    let_be(bodies, 0.8);
     std::vector<pose> stood;
     for (std::size_t i = 0; i < bodies.size(); ++i) stood.push_back(bodies.T_wb(i));
-    let_be(bodies, extent(2.0, 59.0));
+    let_be(bodies, extent(0.8, 59.0));
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       EXPECT_LT(glm::distance(bodies.T_wb(i).position, stood[i].position), 2e-5) << i;
       EXPECT_LT(glm::length(log_rotation(bodies.T_wb(i).rotation * glm::conjugate(stood[i].rotation))), 1e-3) << i;
