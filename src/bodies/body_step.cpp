@@ -49,7 +49,6 @@ body_step::body_step(const free_bodies_settings& settings, const virtual_couplin
     : settings_(settings),
       coupling_(coupling),
       movers_(movers),
-      standing_(standing),
       has_probe_(has_probe),
       solver_(movers, settings.most_planes),
       place_(movers),
@@ -465,6 +464,13 @@ status body_step::step(double h_s, std::span<mover> movers, std::span<mover_cont
     for (bristle& b : bristles_) energy_.lost_j += b.stored_j;
     bristles_.clear();
     return status::not_finite;
+  }
+  for (std::uint32_t a = 0; a < movers_; ++a) {
+    mover_contacts& of = contacts[a];
+    for (std::size_t i = 0; i < of.contact.planes.size(); ++i) {
+      const bool is_solved = moves(movers, a) || moves(movers, of.others[of.contact.planes[i].body].number);
+      if (is_solved) of.lambda_n[i] = 0.0;
+    }
   }
   for (std::size_t i = 0; i < planes_.size(); ++i) contacts[bodies_[i].a].lambda_n[told_[i]] = planes_[i].lambda_n;
   settle(h_s, movers, standing_centres_w);

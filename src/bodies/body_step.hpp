@@ -98,7 +98,7 @@ class body_step {
 
   free_bodies_settings settings_;
   virtual_coupling coupling_;
-  std::size_t movers_, standing_;
+  std::size_t movers_;
   bool has_probe_;
   joint_solver solver_;
   std::vector<joint_plane> planes_;    // places instead of bodies

@@ -199,14 +199,15 @@ struct free_bodies::parts {
   struct kept_plane {
     support_plane plane{};
     double carried_m = 0.0;
+    double lambda_n = 0.0;  // what a body that sleeps goes on pressing with
   };
 
   // The planes that pressed and those that small motions meet first. Those that press stay as long as they are told: a
   // body at rest on many points of the same height would be given others in every period, and tremble. Of a few
   // neighbouring samples the deepest alone is told; where that is another one than before, the plane that pressed is
-  // carried on until it has slid by 0.2 mm or sunk by 20 um. Between free
-  // bodies and what they lie on the samples of the smaller body are taken where those of the larger are not deeper by
-  // 10 um: a block that slides takes its own corners along, and loses the table's points behind it one by one.
+  // carried on until it has slid by 0.2 mm or sunk by 20 um. Between free bodies and what they lie on the samples of the
+  // smaller body are taken where those of the larger are not deeper by 10 um: a block that slides takes its own corners
+  // along, and loses the table's points behind it one by one.
   [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection,
                               const detail::mover& body, detail::mover_contacts& of) noexcept {
     constexpr std::size_t most_kept = most_support_planes / 2;
@@ -223,7 +224,7 @@ struct free_bodies::parts {
       const vec3 slid_w = body.T_wc * (inverse(of.contact.T_wc) * then_w) - T_wb * (inverse(of.T_wb[p.body]) * then_w);
       const double sunk_m = glm::dot(slid_w, now.n_ab_w);
       const double way_m = std::fabs(sunk_m) + 0.1 * glm::length(slid_w - sunk_m * now.n_ab_w);
-      static_cast<void>(pressed.push_back({now, of.carried_m[i] + way_m}));
+      static_cast<void>(pressed.push_back({now, of.carried_m[i] + way_m, of.lambda_n[i]}));
     }
     of.lambda_n.fill(0.0);
     of.carried_m.fill(0.0);
@@ -243,6 +244,7 @@ struct free_bodies::parts {
       const bool is_told = now != told.end();
       if (!is_told && !(q.carried_m < furthest_carried_m)) continue;
       of.carried_m[of.contact.planes.size()] = is_told ? 0.0 : q.carried_m;
+      of.lambda_n[of.contact.planes.size()] = q.lambda_n;
       static_cast<void>(of.contact.planes.push_back(is_told ? *now : q.plane));
     }
     const std::size_t kept = of.contact.planes.size();

@@ -122,7 +122,7 @@ class ASPERITY_API free_bodies {
   /// A wrench on a free body about its centre of mass for the next call of follow(), world axes; the body wakes.
   bool push(std::size_t body, const wrench& on_body_w) noexcept;
 
-  /// dt_s seconds with the handle going evenly to T_wh.
+  /// dt_s seconds with the handle going evenly to T_wh; of a longer pause, two periods.
   /// @return wrench for the hand at the handle's origin, world axes; zero where last() is not ok or capacity_reached
   [[nodiscard]] wrench follow(const pose& T_wh, double dt_s) noexcept;
   /// The same without a probe.
