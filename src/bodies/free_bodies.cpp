@@ -200,40 +200,32 @@ struct free_bodies::parts {
     support_plane plane{};
     double carried_m = 0.0;
     double lambda_n = 0.0;  // what a body that sleeps goes on pressing with
-    int idle = 0;
   };
 
   // The planes that pressed and those that small motions meet first. Those that press stay as long as they are told: a
   // body at rest on many points of the same height would be given others in every period, and tremble. Of a few
   // neighbouring samples the deepest alone is told; where that is another one than before, the plane that pressed is
-  // carried on until it has slid by 0.2 mm. One that ceases to press stays for 50 tellings, or a block that
-  // rocks would find another set of springs on each side. Between free bodies and what they lie on the samples of the
+  // carried on until it has slid by 0.2 mm. Between free bodies and what they lie on the samples of the
   // smaller body are taken where those of the larger are not deeper by 10 um: a block that slides takes its own corners
   // along, and loses the table's points behind it one by one.
   [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection,
                               const detail::mover& body, detail::mover_contacts& of) noexcept {
-    constexpr std::size_t most_kept = most_support_planes - most_selected_planes;
+    constexpr std::size_t most_kept = most_support_planes / 2;
     constexpr double held_back = 1e-5, furthest_carried_m = 2e-4;
-    constexpr int longest_idle = 50;
     fixed_vector<kept_plane, most_kept> pressed;
-    for (const bool presses : {true, false}) {
-      for (std::size_t i = 0; i < of.contact.planes.size() && pressed.size() < most_kept; ++i) {
-        const support_plane& p = of.contact.planes[i];
-        const int idle = of.lambda_n[i] > 0.0 ? 0 : of.idle[i] + 1;
-        if (p.sample == 0 || presses != (idle == 0) || idle > longest_idle) continue;
-        const pose T_wb = T_wb_of(of.others[p.body].number);
-        const support_plane now = detail::carried(p, body.T_wc, of.contact.T_wc, T_wb, of.T_wb[p.body]);
-        // How far the mover's point has slid against the other body's; a plane that is neared or left goes on being one.
-        const vec3 then_w = of.contact.T_wc.position + p.r_w;
-        const vec3 gone_w =
-            body.T_wc * (inverse(of.contact.T_wc) * then_w) - T_wb * (inverse(of.T_wb[p.body]) * then_w);
-        const double slid_m = glm::length(gone_w - glm::dot(gone_w, now.n_ab_w) * now.n_ab_w);
-        static_cast<void>(pressed.push_back({now, of.carried_m[i] + slid_m, of.lambda_n[i], idle}));
-      }
+    for (std::size_t i = 0; i < of.contact.planes.size() && pressed.size() < most_kept; ++i) {
+      const support_plane& p = of.contact.planes[i];
+      if (!(of.lambda_n[i] > 0.0) || p.sample == 0) continue;
+      const pose T_wb = T_wb_of(of.others[p.body].number);
+      const support_plane now = detail::carried(p, body.T_wc, of.contact.T_wc, T_wb, of.T_wb[p.body]);
+      // How far the mover's point has slid against the other body's; a plane that is neared or left goes on being one.
+      const vec3 then_w = of.contact.T_wc.position + p.r_w;
+      const vec3 gone_w = body.T_wc * (inverse(of.contact.T_wc) * then_w) - T_wb * (inverse(of.T_wb[p.body]) * then_w);
+      const double slid_m = glm::length(gone_w - glm::dot(gone_w, now.n_ab_w) * now.n_ab_w);
+      static_cast<void>(pressed.push_back({now, of.carried_m[i] + slid_m, of.lambda_n[i]}));
     }
     of.lambda_n.fill(0.0);
     of.carried_m.fill(0.0);
-    of.idle.fill(longest_idle);
     of.contact.planes.clear();
     const auto held_back_m = [&](const support_plane& p) {
       const detail::other_body& o = of.others[p.body];
@@ -251,7 +243,6 @@ struct free_bodies::parts {
       if (!is_told && !(q.carried_m < furthest_carried_m)) continue;
       of.carried_m[of.contact.planes.size()] = is_told ? 0.0 : q.carried_m;
       of.lambda_n[of.contact.planes.size()] = q.lambda_n;
-      of.idle[of.contact.planes.size()] = q.idle;
       static_cast<void>(of.contact.planes.push_back(is_told ? *now : q.plane));
     }
     const std::size_t kept = of.contact.planes.size();

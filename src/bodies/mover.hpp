@@ -55,7 +55,6 @@ struct mover_contacts {
   std::vector<pose> T_wb;                               ///< ... with the others here
   std::array<double, most_support_planes> lambda_n{};   ///< of its planes, in the last step
   std::array<double, most_support_planes> carried_m{};  ///< so far a plane has been carried on since it was told
-  std::array<int, most_support_planes> idle{};          ///< for so many tellings a plane that pressed has not pressed
 };
 
 /// A plane of a mover with another mover that has gone from where it was when the plane was told: it goes with both, which
