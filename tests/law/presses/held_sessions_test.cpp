@@ -119,8 +119,9 @@ void expect_reported(const char* name, const std::vector<std::string>& names, bo
               reported_passed);
   EXPECT_GE(deep, least_deep);
   EXPECT_GE(passed, least_passed);
-  // All of them are told; one in five as something else than a passage, where no followed point was shallow before.
-  EXPECT_GE(4 * reported_passed, 3 * passed);
+  // All of them are told; one in five as something else than a passage, where no followed point was shallow before. Of
+  // the few of a run that may be half.
+  EXPECT_GE(2 * reported_passed, passed);
   EXPECT_EQ(reported_deep, deep);
 }
 
