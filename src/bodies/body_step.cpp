@@ -72,8 +72,7 @@ body_step::body_step(const free_bodies_settings& settings, const virtual_couplin
 
 std::size_t body_step::heap_bytes() const noexcept {
   return solver_.heap_bytes() + asperity::heap_bytes(planes_, bodies_, turned_, told_, bristles_, springs_, place_,
-                                                     at_place_, touches_, inertia_, a_, load_, v0_, v_, brake_,
-                                                     impulses_);
+                                                     at_place_, inertia_, a_, load_, v0_, v_, brake_, impulses_);
 }
 
 void body_step::begin() noexcept {
@@ -164,14 +163,12 @@ bool body_step::gather(double h_s, std::span<const mover> movers, std::span<cons
 
 // Bodies that touch get places next to each other: from each body that has none, its neighbours, theirs, and so on.
 void body_step::order(std::span<const mover> movers) noexcept {
-  std::fill(touches_.begin(), touches_.end(), 0U);
-  const auto meet = [&](std::uint32_t a, std::uint32_t b) noexcept {
-    if (!moves(movers, a) || !moves(movers, b)) return;
-    touches_[a] |= std::uint64_t{1} << b;
-    touches_[b] |= std::uint64_t{1} << a;
+  touches_.clear();
+  const auto meet = [&](const pair_of& p) noexcept {
+    if (moves(movers, p.a) && moves(movers, p.b)) touches_.meet(p.a, p.b);
   };
-  for (const pair_of& p : bodies_) meet(p.a, p.b);
-  for (const bristle& b : bristles_) meet(b.of.a, b.of.b);
+  for (const pair_of& p : bodies_) meet(p);
+  for (const bristle& b : bristles_) meet(b.of);
   std::fill(place_.begin(), place_.end(), unmoved);
   at_place_.clear();
   const auto put = [&](std::uint32_t m) noexcept {
@@ -185,7 +182,7 @@ void body_step::order(std::span<const mover> movers) noexcept {
     put(from);
     for (; next < at_place_.size(); ++next) {
       for (std::uint32_t m = 0; m < movers_; ++m) {
-        if (((touches_[at_place_[next]] >> m) & 1U) != 0) put(m);
+        if (touches_.touch(at_place_[next], m)) put(m);
       }
     }
   }
@@ -224,7 +221,8 @@ void body_step::load(double h_s, std::span<const mover> movers, const hand_pull&
     const mover& body = movers[m];
     mat6 inertia;
     set_block(inertia, 0, 0, mat3(body.mass_kg));
-    set_block(inertia, 3, 3, inertia_w(body));
+    const mat3 turned_inertia = inertia_w(body);
+    set_block(inertia, 3, 3, turned_inertia);
     mat6 a = (1.0 / h_s) * inertia;
     vec6 load;
     const vec6& v = body.velocity;
@@ -241,7 +239,7 @@ void body_step::load(double h_s, std::span<const mover> movers, const hand_pull&
       load = {body.mass_kg * settings_.gravity_m_per_s2 + body.push_w.force, body.push_w.torque};
       mat6 damping;
       set_block(damping, 0, 0, mat3(settings_.linear_damping_per_s * body.mass_kg));
-      set_block(damping, 3, 3, settings_.angular_damping_per_s * inertia_w(body));
+      set_block(damping, 3, 3, settings_.angular_damping_per_s * turned_inertia);
       a += damping;
       load = load - damping * v;
     }

@@ -10,6 +10,7 @@
 #include "asperity/bodies/free_bodies.hpp"
 #include "bodies/joint_solver.hpp"
 #include "bodies/mover.hpp"
+#include "bodies/touch_graph.hpp"
 
 namespace asperity::detail {
 
@@ -108,7 +109,7 @@ class body_step {
   std::vector<bristle> bristles_;
   std::vector<joint_spring> springs_;
   std::vector<std::uint32_t> place_, at_place_;  // of each mover, and back
-  std::vector<std::uint64_t> touches_;
+  touch_graph touches_;
   std::vector<mat6> inertia_, a_;  // by place
   std::vector<vec6> load_, v0_, v_;
   std::vector<double> brake_;  // by place, 1/s

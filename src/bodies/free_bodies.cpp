@@ -1,7 +1,6 @@
 #include "asperity/bodies/free_bodies.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -15,6 +14,8 @@
 #include "asperity/planes/plane_renderer.hpp"
 #include "bodies/body_step.hpp"
 #include "bodies/mover.hpp"
+#include "bodies/plane_choice.hpp"
+#include "bodies/touch_graph.hpp"
 
 namespace asperity {
 
@@ -89,6 +90,8 @@ struct free_bodies::parts {
   std::vector<pose> standing_T_wb{};
   std::vector<vec3> standing_centres_w{};
   detail::body_step step;
+  detail::touch_graph touches;
+  detail::plane_choice choice;
   pose target_T_wc{};
   twist target_velocity_w{};
   int calls_until_render = 0;
@@ -96,9 +99,6 @@ struct free_bodies::parts {
   status answer = status::ok;
   tick_flag flags = tick_flag::none;
   bool left_out = false;
-  std::array<std::uint64_t, most_free_bodies + 1> touches{};
-  support_planes chosen{};
-  std::vector<support_plane> biased{};
   std::vector<pose> now_T_wb{};
 
   [[nodiscard]] std::size_t first() const noexcept { return has_probe ? 1 : 0; }
@@ -112,31 +112,9 @@ struct free_bodies::parts {
     calls_until_render = 0;
   }
 
-  // Everybody whom `of` says to touch somebody, and whom they touch in their turn.
-  template <class Start>
-  void spread(Start&& starts, std::array<bool, most_free_bodies + 1>& reached) const noexcept {
-    for (std::size_t m = 0; m < movers.size(); ++m) reached[m] = starts(m);
-    for (bool grows = true; grows;) {
-      grows = false;
-      for (std::size_t m = 0; m < movers.size(); ++m) {
-        if (!reached[m]) continue;
-        for (std::size_t n = 0; n < movers.size(); ++n) {
-          if (reached[n] || ((touches[m] >> n) & 1U) == 0) continue;
-          reached[n] = grows = true;
-        }
-      }
-    }
-  }
-
-  void meet(std::uint32_t a, std::uint32_t b) noexcept {
-    if (a >= movers.size() || b >= movers.size()) return;
-    touches[a] |= std::uint64_t{1} << b;
-    touches[b] |= std::uint64_t{1} << a;
-  }
-
   // Which movers touch, or will within the time until contacts are told anew, at their speeds.
   void find_touches() noexcept {
-    touches.fill(0);
+    touches.clear();
     const double soon_s = 1.5 * render_period_s();
     for (std::uint32_t a = 0; a < movers.size(); ++a) {
       for (const support_plane& p : contacts[a].contact.planes) {
@@ -144,15 +122,14 @@ struct free_bodies::parts {
         if (b >= movers.size()) continue;
         const vec6 slide = movers[a].velocity -
                            detail::seen_from(movers[b].velocity, movers[a].T_wc.position - movers[b].T_wc.position);
-        if (p.depth_m + soon_s * std::max(0.0, dot(p.gradient, slide)) > 0.0) meet(a, b);
+        if (p.depth_m + soon_s * std::max(0.0, dot(p.gradient, slide)) > 0.0) touches.meet(a, b);
       }
     }
   }
 
   void wake_touched() noexcept {
     find_touches();
-    std::array<bool, most_free_bodies + 1> awake{};
-    spread([&](std::size_t m) { return !movers[m].sleeps; }, awake);
+    const detail::touch_graph::group awake = touches.reached_from([&](std::size_t m) { return !movers[m].sleeps; });
     for (std::size_t m = 0; m < movers.size(); ++m) {
       if (awake[m] && movers[m].sleeps) movers[m].sleeps = false, movers[m].quiet_s = 0.0;
     }
@@ -165,9 +142,8 @@ struct free_bodies::parts {
       const bool slow = movers[m].speed() < settings.sleep_below_m_per_s && is_zero(movers[m].push_w);
       movers[m].quiet_s = slow ? movers[m].quiet_s + dt_s : 0.0;
     }
-    std::array<bool, most_free_bodies + 1> kept_awake{};
-    spread([&](std::size_t m) { return (has_probe && m == 0) || movers[m].quiet_s < settings.sleep_after_s; },
-           kept_awake);
+    const detail::touch_graph::group kept_awake = touches.reached_from(
+        [&](std::size_t m) { return (has_probe && m == 0) || movers[m].quiet_s < settings.sleep_after_s; });
     for (std::size_t m = first(); m < movers.size(); ++m) {
       detail::mover& body = movers[m];
       if (kept_awake[m] || body.sleeps) continue;
@@ -195,65 +171,6 @@ struct free_bodies::parts {
     return 1.5 * render_period_s() * (fastest + next + 2.0 * begins_m_per_s);
   }
 
-  // A plane that pressed, where it is now.
-  struct kept_plane {
-    support_plane plane{};
-    double carried_m = 0.0;
-    double lambda_n = 0.0;  // what a body that sleeps goes on pressing with
-  };
-
-  // The planes that pressed and those that small motions meet first. Those that press stay as long as they are told: a
-  // body at rest on many points of the same height would be given others in every period, and tremble. Of a few
-  // neighbouring samples the deepest alone is told; where that is another one than before, the plane that pressed is
-  // carried on until it has slid by 0.2 mm. Between free bodies and what they lie on the samples of the
-  // smaller body are taken where those of the larger are not deeper by 10 um: a block that slides takes its own corners
-  // along, and loses the table's points behind it one by one.
-  [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection,
-                              const detail::mover& body, detail::mover_contacts& of) noexcept {
-    constexpr std::size_t most_kept = most_support_planes / 2;
-    constexpr double held_back = 1e-5, furthest_carried_m = 2e-4;
-    fixed_vector<kept_plane, most_kept> pressed;
-    for (std::size_t i = 0; i < of.contact.planes.size() && pressed.size() < most_kept; ++i) {
-      const support_plane& p = of.contact.planes[i];
-      if (!(of.lambda_n[i] > 0.0) || p.sample == 0) continue;
-      const pose T_wb = T_wb_of(of.others[p.body].number);
-      const support_plane now = detail::carried(p, body.T_wc, of.contact.T_wc, T_wb, of.T_wb[p.body]);
-      // How far the mover's point has slid against the other body's; a plane that is neared or left goes on being one.
-      const vec3 then_w = of.contact.T_wc.position + p.r_w;
-      const vec3 gone_w = body.T_wc * (inverse(of.contact.T_wc) * then_w) - T_wb * (inverse(of.T_wb[p.body]) * then_w);
-      const double slid_m = glm::length(gone_w - glm::dot(gone_w, now.n_ab_w) * now.n_ab_w);
-      static_cast<void>(pressed.push_back({now, of.carried_m[i] + slid_m, of.lambda_n[i]}));
-    }
-    of.lambda_n.fill(0.0);
-    of.carried_m.fill(0.0);
-    of.contact.planes.clear();
-    const auto held_back_m = [&](const support_plane& p) {
-      const detail::other_body& o = of.others[p.body];
-      return o.holds_back != 0 && p.sample != 0 && p.sample % 2 == o.holds_back % 2 ? held_back : 0.0;
-    };
-    biased.assign(told.begin(), told.end());
-    for (support_plane& p : biased) p.depth_m -= held_back_m(p);
-    const status out = select_planes(biased, selection, chosen, most_support_planes - most_kept);
-    if (out != status::ok && out != status::capacity_reached) return out;
-    for (support_plane& p : chosen) p.depth_m += held_back_m(p);
-    const auto same = [](const auto& p, const auto& q) { return p.body == q.body && p.sample == q.sample; };
-    for (const kept_plane& q : pressed) {
-      const auto now = std::find_if(told.begin(), told.end(), [&](const support_plane& p) { return same(p, q.plane); });
-      const bool is_told = now != told.end();
-      if (!is_told && !(q.carried_m < furthest_carried_m)) continue;
-      of.carried_m[of.contact.planes.size()] = is_told ? 0.0 : q.carried_m;
-      of.lambda_n[of.contact.planes.size()] = q.lambda_n;
-      static_cast<void>(of.contact.planes.push_back(is_told ? *now : q.plane));
-    }
-    const std::size_t kept = of.contact.planes.size();
-    for (const support_plane& p : chosen) {
-      const bool is_kept = p.sample != 0 && std::any_of(of.contact.planes.begin(), of.contact.planes.begin() + kept,
-                                                        [&](const support_plane& q) { return same(p, q); });
-      if (!is_kept) static_cast<void>(of.contact.planes.push_back(p));
-    }
-    return out;
-  }
-
   void render() noexcept {
     flags = tick_flag::none;
     left_out = false;
@@ -276,7 +193,7 @@ struct free_bodies::parts {
       const std::span<const pose> at(now_T_wb.data(), of.others.size());
       const status s = r.renderer->step({movers[a].T_wb(), at, gaps}, r.found);
       const bool usable = s == status::ok || s == status::capacity_reached;
-      const status told = usable ? choose(r.found.planes, selection, movers[a], of) : s;
+      const status told = usable ? choice.choose(r.found.planes, selection, movers[a], at, of) : s;
       if (told != status::ok && told != status::capacity_reached) {
         answer = told;
         continue;
@@ -329,7 +246,7 @@ struct free_bodies::parts {
     step.add_sleepers(dt_s, movers, contacts, standing_centres_w);
     spent_s = dt_s;
     find_touches();
-    step.for_each_touch([&](std::uint32_t a, std::uint32_t b) noexcept { meet(a, b); });
+    step.for_each_touch([&](std::uint32_t a, std::uint32_t b) noexcept { touches.meet(a, b); });
     put_to_sleep(dt_s);
     for (detail::mover& m : movers) m.push_w = {};
     if (left_out) answer = status::capacity_reached;
@@ -390,12 +307,13 @@ result<free_bodies> free_bodies::make(const free_scene& scene, const free_bodies
             .T_hc = settings.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre},
             .T_ca = pose{quat(1.0, 0.0, 0.0, 0.0), -centre},
             .movers = movers,
-            .step = detail::body_step(settings, coupling, movers.size(), scene.standing.size(), has_probe)});
+            .step = detail::body_step(settings, coupling, movers.size(), scene.standing.size(), has_probe),
+            .touches = detail::touch_graph(movers.size()),
+            .choice = detail::plane_choice(settings.most_leaves)});
   for (const standing_body& b : scene.standing) {
     made->standing_T_wb.push_back(b.T_wb);
     made->standing_centres_w.push_back(b.T_wb * b.model->mass.centre_of_mass);
   }
-  detail::reserve_resident(made->biased, settings.most_leaves);
   made->now_T_wb.resize(models.size());
   made->contacts.resize(movers.size());
   made->renderers.resize(movers.size());
@@ -516,8 +434,8 @@ const bodies_energy& free_bodies::energy() const noexcept { return parts_->step.
 
 std::size_t free_bodies::memory_bytes() const noexcept {
   const parts& p = *parts_;
-  std::size_t bytes =
-      sizeof *this + sizeof p + p.step.heap_bytes() + heap_bytes(p.movers, p.standing_T_wb, p.standing_centres_w);
+  std::size_t bytes = sizeof *this + sizeof p + p.step.heap_bytes() + p.choice.heap_bytes() +
+                      heap_bytes(p.movers, p.standing_T_wb, p.standing_centres_w, p.now_T_wb);
   for (const detail::mover_contacts& c : p.contacts) {
     bytes += sizeof c + heap_bytes(c.others, c.T_wb) + c.laws.pairs.capacity() * sizeof(std::optional<surface_pair>);
   }
