@@ -17,39 +17,37 @@ void write(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
+namespace {
+
+// A model as the writer leaves it in a file.
+std::string written(const textured_model& model, const std::string& name) {
+  const auto file = std::filesystem::temp_directory_path() / (name + "_" + std::to_string(::getpid()) + ".glb");
+  if (const auto saved = io::save_textured_model(model, file); !saved) {
+    throw std::runtime_error(saved.error().message);
+  }
+  std::ifstream in(file, std::ios::binary);
+  std::string out{std::istreambuf_iterator<char>(in), {}};
+  std::filesystem::remove(file);
+  return out;
+}
+
+}  // namespace
+
 const std::string& good_model() {
-  static const std::string bytes = [] {
-    const auto file =
-        std::filesystem::temp_directory_path() / ("asperity_hostile_" + std::to_string(::getpid()) + ".glb");
-    const auto ridged = test_support::make_textured_box({0.01, 0.01, 0.01}, 24, test_support::ridges(1e-4, 4e-3));
-    if (const auto saved = io::save_textured_model(ridged, file); !saved) {
-      throw std::runtime_error(saved.error().message);
-    }
-    std::ifstream in(file, std::ios::binary);
-    std::string out{std::istreambuf_iterator<char>(in), {}};
-    std::filesystem::remove(file);
-    return out;
-  }();
+  static const std::string bytes = written(
+      test_support::make_textured_box({0.01, 0.01, 0.01}, 24, test_support::ridges(1e-4, 4e-3)), "asperity_hostile");
   return bytes;
 }
 
 const std::string& good_mapped_model() {
   static const std::string bytes = [] {
-    const auto file =
-        std::filesystem::temp_directory_path() / ("asperity_hostile_map_" + std::to_string(::getpid()) + ".glb");
     textured_model model = test_support::make_flat_box({0.01, 0.01, 0.01}, 24);
     model.surface = preset_material("ice").value();
     model.surface_map.others = {preset_material("rubber").value(), preset_material("wood").value()};
     for (std::size_t i = 0; i < model.texture.texels.size(); ++i) {
       model.surface_map.texels.push_back(static_cast<std::uint8_t>(i / 7 % 3));
     }
-    if (const auto saved = io::save_textured_model(model, file); !saved) {
-      throw std::runtime_error(saved.error().message);
-    }
-    std::ifstream in(file, std::ios::binary);
-    std::string out{std::istreambuf_iterator<char>(in), {}};
-    std::filesystem::remove(file);
-    return out;
+    return written(model, "asperity_hostile_map");
   }();
   return bytes;
 }

@@ -17,29 +17,25 @@
 #include "support/image_writers.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/drawn.hpp"
+#include "unit/io/changed_model.hpp"
 
 namespace asperity {
 namespace {
 
 using nlohmann::json;
+using test_support::changed_model;
 using test_support::drawn;
+using test_support::expect_same;
 using test_support::glb_editor;
 using test_support::scratch_folder;
 
-material numbered(int i, drawn& d) {
-  material m{
-      "material " + std::to_string(i), d.log_between(100.0, 1e7), d.between(0.0, 100.0), d.between(0.0, 10.0), 0.0,
-      friction_combine::average};
-  m.dynamic_friction = m.static_friction * d.between(0.0, 1.0);
-  m.combine = static_cast<friction_combine>(d.bits() % 4);
-  return m;
-}
+material numbered(std::size_t i, drawn& d) { return test_support::drawn_material("material " + std::to_string(i), d); }
 
 /// A box of so many materials, thrown at its texels.
 textured_model patched_box(std::size_t materials, drawn& d) {
   textured_model model = test_support::make_flat_box({0.01, 0.01, 0.01}, 24);
   model.surface = numbered(0, d);
-  for (std::size_t i = 1; i < materials; ++i) model.surface_map.others.push_back(numbered(static_cast<int>(i), d));
+  for (std::size_t i = 1; i < materials; ++i) model.surface_map.others.push_back(numbered(i, d));
   for (std::size_t i = 0; i < model.texture.texels.size(); ++i) {
     model.surface_map.texels.push_back(static_cast<std::uint8_t>(d.bits() % materials));
   }
@@ -47,14 +43,11 @@ textured_model patched_box(std::size_t materials, drawn& d) {
 }
 
 /// The file of a box of three materials, for one change.
-struct patched_file {
-  drawn d{20261126};
-  scratch_folder folder;
-  glb_editor glb{made()};
-
-  std::string made() {
-    EXPECT_TRUE(io::save_textured_model(patched_box(3, d), folder.file("m.glb")));
-    return test_support::read_all(folder.file("m.glb"));
+struct patched_file : changed_model {
+  patched_file() : changed_model(three()) {}
+  static textured_model three() {
+    drawn d{20261126};
+    return patched_box(3, d);
   }
   json& map() { return glb.haptic()["materials"]; }
   json& image() { return glb.json["images"][map()["image"].get<std::size_t>()]; }
@@ -69,25 +62,7 @@ struct patched_file {
     view["byteLength"] = bytes.size();
     glb.json["buffers"][0]["byteLength"] = glb.bin.size();
   }
-  result<textured_model> load() const {
-    std::ofstream(folder.file("changed.glb"), std::ios::binary) << glb.bytes();
-    return io::load_textured_model(folder.file("changed.glb"));
-  }
-  void expect_refused(const std::string& why) const {
-    const result<textured_model> read = load();
-    ASSERT_FALSE(read) << why;
-    EXPECT_NE(read.error().message.find(why), std::string::npos) << read.error().message;
-  }
 };
-
-void expect_same(const material& a, const material& b) {
-  EXPECT_EQ(a.name, b.name);
-  EXPECT_EQ(a.stiffness_n_per_m, b.stiffness_n_per_m);
-  EXPECT_EQ(a.dissipation_s_per_m, b.dissipation_s_per_m);
-  EXPECT_EQ(a.static_friction, b.static_friction);
-  EXPECT_EQ(a.dynamic_friction, b.dynamic_friction);
-  EXPECT_EQ(a.combine, b.combine);
-}
 
 TEST(SurfaceMap, ComesBackToTheBitAndTheFileToo) {
   drawn d(test_support::fresh_seed("SurfaceMap.ComesBack", "7 models"));

@@ -17,12 +17,15 @@
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/drawn.hpp"
+#include "unit/io/changed_model.hpp"
 
 namespace asperity {
 namespace {
 
 using nlohmann::json;
+using test_support::changed_model;
 using test_support::drawn;
+using test_support::expect_same;
 using test_support::glb_editor;
 using test_support::scratch_folder;
 
@@ -42,45 +45,17 @@ textured_model small_box(std::optional<material> surface = std::nullopt) {
 const material felt{"felt \xc3\xa9", 1234.5, 3.25, 0.7, 0.3, friction_combine::multiply};
 
 /// The document of a model with a material.
-struct felt_box {
-  scratch_folder folder;
-  glb_editor glb{made()};
-
-  std::string made() const {
-    EXPECT_TRUE(io::save_textured_model(small_box(felt), folder.file("m.glb")));
-    return test_support::read_all(folder.file("m.glb"));
-  }
+struct felt_box : changed_model {
+  felt_box() : changed_model(small_box(felt)) {}
   json& physics_material() { return glb.json["extensions"][rigid_bodies]["physicsMaterials"][0]; }
   json& collider() { return glb.json["nodes"][0]["extensions"][rigid_bodies]["collider"]; }
-  result<textured_model> load() const {
-    write(folder.file("changed.glb"), glb.bytes());
-    return io::load_textured_model(folder.file("changed.glb"));
-  }
-  void expect_refused(const std::string& why) const {
-    const result<textured_model> read = load();
-    ASSERT_FALSE(read) << why;
-    EXPECT_NE(read.error().message.find(why), std::string::npos) << read.error().message;
-  }
 };
-
-void expect_same(const material& a, const material& b) {
-  EXPECT_EQ(a.name, b.name);
-  EXPECT_EQ(a.stiffness_n_per_m, b.stiffness_n_per_m);
-  EXPECT_EQ(a.dissipation_s_per_m, b.dissipation_s_per_m);
-  EXPECT_EQ(a.static_friction, b.static_friction);
-  EXPECT_EQ(a.dynamic_friction, b.dynamic_friction);
-  EXPECT_EQ(a.combine, b.combine);
-}
 
 TEST(Surface, ComesBackToTheBit) {
   drawn d(test_support::fresh_seed("Surface.ComesBackToTheBit", "20 materials"));
   const scratch_folder folder;
   for (int i = 0; i < 20; ++i) {
-    material m{"",  d.log_between(100.0, 1e7), d.between(0.0, 100.0), d.between(0.0, 10.0),
-               0.0, friction_combine::average};
-    m.dynamic_friction = m.static_friction * d.between(0.0, 1.0);
-    m.combine = static_cast<friction_combine>(d.bits() % 4);
-    if (i % 2 == 0) m.name = "material " + std::to_string(i);
+    const material m = test_support::drawn_material(i % 2 == 0 ? "material " + std::to_string(i) : "", d);
     ASSERT_TRUE(io::save_textured_model(small_box(m), folder.file("m.glb")));
     const result<textured_model> read = io::load_textured_model(folder.file("m.glb"));
     ASSERT_TRUE(read && read->surface) << (read ? "" : read.error().message);
