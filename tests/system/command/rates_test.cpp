@@ -110,7 +110,10 @@ TEST(rates, of_a_session_in_real_time_are_counted) {
     ASSERT_FALSE(log.ticks.empty());
     for (std::size_t i = 1; i < log.ticks.size(); ++i) EXPECT_GE(log.ticks[i].time_ns, log.ticks[i - 1].time_ns);
     const loop_times& contact = log.ended.contact;
-    EXPECT_EQ(contact.seconds.size(), contact.ticks) << "idle ticks are not timed";
+    // A session that a busy machine ends late has more ticks than room for their times was made at its start.
+    const double room = 1.1 * 0.2e9 / static_cast<double>(std::min(p.device_ns, p.contact_ns)) + 1000.0;
+    EXPECT_EQ(contact.seconds.size(), std::min(contact.ticks, static_cast<std::uint64_t>(room)))
+        << "idle ticks are not timed";
     EXPECT_LE(contact.over_period, contact.ticks);
     EXPECT_LE(contact.ticks, log.ended.device.ticks + 1) << "a pose is rendered once";
   }
