@@ -149,11 +149,12 @@ TEST_F(devices_command, a_driver_that_breaks_in_a_session_ends_the_session_and_n
                                                       {"hangs_in_write", "in write()"}};
   for (const auto& [way, says] : ways) {
     SCOPED_TRACE(way);
+    const process_options broken = with_broken(way);
     outcome o;
     const double taken_s = seconds_of([&] {
       o = run({"run", "--probe", pin(), "--fixed", pin(), "--device", "broken_driver", "--seconds", "30", "--record",
                path("felt.csv"), "--json"},
-              with_broken(way));
+              broken);
     });
     EXPECT_LT(taken_s, 20.0);
     ASSERT_EQ(o.exit_status, 1) << o.err;

@@ -21,7 +21,7 @@ namespace {
 
 using test_support::drawn, test_support::extent, test_support::fresh_seed;
 
-constexpr double mass_kg = 0.01, h_s = 1.25e-4;
+constexpr double mass_kg = 0.01, substep_s = 1.25e-4;
 
 support_plane plane_at(const vec3& n_ab_w, const vec3& r_w, double depth_m, std::uint32_t body = 0) {
   return {
@@ -40,9 +40,9 @@ const std::vector<vec3> feet{
 
 // A step that nothing else stops.
 contact_solution step(friction& rubbing, mat6 a, const vec6& load, const vec6& v0, const support_planes& planes) {
-  const contact_solution s = rubbing.solve(a, load, v0, h_s, planes, {}, {});
+  const contact_solution s = rubbing.solve(a, load, v0, substep_s, planes, {}, {});
   EXPECT_TRUE(s.solved);
-  rubbing.settle(h_s, s.velocity);
+  rubbing.settle(substep_s, s.velocity);
   return s;
 }
 
@@ -53,7 +53,7 @@ struct sledge {
     body.reset({});
   }
   void push(const wrench& w) {
-    ASSERT_EQ(body.step_on_planes(h_s, coupling, {}, {}, planes, {}, law, rubbing, pressed, w), status::ok);
+    ASSERT_EQ(body.step_on_planes(substep_s, coupling, {}, {}, planes, {}, law, rubbing, pressed, w), status::ok);
   }
   [[nodiscard]] double normal_n() const { return pressed.on_probe_w.force.z; }
 
@@ -86,7 +86,7 @@ TEST(Friction, HoldsBelowTheConeAndSlipsAboveIt) {
     sledge slips({.static_coefficient = mu_s, .dynamic_coefficient = mu_d});
     // What friction leaves of the push moves the mass; twice the time that it needs to be fast is given.
     const double fast_m_per_s = 0.2, needs_s = fast_m_per_s * mass_kg / ((1.05 * mu_s - mu_d) * load_n);
-    const int most = 4000 + static_cast<int>(2.0 * needs_s / h_s);
+    const int most = 4000 + static_cast<int>(2.0 * needs_s / substep_s);
     for (int i = 0; i < most && (i < 4000 || length(slips.body.state().velocity_w.linear) <= fast_m_per_s); ++i)
       slips.push({-load_n * vec3(0, 0, 1) + 1.05 * mu_s * load_n * std::min(1.0, i / 2000.0) * along, {}});
     EXPECT_GT(length(slips.body.state().velocity_w.linear), fast_m_per_s) << mu_s << ' ' << mu_d << ' ' << load_n;
@@ -145,7 +145,7 @@ TEST(Friction, ForgetsWhatStretchesNothing) {
   floor[0].depth_m = 1e-5;
   const vec6 along_y{{0.0, 1e-3, 0.0}, vec3(0.0)}, rolls{{0.05, 0.0, 0.0}, {0.0, 5.0, 0.0}};
   for (int i = 0; i < 10; ++i) static_cast<void>(step(rubbing, heavy, {}, along_y, floor));
-  const double held_n = -friction_settings{}.stiffness_n_per_m * 10 * 1e-3 * h_s;
+  const double held_n = -friction_settings{}.stiffness_n_per_m * 10 * 1e-3 * substep_s;
   const double lost_j = rubbing.energy().lost_j;
   for (int i = 0; i < 20'000; ++i) {
     static_cast<void>(step(rubbing, heavy, {}, rolls, floor));
@@ -193,9 +193,9 @@ TEST(Friction, EachBodyRubsByItsOwnPair) {
     const contact_laws laws({}, std::move(pairs));
     for (int i = 0; i < 2000; ++i) {
       mat6 a = heavy;
-      const contact_solution s = rubbing.solve(a, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, h_s, jaws, {}, laws);
+      const contact_solution s = rubbing.solve(a, {}, {{0.01, 0.0, 0.0}, vec3(0.0)}, substep_s, jaws, {}, laws);
       EXPECT_TRUE(s.solved);
-      rubbing.settle(h_s, s.velocity);
+      rubbing.settle(substep_s, s.velocity);
     }
     return -rubbing.on_probe_w().force.x;
   };
@@ -254,15 +254,15 @@ TEST(Friction, MakesNoEnergy) {
         }
       }
       mat6 a;
-      for (std::size_t k = 0; k < 6; ++k) a(k, k) = k < 3 ? mass_kg / h_s : 1e-6 / h_s;
+      for (std::size_t k = 0; k < 6; ++k) a(k, k) = k < 3 ? mass_kg / substep_s : 1e-6 / substep_s;
       const friction_energy before = rubbing.energy();
       const vec6 load{3.0 * vector(), 0.05 * vector()};
-      const contact_solution s = rubbing.solve(a, load, v, h_s, planes, {}, {});
+      const contact_solution s = rubbing.solve(a, load, v, substep_s, planes, {}, {});
       ASSERT_TRUE(s.solved);
       // Something else may stop the probe, or push it on.
       v = any() > 0.9 ? vec6{any() * s.velocity.linear + 0.01 * vector(), any() * s.velocity.angular} : s.velocity;
-      rubbing.settle(h_s, v);
-      const double given_j = -h_s * dot(to_vec6(rubbing.on_probe_w()), v);
+      rubbing.settle(substep_s, v);
+      const double given_j = -substep_s * dot(to_vec6(rubbing.on_probe_w()), v);
       const double kept_j = rubbing.energy().stored_j - before.stored_j;
       least_j = std::min(least_j, given_j - kept_j);
       EXPECT_NEAR(given_j - kept_j, rubbing.energy().lost_j - before.lost_j, 1e-15 + 1e-12 * rubbing.energy().lost_j);
@@ -351,7 +351,7 @@ TEST(Friction, WithoutACoefficientIsTheContactAlone) {
     support_planes planes = floor_under({{0.01, 0.0, 0.0}, {0.0, 0.01, 0.0}});
     planes[0].depth_m = 1e-5 * any();
     friction none;
-    const contact_solution alone = solve_contact(a, load, {}, h_s, planes, {}, {});
+    const contact_solution alone = solve_contact(a, load, {}, substep_s, planes, {}, {});
     const contact_solution with = step(none, a, load, {}, planes);
     for (std::size_t k = 0; k < 6; ++k) EXPECT_EQ(alone.velocity[k], with.velocity[k]);
     EXPECT_TRUE(is_zero(none.on_probe_w()));
