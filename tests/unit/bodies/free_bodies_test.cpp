@@ -87,17 +87,15 @@ TEST(free_bodies, are_pushed_with_their_friction) {
   const int n = extent(3, 25);
   for (int i = 0; i < n; ++i) {
     const double mass_kg = 0.01 * std::pow(1000.0, static_cast<double>(i) / (n - 1));
-    // At most the 20 N of a device.
-    const double friction = d.between(0.1, std::min(0.8, 20.0 / (mass_kg * gravity_m_per_s2)));
+    // At most the 20 N of a device. From 0.8 on a block of this height stands on its front edge, and chatters.
+    const double friction = d.between(0.1, std::min(0.7, 20.0 / (mass_kg * gravity_m_per_s2)));
     const double stiffness = d.log_between(1000.0, 5000.0), angle_rad = d.between(-3.0, 3.0);
     const pushed of = push_over_table(mass_kg, friction, angle_rad, stiffness);
     const double closed_n = friction * of.weight_n;
     std::printf("  %.3f kg, friction %.2f, turned %.2f, coupling %.0f N/m: hand %.4f, table %.4f of %.4f N\n", mass_kg,
                 friction, angle_rad, stiffness, of.hand_n, of.table_n, closed_n);
-    // Heavier ones tremble as they slide, which is friction that is not along the way: up to 6.5 % were seen.
-    const double share = mass_kg < 2.0 ? 0.02 : 0.1;
-    EXPECT_NEAR(of.table_n, closed_n, share * closed_n);
-    EXPECT_NEAR(of.hand_n, closed_n, share * closed_n);
+    EXPECT_NEAR(of.table_n, closed_n, 0.02 * closed_n);
+    EXPECT_NEAR(of.hand_n, closed_n, 0.02 * closed_n);
   }
   EXPECT_LT(std::fabs(push_over_table(0.1, 0.0, 0.4, 2000.0).hand_n), 0.02) << "without friction it is no push";
 }
