@@ -72,8 +72,8 @@ TEST_F(bad_mesh, inside_out_is_turned_and_reported) {
   write("mesh.obj", std::string(cube_vertices) +
                         "f 1 2 3\nf 1 3 4\nf 5 7 6\nf 5 8 7\nf 1 6 2\nf 1 5 6\nf 2 7 3\nf 2 6 7\n" +
                         "f 3 8 4\nf 3 7 8\nf 4 5 1\nf 4 8 5\n");
-  const json baked =
-      expect_document({"bake", path("mesh.obj"), "-o", path("out.glb"), "--texture", "64"}, "asperity.bake/1");
+  const json baked = expect_document(
+      {"bake", path("mesh.obj"), "-o", path("out.glb"), "--texture", "64", "--without-field"}, "asperity.bake/1");
   ASSERT_FALSE(baked.at("warnings").empty());
   EXPECT_EQ(baked.at("warnings").at(0), "the mesh was inside-out and has been turned");
 }
@@ -115,7 +115,8 @@ TEST_F(bad_mesh, another_unit_is_asked_for) {
 
 TEST_F(bad_mesh, said_units_are_taken) {
   write("part.obj", cube_50_units());
-  const std::vector<std::string> bake{"bake", path("part.obj"), "-o", path("out.glb"), "--texture", "64"};
+  const std::vector<std::string> bake{"bake", path("part.obj"), "-o", path("out.glb"), "--texture",
+                                      "64",   "--without-field"};
   const std::pair<const char*, double> units[] = {{"mm", 0.05}, {"cm", 0.5}, {"in", 1.27}, {"m", 50.0}};
   for (const auto& [unit, side] : units) {
     std::vector<std::string> args = bake;

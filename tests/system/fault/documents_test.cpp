@@ -83,9 +83,10 @@ TEST_F(documents, bake_and_inspect_report_the_same) {
 TEST_F(documents, pictures) {
   const std::initializer_list<const char*> keys{"file",  "shows",   "colours_from", "colours_to",
                                                 "least", "largest", "rms"};
-  const json baked = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
-                                      "128", "-o", path("brick.glb"), "--picture", path("baked.png")},
-                                     "asperity.bake/1");
+  const json baked =
+      expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture", "128", "-o",
+                       path("brick.glb"), "--picture", path("baked.png"), "--without-field"},
+                      "asperity.bake/1");
   expect_keys(baked["picture"], keys);
   EXPECT_EQ(baked["picture"]["shows"], "distance to the original");
   EXPECT_LE(baked["picture"]["rms"], baked["bake"]["max_error"]);
@@ -108,7 +109,7 @@ TEST_F(documents, pictures) {
 
 TEST_F(documents, scale_changes_units_and_inspect_warns) {
   const json baked = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
-                                      "64", "--scale", "1000", "-o", path("huge.glb")},
+                                      "64", "--scale", "1000", "-o", path("huge.glb"), "--without-field"},
                                      "asperity.bake/1");
   EXPECT_NEAR(baked["size"]["high"][0], 20.0, 0.1);  // 40 mm wide, about the origin
   const json seen = expect_document({"inspect", path("huge.glb")}, "asperity.inspect/1");
@@ -142,10 +143,11 @@ TEST_F(documents, a_bake_keeps_texture_coordinates) {
   write("low.obj", unwrapped_cube());
   write("full.obj", unwrapped_cube());
   const json made = expect_document(
-      {"bake", path("full.obj"), "--units", "mm", "--texture", "96", "-o", path("made.glb")}, "asperity.bake/1");
+      {"bake", path("full.obj"), "--units", "mm", "--texture", "96", "-o", path("made.glb"), "--without-field"},
+      "asperity.bake/1");
   EXPECT_EQ(made["uvs"], "made");
   const json kept = expect_document({"bake", path("full.obj"), "--coarse", path("low.obj"), "--keep-uvs", "--units",
-                                     "mm", "--texture", "96", "-o", path("kept.glb")},
+                                     "mm", "--texture", "96", "-o", path("kept.glb"), "--without-field"},
                                     "asperity.bake/1");
   EXPECT_EQ(kept["uvs"], "kept");
   EXPECT_EQ(kept["warnings"], json::array());
@@ -154,7 +156,7 @@ TEST_F(documents, a_bake_keeps_texture_coordinates) {
   EXPECT_NE(read("kept.glb"), read("made.glb"));
   // A mesh that is its own coarse mesh keeps them too.
   const json alone = expect_document({"bake", path("low.obj"), "--keep-uvs", "--units", "mm", "--texture", "96",
-                                      "--name", "full", "-o", path("alone.glb")},
+                                      "--name", "full", "-o", path("alone.glb"), "--without-field"},
                                      "asperity.bake/1");
   EXPECT_EQ(alone["uvs"], "kept");
   EXPECT_EQ(read("alone.glb"), read("kept.glb"));
@@ -170,7 +172,8 @@ TEST_F(documents, a_map_of_materials) {
   write("halves.png", std::string(reinterpret_cast<const char*>(image), sizeof image));
   write("cube.obj", unwrapped_cube());
   const auto bake = [&](const std::string& mesh, std::initializer_list<std::string> more) {
-    std::vector<std::string> args{"bake", mesh, "--units", "mm", "--texture", "64", "-o", path("cube.glb")};
+    std::vector<std::string> args{"bake",           mesh, "--units", "mm", "--texture", "64", "-o", path("cube.glb"),
+                                  "--without-field"};
     args.insert(args.end(), more.begin(), more.end());
     return args;
   };

@@ -16,7 +16,8 @@ class output : public command_test {
 
   [[nodiscard]] static std::string made(const char* file) { return (small_models() / file).string(); }
   [[nodiscard]] static arguments bake_to(const std::string& out) {
-    return {"bake", made("block.ply"), "--coarse", made("block_coarse.ply"), "--texture", "64", "-o", out};
+    return {"bake", made("block.ply"), "--coarse", made("block_coarse.ply"), "--texture", "64", "--without-field", "-o",
+            out};
   }
   [[nodiscard]] static arguments run_with(const char* option, const std::string& out) {
     return {"run", "--probe", made("pin.glb"), "--fixed", made("pin.glb"), "--seconds", "0.05", option, out};
@@ -80,8 +81,8 @@ TEST_F(output, names_of_any_letters) {
   };
   for (const auto& [name, kept] : names) {
     std::filesystem::copy_file(made("block.ply"), path(name + ".ply"));
-    const arguments bake{"bake", path(name + ".ply"), "--coarse", made("block_coarse.ply"), "--texture", "64",
-                         "-o",   path(name + ".glb")};
+    const arguments bake{"bake", path(name + ".ply"), "--coarse", made("block_coarse.ply"), "--texture",
+                         "64",   "--without-field",   "-o",       path(name + ".glb")};
     static_cast<void>(expect_document(bake, "asperity.bake/1"));
     const json inspected = expect_document({"inspect", path(name + ".glb")}, "asperity.inspect/1");
     EXPECT_EQ(inspected.at("name"), kept);

@@ -95,7 +95,7 @@ TEST_F(documents, run_without_support_planes) {
 }
 
 TEST_F(documents, run_with_support_planes) {
-  const arguments session{"run", "--probe", block(), "--fixed", block(), "--motion", "press"};
+  const arguments session{"run", "--probe", pin(), "--fixed", block(), "--motion", "press"};
   arguments above = session, inside = session;
   above.insert(above.end(), {"--seconds", "0.5"});
   inside.insert(inside.end(), {"--seconds", "0.05", "--probe-pose", "0.001 0.002 0.003 0 0 0 1", "--coupling", "700"});

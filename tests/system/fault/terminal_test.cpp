@@ -64,11 +64,17 @@ class terminal : public command_test {
 
 TEST_F(terminal, names_of_models_and_files_in_reports) {
   const std::string block = (small_models() / "block.ply").string();
-  const arguments bake{"bake",      block,
-                       "--coarse",  (small_models() / "block_coarse.ply").string(),
-                       "--texture", "64",
-                       "--name",    hostile_in_json,
-                       "-o",        in_it("named.glb")};
+  const arguments bake{"bake",
+                       block,
+                       "--coarse",
+                       (small_models() / "block_coarse.ply").string(),
+                       "--texture",
+                       "64",
+                       "--name",
+                       hostile_in_json,
+                       "-o",
+                       in_it("named.glb"),
+                       "--without-field"};
   EXPECT_NE(expect_harmless(bake, 0).out.find("name                    " + escaped_name), std::string::npos);
   const outcome seen = expect_harmless({"inspect", in_it("named.glb")}, 0);
   EXPECT_NE(seen.out.find("name                    " + escaped_name), std::string::npos) << seen.out;
