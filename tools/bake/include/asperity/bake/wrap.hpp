@@ -13,7 +13,7 @@
 namespace asperity::bake {
 
 /// Cells along the diagonal where none is asked for, and the most that may be asked for.
-inline constexpr double default_wrap_cells = 250.0;
+inline constexpr double default_wrap_cells = 200.0;
 inline constexpr double most_wrap_cells = 2000.0;
 /// A plate is at least so many cells thick: a thinner one would have holes.
 inline constexpr double least_plate_cells = 2.0;
