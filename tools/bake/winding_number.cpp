@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/mat3x3.hpp>
 #include <numbers>
+#include <span>
 
 namespace asperity::bake {
 namespace {
@@ -13,49 +15,50 @@ constexpr double far_in_radii = 2.0;
 struct exact_moments {
   vec3 centre{0.0};
   double area = 0.0;
-  vec3 vector{0.0};
-  std::array<double, 6> first{};
+  vec3 vector{0.0};       // sum of n, triangles' areas long
+  glm::dmat3 first{0.0};  // [j] is the sum of d n_j
+  std::array<glm::dmat3, 3> second{glm::dmat3(0.0), glm::dmat3(0.0), glm::dmat3(0.0)};  // [j]: the sum of d d' n_j
 
-  void add_moment(const vec3& offset, const vec3& along) noexcept {
-    first[0] += offset.x * along.x;
-    first[1] += offset.y * along.y;
-    first[2] += offset.z * along.z;
-    first[3] += offset.x * along.y + offset.y * along.x;
-    first[4] += offset.x * along.z + offset.z * along.x;
-    first[5] += offset.y * along.z + offset.z * along.y;
+  // Moments about `centre` of what has these about its own.
+  void add(const exact_moments& other) {
+    const vec3 s = other.centre - centre;
+    vector += other.vector;
+    for (int j = 0; j < 3; ++j) {
+      second[static_cast<std::size_t>(j)] +=
+          other.second[static_cast<std::size_t>(j)] + glm::outerProduct(s, other.first[j]) +
+          glm::outerProduct(other.first[j], s) + other.vector[j] * glm::outerProduct(s, s);
+      first[j] += other.first[j] + other.vector[j] * s;
+    }
   }
 };
 
-vec3 centroid(const std::array<vec3, 3>& c) noexcept { return (c[0] + c[1] + c[2]) / 3.0; }
-vec3 area_vector(const std::array<vec3, 3>& c) noexcept { return 0.5 * glm::cross(c[1] - c[0], c[2] - c[0]); }
-
-exact_moments of_leaf(const triangle_bvh& tree, const triangle_bvh::node& leaf) {
+exact_moments of_triangle(const std::array<vec3, 3>& c) {
   exact_moments out;
-  for (std::uint32_t i = leaf.right_or_first; i < leaf.right_or_first + leaf.count; ++i) {
-    const auto c = tree.corners_at(i);
-    const vec3 vector = area_vector(c);
-    const double area = glm::length(vector);
-    out.area += area;
-    out.centre += area * centroid(c);
-    out.vector += vector;
-  }
-  out.centre = out.area > 0.0 ? out.centre / out.area : centroid(tree.corners_at(leaf.right_or_first));
-  for (std::uint32_t i = leaf.right_or_first; i < leaf.right_or_first + leaf.count; ++i) {
-    const auto c = tree.corners_at(i);
-    out.add_moment(centroid(c) - out.centre, area_vector(c));
-  }
+  out.centre = (c[0] + c[1] + c[2]) / 3.0;
+  out.vector = 0.5 * glm::cross(c[1] - c[0], c[2] - c[0]);
+  out.area = glm::length(out.vector);
+  glm::dmat3 spread(0.0);
+  for (const vec3& p : c) spread += glm::outerProduct(p - out.centre, p - out.centre) / 12.0;
+  for (int j = 0; j < 3; ++j) out.second[static_cast<std::size_t>(j)] = out.vector[j] * spread;
   return out;
 }
 
-exact_moments merged(const exact_moments& a, const exact_moments& b) {
+exact_moments merged(std::span<const exact_moments> parts) {
   exact_moments out;
-  out.area = a.area + b.area;
-  out.centre = out.area > 0.0 ? (a.area * a.centre + b.area * b.centre) / out.area : a.centre;
-  out.vector = a.vector + b.vector;
-  for (std::size_t k = 0; k < 6; ++k) out.first[k] = a.first[k] + b.first[k];
-  out.add_moment(a.centre - out.centre, a.vector);
-  out.add_moment(b.centre - out.centre, b.vector);
+  for (const exact_moments& part : parts) {
+    out.area += part.area;
+    out.centre += part.area * part.centre;
+  }
+  out.centre = out.area > 0.0 ? out.centre / out.area : parts.front().centre;
+  for (const exact_moments& part : parts) out.add(part);
   return out;
+}
+
+exact_moments of_leaf(const triangle_bvh& tree, const triangle_bvh::node& leaf) {
+  std::vector<exact_moments> parts;
+  for (std::uint32_t i = leaf.right_or_first; i < leaf.right_or_first + leaf.count; ++i)
+    parts.push_back(of_triangle(tree.corners_at(i)));
+  return merged(parts);
 }
 
 double reach_of(const triangle_bvh::node& n, const vec3& centre) noexcept {
@@ -89,16 +92,35 @@ winding_field::winding_field(const triangle_bvh& tree) : tree_(tree), moments_(t
   std::vector<exact_moments> waiting(nodes.size());
   for (std::size_t i = nodes.size(); i-- > 0;) {
     const triangle_bvh::node& n = nodes[i];
-    waiting[i] = n.count > 0 ? of_leaf(tree, n) : merged(waiting[i + 1], waiting[n.right_or_first]);
+    waiting[i] = n.count > 0 ? of_leaf(tree, n) : merged(std::array{waiting[i + 1], waiting[n.right_or_first]});
     const exact_moments& m = waiting[i];
+    const auto first = [&](int d, int along) { return m.first[along][d]; };
+    const auto second = [&](int d, int e, int along) { return m.second[static_cast<std::size_t>(along)][d][e]; };
     moments& out = moments_[i];
     const double reach = reach_of(n, m.centre);
     out.reach2 = static_cast<float>(reach * reach);
-    for (std::size_t k = 0; k < 3; ++k) {
-      out.centre[k] = static_cast<float>(m.centre[static_cast<int>(k)]);
-      out.area[k] = static_cast<float>(m.vector[static_cast<int>(k)]);
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      out.centre[axis] = static_cast<float>(m.centre[k]);
+      out.area[axis] = static_cast<float>(m.vector[k]);
+      double linear = 0.0;
+      for (int j = 0; j < 3; ++j) linear += 2.0 * second(k, j, j) + second(j, j, k);
+      out.linear[axis] = static_cast<float>(linear);
+      out.first[axis] = static_cast<float>(first(k, k));
+      out.cubic[axis] = static_cast<float>(second(k, k, k));
     }
-    for (std::size_t k = 0; k < 6; ++k) out.first[k] = static_cast<float>(m.first[k]);
+    const auto mixed = [&](int j, int k) { return static_cast<float>(first(j, k) + first(k, j)); };
+    out.first[3] = mixed(0, 1);
+    out.first[4] = mixed(0, 2);
+    out.first[5] = mixed(1, 2);
+    const auto twice = [&](int j, int k) { return static_cast<float>(second(j, j, k) + 2.0 * second(j, k, j)); };
+    out.cubic[3] = twice(0, 1);
+    out.cubic[4] = twice(0, 2);
+    out.cubic[5] = twice(1, 0);
+    out.cubic[6] = twice(1, 2);
+    out.cubic[7] = twice(2, 0);
+    out.cubic[8] = twice(2, 1);
+    out.cubic[9] = static_cast<float>(2.0 * (second(0, 1, 2) + second(0, 2, 1) + second(1, 2, 0)));
   }
 }
 
@@ -118,12 +140,18 @@ double winding_field::at(const vec3& p) const noexcept {
     if (r2 > static_cast<double>(m.reach2)) {
       const double inverse2 = 1.0 / r2;
       const double inverse3 = inverse2 * std::sqrt(inverse2);
+      const auto dot3 = [&](const std::array<float, 3>& v) {
+        return r.x * static_cast<double>(v[0]) + r.y * static_cast<double>(v[1]) + r.z * static_cast<double>(v[2]);
+      };
       const auto f = [&](std::size_t k) { return static_cast<double>(m.first[k]); };
-      const double dipole = r.x * static_cast<double>(m.area[0]) + r.y * static_cast<double>(m.area[1]) +
-                            r.z * static_cast<double>(m.area[2]);
-      const double quadratic = r.x * r.x * f(0) + r.y * r.y * f(1) + r.z * r.z * f(2) + r.x * r.y * f(3) +
-                               r.x * r.z * f(4) + r.y * r.z * f(5);
-      far += inverse3 * (dipole + f(0) + f(1) + f(2) - 3.0 * quadratic * inverse2);
+      const auto g = [&](std::size_t k) { return static_cast<double>(m.cubic[k]); };
+      const double xx = r.x * r.x, yy = r.y * r.y, zz = r.z * r.z;
+      const double quadratic =
+          xx * f(0) + yy * f(1) + zz * f(2) + r.x * r.y * f(3) + r.x * r.z * f(4) + r.y * r.z * f(5);
+      const double cubic = xx * (r.x * g(0) + r.y * g(3) + r.z * g(4)) + yy * (r.y * g(1) + r.x * g(5) + r.z * g(6)) +
+                           zz * (r.z * g(2) + r.x * g(7) + r.y * g(8)) + r.x * r.y * r.z * g(9);
+      far += inverse3 * (dot3(m.area) + f(0) + f(1) + f(2) - 3.0 * quadratic * inverse2 +
+                         0.5 * inverse2 * (15.0 * cubic * inverse2 - 3.0 * dot3(m.linear)));
       continue;
     }
     const triangle_bvh::node& n = nodes[at];

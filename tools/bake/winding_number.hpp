@@ -14,21 +14,23 @@ inline constexpr double inside_winding = 0.5;
 
 /// How often a triangle soup winds about a point: 1 inside of a closed, outward oriented surface and 0 outside; between
 /// them near holes; plus and minus one half at the two sides of a sheet. Refers to the tree.
-/// @source Barill, Dickson, Schmidt, Levin and Jacobson 2018: far parts of the tree as a dipole and its first moment
+/// @source Barill, Dickson, Schmidt, Levin and Jacobson 2018: far parts of the tree as a dipole and two moments of it
 class winding_field {
  public:
   explicit winding_field(const triangle_bvh& tree);
 
-  /// Exact to about 0.002 far from the surface, to rounding near it.
+  /// Within 0.005 of the exact sum, in the median within 0.0005.
   [[nodiscard]] double at(const vec3& p) const noexcept;
 
  private:
-  // Area vectors of all triangles under a node, and their first moment about its centre: r' M r needs its symmetric part.
+  // What the triangles under a node are like from afar: r is from the point to the node's centre, d from there on.
   struct moments {
     std::array<float, 3> centre{};
-    float reach2 = 0.0F;  // square of the distance from which on they may be used
-    std::array<float, 3> area{};
-    std::array<float, 6> first{};  // xx yy zz, and xy + yx, xz + zx, yz + zy
+    float reach2 = 0.0F;            // square of the distance from which on they may be used
+    std::array<float, 3> area{};    // sum of n
+    std::array<float, 6> first{};   // r' (sum of d n') r: xx yy zz xy xz yz
+    std::array<float, 3> linear{};  // sum of 2 d (d.n) + d.d n
+    std::array<float, 10> cubic{};  // sum of (r.d)^2 (r.n): xxx yyy zzz xxy xxz yyx yyz zzx zzy xyz
   };
 
   const triangle_bvh& tree_;

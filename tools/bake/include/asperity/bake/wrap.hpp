@@ -22,12 +22,12 @@ inline constexpr double default_plate_cells = 2.5;
 struct wrap_settings {
   /// Edge of a cell, m: what is finer is lost. Nothing: the diagonal / default_wrap_cells, or finer where thickness_m
   /// needs it, or coarser where that would exceed a limit.
-  std::optional<double> cell_m;
+  std::optional<double> cell_m{};
   /// Of the plates that stand for open sheets and for walls thinner than a cell, m. Nothing: default_plate_cells.
-  std::optional<double> thickness_m;
+  std::optional<double> thickness_m{};
   unsigned threads = 0;  ///< 0: as many as the machine has; the result does not depend on it
   /// Called with every stage and its share done, 0 to 1; returning false cancels.
-  std::function<bool(std::string_view stage, double done)> progress;
+  std::function<bool(std::string_view stage, double done)> progress{};
 };
 
 /// What a wrap did. Lengths in metres, shares by area, 0 to 1.
