@@ -27,9 +27,11 @@ constexpr double margin_in_diagonals = 0.3;  // the surface may leave the box of
 constexpr double coarser = 1.4;              // a cell that met a limit, where the size was not asked for
 constexpr int most_tries = 12;
 constexpr double smallest_part_in_cells = 2.0;
+constexpr double far_in_thicknesses = 0.6;  // the faces of a plate are at one half
 constexpr int halvings = 9;
 constexpr int distance_steps = 6;
-constexpr std::size_t measured_points = 100'000;
+constexpr std::size_t fewest_measured = 5'000;
+constexpr std::size_t most_measured = 100'000;
 constexpr std::size_t most_hits = 8;
 
 error cancelled() { return {error_code::cancelled, "the wrap was cancelled"}; }
@@ -282,9 +284,9 @@ struct one_way {
   length_spread spread;
   double far_share = 0.0;
 };
-std::optional<one_way> measure_from(const triangle_mesh& from, const triangle_bvh& to, double far_m, unsigned threads,
-                                    stage_monitor& monitor) {
-  const std::vector<relief_point> points = spread_points(from, measured_points);
+std::optional<one_way> measure_from(const triangle_mesh& from, const triangle_bvh& to, double far_m, std::size_t count,
+                                    unsigned threads, stage_monitor& monitor) {
+  const std::vector<relief_point> points = spread_points(from, count);
   std::vector<double> distance(points.size() + from.positions.size());
   const auto visit = [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -368,8 +370,10 @@ result<triangle_mesh> wrap(const triangle_mesh& mesh, const wrap_settings& setti
                  "nothing of the mesh is left with cells of " + metres(sizes->cell_m) + "; ask for smaller ones"};
   const triangle_bvh own(made->mesh.positions, made->mesh.triangles, threads, &monitor);
   if (monitor.cancelled()) return cancelled();
-  const auto to_original = measure_from(made->mesh, tree, sizes->cell_m, threads, monitor);
-  const auto to_wrap = to_original ? measure_from(soup, own, sizes->cell_m, threads, monitor) : std::nullopt;
+  const std::size_t points = std::clamp(made->mesh.triangles.size(), fewest_measured, most_measured);
+  told.far_m = std::max(sizes->cell_m, made->plate_share > 0.0 ? far_in_thicknesses * sizes->thickness_m : 0.0);
+  const auto to_original = measure_from(made->mesh, tree, told.far_m, points, threads, monitor);
+  const auto to_wrap = to_original ? measure_from(soup, own, told.far_m, points, threads, monitor) : std::nullopt;
   if (!to_wrap) return cancelled();
 
   for (vec3& p : made->mesh.positions) p += middle;

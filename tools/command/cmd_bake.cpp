@@ -17,6 +17,7 @@
 #include "file_names.hpp"
 #include "interrupt.hpp"
 #include "material_option.hpp"
+#include "mesh_placing.hpp"
 #include "mesh_units.hpp"
 #include "model_drawing.hpp"
 #include "options.hpp"
@@ -24,6 +25,7 @@
 #include "progress.hpp"
 #include "relief_options.hpp"
 #include "text.hpp"
+#include "wrap_option.hpp"
 
 namespace asperity::command {
 namespace {
@@ -47,6 +49,8 @@ struct bake_command {
   bool close_holes = false;
   bool without_field = false;
   std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
+  std::shared_ptr<mesh_placing> placing = std::make_shared<mesh_placing>();
+  std::shared_ptr<wrap_options> wrap = std::make_shared<wrap_options>();
   std::shared_ptr<relief_options> relief = std::make_shared<relief_options>();
 };
 
@@ -110,12 +114,29 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   enter("read", 0.0);
   result<triangle_mesh> full = io::load_mesh(options.full, not_interrupted);
   if (!full) return full.error();
+  if (const result<void> ok = fit_scale(*options.placing, options.full, *full, *options.units); !ok) return ok.error();
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
+  turn_up(*options.placing, *full);
   std::vector<std::string> remarks;
   bake::hole_report holes;
+  const bool can_be_wrapped = !options.wrap->wanted && bake::can_wrap(*full);
+  std::optional<bake::wrap_report> wrapped;
+  if (options.wrap->wanted) {
+    if (options.keep_uvs && options.coarse.empty())
+      return error{error_code::invalid_argument,
+                   "--keep-uvs: a wrapped mesh has no texture coordinates; leave --wrap out, or give a --coarse mesh"};
+    result<triangle_mesh> around = bake::wrap(*full,
+                                              {.cell_m = options.wrap->cell_m,
+                                               .thickness_m = options.wrap->thickness_m,
+                                               .threads = options.threads,
+                                               .progress = enter},
+                                              wrapped.emplace());
+    if (!around) return around.error();
+    *full = std::move(*around);
+  }
   if (options.close_holes) {
     const result<bake::hole_report> closed = bake::close_holes(*full);
-    if (!closed) return closed.error();
+    if (!closed) return with_offer_to_wrap(closed.error(), can_be_wrapped);
     holes = *closed;
     if (options.keep_uvs && options.coarse.empty() && holes.holes > 0) {
       return error{error_code::invalid_argument,
@@ -132,7 +153,9 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     return error{error_code::bad_mesh, "--material-map: " + options.full +
                                            " has no texture coordinates, so no image can be laid on it; export it with "
                                            "its UVs (OBJ, glTF)" +
-                                           (holes.holes > 0 ? ", and close its holes there" : "")};
+                                           (holes.holes > 0 ? ", and close its holes there"
+                                            : wrapped       ? "; a wrapped mesh has none"
+                                                            : "")};
   }
 
   bake::bake_settings settings;
@@ -154,12 +177,13 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     result<triangle_mesh> coarse = io::load_mesh(options.coarse, not_interrupted);
     if (!coarse) return coarse.error();
     scale_to_metres(*options.units, *coarse);
+    turn_up(*options.placing, *coarse);
     settings.coarse = std::move(coarse).value();
   }
   // A mesh that the picture does not need is not kept twice.
   result<textured_model> model =
       (drawing && !settings.relief) || *mapped ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
-  if (!model) return model.error();
+  if (!model) return with_offer_to_wrap(model.error(), can_be_wrapped);
   *model = io::as_saved(std::move(*model));
   model->surface = std::move(surface);
   if (*mapped) {
@@ -193,7 +217,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     picture::picture_options page;
     if (!settings.relief) {  // with one, the mesh is not what the textured surface should be
       page.original = &*full;
-      page.original_name = fs::path(options.full).filename().string();
+      page.original_name = fs::path(options.full).filename().string() + (wrapped ? ", wrapped" : "");
     }
     page.threads = options.threads;
     page.progress = enter;
@@ -211,6 +235,10 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   answer out = report_bake(
       {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, holes, *relief, clock},
       std::move(remarks));
+  if (wrapped) {
+    out.document["wrap"] = wrap_document(*wrapped);
+    out.text += wrap_text(*wrapped);
+  }
   if (drawing) {
     out.document["picture"] = std::move(picture);
     out.text += row("picture", options.picture);
@@ -238,11 +266,13 @@ void add_bake(command_line& line) {
       ->capture_default_str();
   sub.add_flag("--keep-uvs", o->keep_uvs,
                "Use the coarse mesh's own texture coordinates; without --coarse, those of a full mesh that is its own");
-  add_unit_options(sub, o->units, "the meshes");
+  add_placing_options(sub, o->placing, add_unit_options(sub, o->units, "the meshes"));
   sub.add_option("--pieces", o->pieces, "Convex pieces to aim for; by default as many as the usual tolerances make")
       ->check(CLI::Range(1, 1000000));
   add_relief_options(sub, o->relief);
-  sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
+  auto* wrap = add_wrap_options(sub, o->wrap);
+  sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them")
+      ->excludes(wrap);
   sub.add_flag("--without-field", o->without_field,
                "Keep no depth field in the file, which is then about half as large; every load makes it anew");
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")

@@ -18,6 +18,7 @@
 #include "bake/soup_facing.hpp"
 #include "bake/winding_number.hpp"
 #include "shapes.hpp"
+#include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace asperity::bake {
@@ -356,8 +357,9 @@ TEST(Wrap, IsTheSameWithAnyNumberOfThreads) {
 
 // Whatever comes in, what comes out is sound or a refusal in words.
 TEST(Wrap, HoldsAgainstHostileSoups) {
-  dice draw(test_support::fresh_seed("Wrap.HoldsAgainstHostileSoups", "40 soups"));
-  for (int i = 0; i < 40; ++i) {
+  dice draw(test_support::fresh_seed("Wrap.HoldsAgainstHostileSoups", "soups of up to 300 triangles"));
+  const int soups = test_support::extent(12, 400);
+  for (int i = 0; i < soups; ++i) {
     triangle_mesh soup;
     const auto count = static_cast<std::uint32_t>(1 + draw.below(i % 2 == 0 ? 4 : 300));
     const double flat = i % 5 == 0 ? 0.0 : draw();
@@ -435,7 +437,7 @@ TEST(Wrap, CanBeCancelledAnywhere) {
   wrap_report report;
   ASSERT_TRUE(wrap(soup, settings, report));
   const std::size_t all = calls;
-  for (std::size_t last = 0; last < all; last += 1 + all / 40) {
+  for (std::size_t last = 0; last < all; last += 1 + all / test_support::extent<std::size_t>(10, 100)) {
     calls = 0;
     settings.progress = [&](std::string_view, double) { return ++calls <= last; };
     const auto out = wrap(soup, settings, report);

@@ -44,8 +44,9 @@ struct wrap_report {
   std::size_t specks_dropped = 0;     ///< pieces of the result smaller than two cells
   length_spread to_original;          ///< from the result to the original
   length_spread to_wrap;              ///< from the original to the result
-  double made_up_share = 0.0;         ///< of the result's area: farther than a cell from the original
-  double lost_share = 0.0;            ///< of the original's area: farther than a cell from the result
+  double far_m = 0.0;                 ///< a cell; 0.6 of the thickness where there are plates and that is more
+  double made_up_share = 0.0;         ///< of the result's area: farther than far_m from the original
+  double lost_share = 0.0;            ///< of the original's area: farther than far_m from the result
 };
 
 /// A closed 2-manifold surface, outward oriented, that check() takes, of any triangles: holes, flipped, doubled, crossing
