@@ -6,11 +6,15 @@
 #include <numbers>
 #include <span>
 
+#include "asperity/model/textured_model.hpp"
+
 namespace asperity::bake {
 namespace {
 
 // A part of the tree is far where its centre is so many of its radii away.
 constexpr double far_in_radii = 2.0;
+constexpr double long_in_diagonals = 32.0;
+constexpr std::size_t most_cuts = 1'000'000;
 
 struct exact_moments {
   vec3 centre{0.0};
@@ -72,6 +76,33 @@ double reach_of(const triangle_bvh::node& n, const vec3& centre) noexcept {
 }
 
 }  // namespace
+
+triangle_mesh without_long_triangles(const triangle_mesh& mesh) {
+  double longest = bounds_of(mesh.positions).diagonal() / long_in_diagonals;
+  for (;; longest *= 2.0) {
+    triangle_mesh out{mesh.positions, {}, {}};
+    std::vector<index_triangle> open(mesh.triangles.rbegin(), mesh.triangles.rend());
+    while (!open.empty() && out.triangles.size() <= mesh.triangles.size() + most_cuts) {
+      const index_triangle t = open.back();
+      open.pop_back();
+      const auto length2 = [&](std::size_t k) {
+        const vec3 edge = out.positions[t[(k + 1) % 3]] - out.positions[t[k]];
+        return glm::dot(edge, edge);
+      };
+      const std::size_t k =
+          length2(0) >= length2(1) ? (length2(0) >= length2(2) ? 0 : 2) : (length2(1) >= length2(2) ? 1 : 2);
+      if (!(length2(k) > longest * longest)) {
+        out.triangles.push_back(t);
+        continue;
+      }
+      const auto middle = static_cast<std::uint32_t>(out.positions.size());
+      out.positions.push_back(0.5 * (out.positions[t[k]] + out.positions[t[(k + 1) % 3]]));
+      open.push_back({middle, t[(k + 1) % 3], t[(k + 2) % 3]});
+      open.push_back({t[k], middle, t[(k + 2) % 3]});
+    }
+    if (open.empty()) return out;
+  }
+}
 
 double winding_of(const std::array<vec3, 3>& c, const vec3& p) noexcept {
   const vec3 a = c[0] - p;

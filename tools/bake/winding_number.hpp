@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "asperity/core/math.hpp"
+#include "asperity/model/triangle_mesh.hpp"
 #include "bake/triangle_bvh.hpp"
 
 namespace asperity::bake {
@@ -36,6 +37,10 @@ class winding_field {
   const triangle_bvh& tree_;
   std::vector<moments> moments_;
 };
+
+/// The same surface with triangles cut in two at their longest edge until none is longer than a 32nd of the diagonal, or
+/// than what keeps the new ones below a million. Long triangles make every part of a tree large, and all of them near.
+[[nodiscard]] triangle_mesh without_long_triangles(const triangle_mesh& mesh);
 
 /// Signed solid angle of a triangle seen from p, as a share of the full sphere: -1/2 to 1/2.
 /// @source van Oosterom and Strackee 1983

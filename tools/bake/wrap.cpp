@@ -25,6 +25,8 @@ namespace {
 
 constexpr double margin_in_diagonals = 0.3;  // the surface may leave the box of the soup by so much
 constexpr double coarser = 1.4;              // a cell that met a limit, where the size was not asked for
+// Half as many as triangles: what a bake takes in some seconds.
+constexpr std::size_t most_unasked_vertices = 500'000;
 constexpr int most_tries = 12;
 constexpr double smallest_part_in_cells = 2.0;
 constexpr double far_in_thicknesses = 0.6;  // the faces of a plate are at one half
@@ -80,9 +82,9 @@ segment_hits hits_on(const triangle_bvh& tree, const vec3& p, const vec3& q) {
 class wrapped_body {
  public:
   wrapped_body(const triangle_mesh& body, const triangle_mesh& plates, double thickness_m, unsigned threads)
-      : half_(0.5 * thickness_m) {
+      : half_(0.5 * thickness_m), surface_(without_long_triangles(body)) {
     if (!body.triangles.empty()) {
-      body_.emplace(body.positions, body.triangles, threads);
+      body_.emplace(surface_.positions, surface_.triangles, threads);
       field_.emplace(*body_);
     }
     if (!plates.triangles.empty()) plates_.emplace(plates.positions, plates.triangles, threads);
@@ -141,6 +143,7 @@ class wrapped_body {
   }
 
   double half_;
+  triangle_mesh surface_;
   std::optional<triangle_bvh> body_;
   std::optional<winding_field> field_;
   std::optional<triangle_bvh> plates_;
@@ -266,7 +269,8 @@ std::optional<wrapped> wrap_with(const triangle_mesh& soup, const cell_sizes& si
   out.too_large = sorted->too_large;
   if (out.too_large) return out;
   const wrapped_body body(sorted->body, sorted->plates, sizes.thickness_m, threads);
-  const lattice_frame frame = frame_over(soup, sizes.cell_m, sizes.thickness_m);
+  lattice_frame frame = frame_over(soup, sizes.cell_m, sizes.thickness_m);
+  if (!sizes.asked) frame.most_vertices = most_unasked_vertices;
   auto surface = surface_on_lattice(
       frame, seeds_of(frame, *sorted, sizes.thickness_m),
       {[&](const vec3& p) { return body.value(p); },

@@ -171,7 +171,8 @@ struct cut_edge {
 };
 
 // Numbers the edges that the surface crosses, block by block.
-std::vector<cut_edge> number_cuts(node_store& store, const std::vector<std::uint32_t>& order) {
+std::vector<cut_edge> number_cuts(node_store& store, const std::vector<std::uint32_t>& order,
+                                  std::size_t most_vertices) {
   std::vector<cut_edge> cuts;
   for (const std::uint32_t b : order) {
     lattice_block& block = store.block(b);
@@ -187,7 +188,7 @@ std::vector<cut_edge> number_cuts(node_store& store, const std::vector<std::uint
         cuts.push_back({p, kind});
       }
     }
-    if (cuts.size() > most_lattice_vertices) break;
+    if (cuts.size() > most_vertices) break;
   }
   return cuts;
 }
@@ -315,8 +316,8 @@ std::optional<lattice_surface> surface_on_lattice(const lattice_frame& frame, st
   if (out.too_large) return out;
 
   const std::vector<std::uint32_t> order = store.in_order();
-  const std::vector<cut_edge> cuts = number_cuts(store, order);
-  out.too_large = cuts.size() > most_lattice_vertices;
+  const std::vector<cut_edge> cuts = number_cuts(store, order, frame.most_vertices);
+  out.too_large = cuts.size() > frame.most_vertices;
   if (out.too_large) return out;
   out.positions.resize(cuts.size());
   const auto place_vertices = [&](std::size_t, std::size_t begin, std::size_t end) {

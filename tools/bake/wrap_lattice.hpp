@@ -29,11 +29,16 @@ struct lattice_point {
           static_cast<std::int32_t>(key >> 42U)};
 }
 
+/// Most blocks of 1024 nodes that are looked at, and most vertices of the surface.
+inline constexpr std::size_t most_lattice_blocks = 60'000;
+inline constexpr std::size_t most_lattice_vertices = 4'000'000;
+
 /// Two cubic grids of edge cell_m, one in the middle of the other's cells. Its tetrahedra are all alike: an edge of one
 /// grid and an edge of the other that cross at right angles.
 struct lattice_frame {
   vec3 origin{0.0};
   double cell_m = 0.0;
+  std::size_t most_vertices = most_lattice_vertices;
   std::array<std::int32_t, 3> most{};  ///< nodes beyond these, or below 2, are outside without being asked
 
   [[nodiscard]] vec3 position(const lattice_point& p) const noexcept {
@@ -51,9 +56,6 @@ struct lattice_body {
   std::function<double(const vec3& inside, const vec3& outside, float value_inside, float value_outside)> cut;
 };
 
-/// Most nodes that are looked at, and most vertices of the surface.
-inline constexpr std::size_t most_lattice_blocks = 60'000;
-inline constexpr std::size_t most_lattice_vertices = 4'000'000;
 /// No vertex is nearer to a lattice node than this share of the edge that it lies on: no triangle without area.
 inline constexpr double least_cut = 0.15;
 

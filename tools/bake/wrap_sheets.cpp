@@ -122,7 +122,8 @@ class sorter {
 
   // Whether there is an inside behind each place, and the winding number of its inner side.
   bool look(const triangle_mesh& body, std::vector<double>* inner) {
-    const triangle_bvh tree(body.positions, body.triangles, threads_, &monitor_);
+    const triangle_mesh cut = without_long_triangles(body);
+    const triangle_bvh tree(cut.positions, cut.triangles, threads_, &monitor_);
     if (monitor_.cancelled()) return false;
     const winding_field field(tree);
     const auto visit = [&](std::size_t, std::size_t begin, std::size_t end) {

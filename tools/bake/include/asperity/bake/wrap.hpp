@@ -21,7 +21,7 @@ inline constexpr double default_plate_cells = 2.5;
 
 struct wrap_settings {
   /// Edge of a cell, m: what is finer is lost. Nothing: the diagonal / default_wrap_cells, or finer where thickness_m
-  /// needs it, or coarser where that would exceed a limit.
+  /// needs it, or coarser where that would make more than a million triangles.
   std::optional<double> cell_m{};
   /// Of the plates that stand for open sheets and for walls thinner than a cell, m. Nothing: default_plate_cells.
   std::optional<double> thickness_m{};
