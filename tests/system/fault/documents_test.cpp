@@ -106,6 +106,36 @@ TEST_F(documents, pictures) {
   EXPECT_NE(read("inspected.png"), read("alone.png"));
 }
 
+TEST_F(documents, a_wrap_tells_what_it_did) {
+  write("open.obj",
+        "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 12\nv 4 0 12\nv 4 3 12\nv 0 3 12\n"
+        "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const json d = expect_document({"bake", path("open.obj"), "--fit", "0.13", "--up=-x", "--wrap=0.002", "--thickness",
+                                  "0.006", "--triangles", "60", "--texture", "96", "-o", path("box.glb")},
+                                 "asperity.bake/1");
+  const json& wrap = d["wrap"];
+  expect_keys(wrap, {"cell", "thickness", "triangles_in", "triangles", "components", "dropped_triangles",
+                     "turned_triangles", "plate_share", "cavities_filled", "specks_dropped", "far", "made_up_share",
+                     "lost_share", "to_original", "to_wrap"});
+  for (const char* way : {"to_original", "to_wrap"}) expect_keys(wrap[way], {"p50", "p99", "max"});
+  EXPECT_EQ(wrap["cell"], 0.002);
+  EXPECT_EQ(wrap["thickness"], 0.006);
+  EXPECT_EQ(wrap["triangles_in"], 10);
+  EXPECT_EQ(wrap["triangles"], d["full_triangles"]);
+  EXPECT_EQ(wrap["components"], 1);
+  EXPECT_EQ(wrap["plate_share"], 0.0);
+  EXPECT_NEAR(wrap["made_up_share"], 12.0 / 192.0, 0.03) << "the lid";
+  EXPECT_NEAR(d["scale"], 0.01, 1e-15);
+  // z was 12 long and lies along -x or x now; x, 4 long, points down.
+  const auto length = [&](std::size_t axis) {
+    return d["size"]["high"][axis].get<double>() - d["size"]["low"][axis].get<double>();
+  };
+  EXPECT_NEAR(length(0), 0.12, 0.003);
+  EXPECT_NEAR(length(1), 0.03, 0.003);
+  EXPECT_NEAR(length(2), 0.04, 0.003);
+  EXPECT_NEAR(d["size"]["low"][2], -0.04, 0.003);
+}
+
 TEST_F(documents, scale_changes_units_and_inspect_warns) {
   const json baked = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
                                       "64", "--scale", "1000", "-o", path("huge.glb")},
