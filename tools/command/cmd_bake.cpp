@@ -24,6 +24,7 @@
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "relief_options.hpp"
+#include "split_bake.hpp"
 #include "text.hpp"
 #include "wrap_option.hpp"
 
@@ -48,6 +49,8 @@ struct bake_command {
   bool keep_uvs = false;
   bool close_holes = false;
   bool without_field = false;
+  bool split = false;
+  std::optional<triangle_mesh> part{};  // to be baked in place of the file's mesh
   std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
   std::shared_ptr<mesh_placing> placing = std::make_shared<mesh_placing>();
   std::shared_ptr<wrap_options> wrap = std::make_shared<wrap_options>();
@@ -112,7 +115,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   };
 
   enter("read", 0.0);
-  result<triangle_mesh> full = io::load_mesh(options.full, not_interrupted);
+  result<triangle_mesh> full = options.part ? *options.part : io::load_mesh(options.full, not_interrupted);
   if (!full) return full.error();
   if (const result<void> ok = fit_scale(*options.placing, options.full, *full, *options.units); !ok) return ok.error();
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
@@ -246,12 +249,41 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   return out;
 }
 
+// One model for each part of the file. One scale holds for all of them, that of the whole.
+result<answer> run_split(const bake_command& options, const common_options& common) {
+  if (const result<void> ok = check_paths(options); !ok) return ok.error();
+  result<std::vector<io::mesh_part>> parts = io::load_mesh_parts(options.full, not_interrupted);
+  if (!parts) return parts.error();
+  const std::vector<std::string> files = files_of_parts(*parts, options.out);
+  std::vector<named_file> outputs;
+  for (const std::string& file : files) outputs.push_back({"--split", file});
+  if (const result<void> ok = check_outputs(mesh_files(options.full, "the bake"), outputs); !ok) return ok.error();
+
+  bake_command each = options;
+  each.units = std::make_shared<mesh_units>(*options.units);
+  each.placing = std::make_shared<mesh_placing>(*options.placing);
+  triangle_mesh whole;
+  for (const io::mesh_part& part : *parts)
+    whole.positions.insert(whole.positions.end(), part.mesh.positions.begin(), part.mesh.positions.end());
+  if (const result<void> ok = fit_scale(*options.placing, options.full, whole, *each.units); !ok) return ok.error();
+  if (const result<void> ok = bring_to_metres(*each.units, options.full, whole); !ok) return ok.error();
+  each.units->scale = each.units->metres_per_unit();
+  each.placing->fit_m.reset();
+  return bake_parts(options.full, files, [&](std::size_t k, const std::string& file) {
+    each.part = std::move((*parts)[k].mesh);
+    each.out = file;
+    each.name = (options.name.empty() ? "" : options.name + " ") + fs::path(files[k]).stem().string();
+    return run_bake(each, common);
+  });
+}
+
 }  // namespace
 
 void add_bake(command_line& line) {
   const auto o = std::make_shared<bake_command>();
-  CLI::App& sub = line.add("bake", "Turn a full-resolution mesh into a textured model",
-                           [o](const common_options& common) { return run_bake(*o, common); });
+  CLI::App& sub =
+      line.add("bake", "Turn a full-resolution mesh into a textured model",
+               [o](const common_options& common) { return o->split ? run_split(*o, common) : run_bake(*o, common); });
   sub.add_option("full", o->full, "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), closed, in metres")
       ->required();
   sub.add_option("-o,--output", o->out, "Textured model to write (.glb)")
@@ -260,7 +292,12 @@ void add_bake(command_line& line) {
   auto* triangles = sub.add_option("--triangles", o->triangles, "Triangles of the coarse mesh to aim for")
                         ->check(CLI::Range(4, 1000000))
                         ->capture_default_str();
-  sub.add_option("--coarse", o->coarse, "Use this mesh as the coarse mesh instead of simplifying")->excludes(triangles);
+  auto* coarse = sub.add_option("--coarse", o->coarse, "Use this mesh as the coarse mesh instead of simplifying")
+                     ->excludes(triangles);
+  sub.add_flag("--split", o->split,
+               "Make a model of each part of the mesh: groups of an OBJ, nodes of a glTF, or surfaces that are apart; "
+               "OUT-NAME.glb or OUT-1.glb and on, all or none")
+      ->excludes(coarse);
   sub.add_option("--texture", o->texture, "Texels per side of the haptic texture")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
@@ -276,6 +313,7 @@ void add_bake(command_line& line) {
   sub.add_flag("--without-field", o->without_field,
                "Keep no depth field in the file, which is then about half as large; every load makes it anew");
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
+      ->excludes("--split")
       ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
   auto* material =
