@@ -30,6 +30,9 @@ constexpr std::size_t most_unasked_vertices = 500'000;
 constexpr int most_tries = 12;
 constexpr double smallest_part_in_cells = 2.0;
 constexpr double far_in_thicknesses = 0.6;  // the faces of a plate are at one half
+// A gap of the body narrower than so many cells is filled: whether a node lies in it would be chance, and every chance
+// a handle.
+constexpr double narrow_gap_in_cells = 1.25;
 constexpr int halvings = 9;
 constexpr int distance_steps = 6;
 constexpr std::size_t fewest_measured = 5'000;
@@ -78,11 +81,19 @@ segment_hits hits_on(const triangle_bvh& tree, const vec3& p, const vec3& q) {
   return out;
 }
 
+struct cell_sizes {
+  double cell_m = 0.0;
+  double thickness_m = 0.0;
+  bool asked = false;  // the cell is what the user wants, or needs for the thickness
+};
+
 // Inside of the body by its winding number, or within half the thickness of a plate.
 class wrapped_body {
  public:
-  wrapped_body(const triangle_mesh& body, const triangle_mesh& plates, double thickness_m, unsigned threads)
-      : half_(0.5 * thickness_m), surface_(without_long_triangles(body)) {
+  wrapped_body(const triangle_mesh& body, const triangle_mesh& plates, const cell_sizes& sizes, unsigned threads)
+      : half_(0.5 * sizes.thickness_m),
+        gap_(narrow_gap_in_cells * sizes.cell_m),
+        surface_(without_long_triangles(body)) {
     if (!body.triangles.empty()) {
       body_.emplace(surface_.positions, surface_.triangles, threads);
       field_.emplace(*body_);
@@ -92,18 +103,19 @@ class wrapped_body {
 
   [[nodiscard]] float value(const vec3& p) const noexcept {
     const double wound = winding(p);
-    if (wound >= 0.0 || !plates_) return static_cast<float>(wound);
-    const double depth = plate_depth(p);
-    return static_cast<float>(depth >= 0.0 ? depth / half_ : wound);
+    if (wound >= 0.0) return static_cast<float>(wound);
+    if (const double depth = plate_depth(p); depth >= 0.0) return static_cast<float>(depth / half_);
+    return static_cast<float>(in_narrow_gap(p) ? 0.0 : wound);
   }
 
   [[nodiscard]] double cut(const vec3& inside, const vec3& outside) const noexcept {
-    if (winding(inside) < 0.0) return cut_plate(inside, outside);
+    if (winding(inside) < 0.0 && plate_depth(inside) >= 0.0) return cut_plate(inside, outside);
+    if (!body_) return 0.5;
     const bool by_plate =
         plates_ && (plate_depth(inside) >= 0.0 ||
                     plates_->closest(inside, half_ + glm::length(outside - inside)).triangle != no_halfedge);
     const segment_hits hits = hits_on(*body_, inside, outside);
-    if (!by_plate && hits.count == 1 && hits.hit[0].outwards) return hits.hit[0].at;
+    if (!by_plate && hits.count == 1 && winding(inside) >= 0.0 && hits.hit[0].outwards) return hits.hit[0].at;
     double low = 0.0, high = 1.0;
     for (int i = 0; i < halvings; ++i) {
       const double middle = 0.5 * (low + high);
@@ -118,8 +130,17 @@ class wrapped_body {
  private:
   [[nodiscard]] double winding(const vec3& p) const noexcept { return field_ ? field_->at(p) - inside_winding : -1.0; }
   [[nodiscard]] double plate_depth(const vec3& p) const noexcept {
+    if (!plates_) return -1.0;
     const auto found = plates_->closest(p, half_);
     return found.triangle == no_halfedge ? -1.0 : half_ - found.distance_m;
+  }
+
+  // Is there body on the other side of p too, seen from the nearest surface?
+  [[nodiscard]] bool in_narrow_gap(const vec3& p) const noexcept {
+    if (!body_) return false;
+    const auto wall = body_->closest(p, 0.5 * gap_);
+    if (wall.triangle == no_halfedge || !(wall.distance_m > 0.0)) return false;
+    return winding(wall.point + gap_ / wall.distance_m * (p - wall.point)) >= 0.0;
   }
 
   // The distance from a plate is smooth beside it: false position, and halving where that creeps.
@@ -143,16 +164,11 @@ class wrapped_body {
   }
 
   double half_;
+  double gap_;
   triangle_mesh surface_;
   std::optional<triangle_bvh> body_;
   std::optional<winding_field> field_;
   std::optional<triangle_bvh> plates_;
-};
-
-struct cell_sizes {
-  double cell_m = 0.0;
-  double thickness_m = 0.0;
-  bool asked = false;  // the cell is what the user wants, or needs for the thickness
 };
 
 result<cell_sizes> sizes_of(const wrap_settings& settings, double diagonal) {
@@ -268,7 +284,7 @@ std::optional<wrapped> wrap_with(const triangle_mesh& soup, const cell_sizes& si
   out.plate_share = sorted->plate_share;
   out.too_large = sorted->too_large;
   if (out.too_large) return out;
-  const wrapped_body body(sorted->body, sorted->plates, sizes.thickness_m, threads);
+  const wrapped_body body(sorted->body, sorted->plates, sizes, threads);
   lattice_frame frame = frame_over(soup, sizes.cell_m, sizes.thickness_m);
   if (!sizes.asked) frame.most_vertices = most_unasked_vertices;
   auto surface = surface_on_lattice(
