@@ -293,6 +293,22 @@ TEST(Wrap, DoesNotThickenTheEdgeOfAWedge) {
   EXPECT_NEAR(volume_of(out.mesh) / volume_of(wedge), 1.0, 0.03);
 }
 
+// Two bodies less than a cell apart are joined: where lattice nodes happen to lie in the gap, each would be a tunnel.
+TEST(Wrap, FillsAGapNarrowerThanACell) {
+  dice draw(test_support::fresh_seed("Wrap.FillsAGapNarrowerThanACell", "two plates, not parallel to the lattice"));
+  const double cell = 0.003, turn = draw(0.3, 1.0);
+  const double gap = draw(0.3, 1.0) * cell;
+  const triangle_mesh half = shapes::box({0.08, 0.06, 0.02}, {4, 3, 1});
+  triangle_mesh soup = shapes::both(half, shapes::scaled(half, 1.0, {0.0, 0.0, 0.02 + gap}));
+  for (vec3& p : soup.positions)
+    p = {std::cos(turn) * p.x - std::sin(turn) * p.z, p.y, std::sin(turn) * p.x + std::cos(turn) * p.z};
+  const outcome joined = wrapped(soup, cell);
+  EXPECT_EQ(joined.report.components, 1U);
+  EXPECT_EQ(joined.euler, 2) << "no tunnel";
+  soup = shapes::both(half, shapes::scaled(half, 1.0, {0.0, 0.0, 0.02 + 2.0 * cell}));
+  EXPECT_EQ(wrapped(soup, cell).report.components, 2U) << "a gap of two cells stays";
+}
+
 TEST(Wrap, TurnsPanelsThatFaceAnyWay) {
   dice draw(test_support::fresh_seed("Wrap.TurnsPanelsThatFaceAnyWay", "a ball of 8 panels"));
   triangle_mesh panels;
