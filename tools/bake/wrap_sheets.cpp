@@ -157,7 +157,7 @@ class sorter {
     }
     std::vector<char> sheet(mesh_.triangles.size());
     for (std::size_t t = 0; t < sheet.size(); ++t)
-      sheet[t] = sum[net.component[t]] < sheet_winding * area[net.component[t]] ? 1 : 0;
+      sheet[t] = sum[net.component[t]] < 0.0 ? 1 : 0;
     return sheet;
   }
 
