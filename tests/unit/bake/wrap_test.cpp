@@ -17,6 +17,7 @@
 #include "bake/self_crossing.hpp"
 #include "bake/soup_facing.hpp"
 #include "bake/winding_number.hpp"
+#include "bake/wrap_fit.hpp"
 #include "bake/wrap_lattice.hpp"
 #include "shapes.hpp"
 #include "support/extent.hpp"
@@ -307,6 +308,21 @@ TEST(Wrap, FillsAGapNarrowerThanACell) {
   EXPECT_EQ(joined.euler, 2) << "no tunnel";
   soup = shapes::both(half, shapes::scaled(half, 1.0, {0.0, 0.0, 0.02 + 2.0 * cell}));
   EXPECT_EQ(wrapped(soup, cell).report.components, 2U) << "a gap of two cells stays";
+}
+
+TEST(Wrap, KeepsOnlyWhatCanBeTouched) {
+  triangle_mesh parts = shapes::both(ball(0.05, 3), shapes::reversed(ball(0.03, 3)));
+  parts = shapes::both(parts, ball(0.01, 3));
+  parts = shapes::both(parts, ball(0.02, 3, {0.2, 0.0, 0.0}));
+  parts = shapes::both(parts, ball(0.001, 2, {0.3, 0.0, 0.0}));
+  stage_monitor monitor;
+  const auto dropped = keep_outermost(parts, 0.005, 1, monitor);
+  ASSERT_TRUE(dropped);
+  EXPECT_EQ(dropped->cavities, 2U) << "the hollow, and the ball in it";
+  EXPECT_EQ(dropped->specks, 1U);
+  EXPECT_EQ(dropped->left, 2U);
+  const double expected = volume_of(ball(0.05, 3)) + volume_of(ball(0.02, 3));
+  EXPECT_NEAR(volume_of(parts), expected, 1e-9);
 }
 
 TEST(Wrap, TurnsPanelsThatFaceAnyWay) {
