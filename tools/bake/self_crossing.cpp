@@ -61,30 +61,55 @@ bool cross(const triangle_mesh& mesh, const index_triangle& a, const plane& at_a
   return an_edge_pierces(b, cb, a, at_a) || an_edge_pierces(a, at_a.c, b, plane(cb));
 }
 
-}  // namespace
-
-std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads,
-                                                  stage_monitor& monitor) {
-  std::vector<self_crossings> of_block(block_count(mesh.triangles.size()));
+// Calls found(block, triangle, other) for every pair, the lower number first. @return false where cancelled
+template <class Found>
+bool visit_crossings(const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads, stage_monitor& monitor,
+                     const Found& found) {
   const auto body = [&](std::size_t block, std::size_t begin, std::size_t end) {
-    self_crossings& found = of_block[block];
     for (std::size_t t = begin; t < end; ++t) {
       const index_triangle& a = mesh.triangles[t];
       const plane at(corners(mesh.positions, a));
       const vec3 low = glm::min(at.c[0], glm::min(at.c[1], at.c[2]));
       const vec3 high = glm::max(at.c[0], glm::max(at.c[1], at.c[2]));
       tree.visit_box(low, high, [&](std::uint32_t other) {
-        if (other <= t || !cross(mesh, a, at, mesh.triangles[other])) return;
-        if (found.pairs++ == 0) found.first = (at.c[0] + at.c[1] + at.c[2]) / 3.0;
+        if (other > t && cross(mesh, a, at, mesh.triangles[other])) found(block, static_cast<std::uint32_t>(t), other);
       });
     }
   };
-  if (!parallel_blocks(mesh.triangles.size(), threads, monitor, 0.0, 0.5, body)) return std::nullopt;
+  return parallel_blocks(mesh.triangles.size(), threads, monitor, 0.0, 0.5, body);
+}
+
+}  // namespace
+
+std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads,
+                                                  stage_monitor& monitor) {
+  std::vector<self_crossings> of_block(block_count(mesh.triangles.size()));
+  const auto found = [&](std::size_t block, std::uint32_t t, std::uint32_t /*other*/) {
+    if (of_block[block].pairs++ > 0) return;
+    const corner_list c = corners(mesh.positions, mesh.triangles[t]);
+    of_block[block].first = (c[0] + c[1] + c[2]) / 3.0;
+  };
+  if (!visit_crossings(mesh, tree, threads, monitor, found)) return std::nullopt;
   self_crossings out;
-  for (const self_crossings& found : of_block) {
-    if (out.pairs == 0) out.first = found.first;
-    out.pairs += found.pairs;
+  for (const self_crossings& found_there : of_block) {
+    if (out.pairs == 0) out.first = found_there.first;
+    out.pairs += found_there.pairs;
   }
+  return out;
+}
+
+std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> list_self_crossings(const triangle_mesh& mesh,
+                                                                                        const triangle_bvh& tree,
+                                                                                        unsigned threads,
+                                                                                        stage_monitor& monitor) {
+  using pair_list = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  std::vector<pair_list> of_block(block_count(mesh.triangles.size()));
+  const auto found = [&](std::size_t block, std::uint32_t t, std::uint32_t other) {
+    of_block[block].emplace_back(t, other);
+  };
+  if (!visit_crossings(mesh, tree, threads, monitor, found)) return std::nullopt;
+  pair_list out;
+  for (const pair_list& part : of_block) out.insert(out.end(), part.begin(), part.end());
   return out;
 }
 

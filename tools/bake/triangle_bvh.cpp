@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t leaf_size = 4;
 constexpr std::size_t least_shared_items = 4096;  // fewer are not worth another thread
-constexpr std::size_t stack_size = 64;  // the tree is balanced: its depth is the logarithm of the triangle count
 
 // Nodes of the tree over n items. At depth d the halves have n / 2^d items, rounded down or up, and n % 2^d of them up.
 std::size_t node_count(std::size_t n) noexcept {
@@ -201,7 +200,7 @@ void triangle_bvh::build(making& all, std::span<item> items, std::size_t first, 
 triangle_bvh::nearest triangle_bvh::closest(const vec3& p, double within) const noexcept {
   nearest best;
   double best2 = within * within;
-  std::array<std::pair<double, std::uint32_t>, stack_size> stack;
+  std::array<std::pair<double, std::uint32_t>, deepest> stack;
   std::size_t depth = 0;
   stack[depth++] = {distance2(nodes_[0], p), 0};
   while (depth > 0) {
@@ -229,7 +228,7 @@ triangle_bvh::nearest triangle_bvh::closest(const vec3& p, double within) const 
 
 bool triangle_bvh::has_facing(const vec3& p, const vec3& n, double within) const noexcept {
   const double within2 = within * within;
-  std::array<std::uint32_t, stack_size> stack;
+  std::array<std::uint32_t, deepest> stack;
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {
@@ -255,7 +254,7 @@ std::optional<triangle_bvh::crossing> triangle_bvh::nearest_front_crossing(const
   const vec3 inverse = 1.0 / d;
   std::optional<crossing> best;
   double reach = range;
-  std::array<std::pair<double, std::uint32_t>, stack_size> stack;
+  std::array<std::pair<double, std::uint32_t>, deepest> stack;
   std::size_t depth = 0;
   stack[depth++] = {smallest_offset(nodes_[0], p, inverse), 0};
   while (depth > 0) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "asperity/core/math.hpp"
@@ -21,10 +22,22 @@ namespace asperity::bake {
 /// triangle of its own.
 class triangle_bvh {
  public:
+  /// Room that a walk through the tree needs: it is balanced, its depth is the logarithm of the triangle count.
+  static constexpr std::size_t deepest = 64;
+
   struct nearest {
     vec3 point{0.0};
     double distance_m = std::numeric_limits<double>::infinity();
     std::uint32_t triangle = no_halfedge;  ///< no_halfedge where nothing is within reach
+  };
+
+  /// Children of an inner node (count 0): the next node in memory, and `right_or_first`. A leaf holds triangles
+  /// [right_or_first, right_or_first + count) in leaf order. A child has a higher number than its parent.
+  struct node {
+    std::array<float, 3> low;
+    std::array<float, 3> high;
+    std::uint32_t right_or_first;
+    std::uint32_t count;
   };
 
   struct crossing {
@@ -50,10 +63,10 @@ class triangle_bvh {
   [[nodiscard]] std::optional<crossing> nearest_front_crossing(const vec3& p, const vec3& d,
                                                                double range) const noexcept;
 
-  /// Calls visit(triangle) for the triangles that meet the box, and for some beside it.
+  /// Calls visit(triangle), or visit(triangle, corners), for the triangles that meet the box, and for some beside it.
   template <class Visit>
   void visit_box(const vec3& low, const vec3& high, const Visit& visit) const {
-    std::array<std::uint32_t, 64> stack;  // the tree is balanced: its depth is the logarithm of the triangle count
+    std::array<std::uint32_t, deepest> stack;
     std::size_t depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
@@ -70,29 +83,33 @@ class triangle_bvh {
         stack[depth++] = at + 1;
         continue;
       }
-      for (std::uint32_t i = n.right_or_first; i < n.right_or_first + n.count; ++i) visit(triangle_[i]);
+      for (std::uint32_t i = n.right_or_first; i < n.right_or_first + n.count; ++i) {
+        if constexpr (std::is_invocable_v<const Visit&, std::uint32_t, const std::array<vec3, 3>&>) {
+          visit(triangle_[i], corners_at(i));
+        } else {
+          visit(triangle_[i]);
+        }
+      }
     }
   }
 
+  /// The tree itself, for whoever keeps something of his own at its nodes.
+  [[nodiscard]] std::span<const node> nodes() const noexcept { return nodes_; }
+  [[nodiscard]] std::size_t size() const noexcept { return triangle_.size(); }
+  /// Corners and number of the i-th triangle in leaf order.
+  [[nodiscard]] std::array<vec3, 3> corners_at(std::size_t i) const noexcept {
+    const index_triangle& v = corners_[i];
+    return {positions_[v[0]], positions_[v[1]], positions_[v[2]]};
+  }
+  [[nodiscard]] std::uint32_t triangle_at(std::size_t i) const noexcept { return triangle_[i]; }
+
  private:
-  // Children of an inner node: the next node in memory, and `right`. A leaf holds triangles [first, first + count).
-  struct node {
-    std::array<float, 3> low;
-    std::array<float, 3> high;
-    std::uint32_t right_or_first;
-    std::uint32_t count;
-  };
   struct item;
   struct making;
 
   void build(making& all, std::span<item> items, std::size_t first, std::size_t index, unsigned threads,
              bool on_calling_thread);
   void make_leaf(std::span<const index_triangle> triangles, std::span<const item> items, std::size_t first, node& out);
-  [[nodiscard]] std::array<vec3, 3> corners_at(std::size_t i) const noexcept {
-    const index_triangle& v = corners_[i];
-    return {positions_[v[0]], positions_[v[1]], positions_[v[2]]};
-  }
-
   std::span<const vec3> positions_;
   std::vector<node> nodes_;
   std::vector<index_triangle> corners_;  // in leaf order

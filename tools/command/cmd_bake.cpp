@@ -17,13 +17,16 @@
 #include "file_names.hpp"
 #include "interrupt.hpp"
 #include "material_option.hpp"
+#include "mesh_placing.hpp"
 #include "mesh_units.hpp"
 #include "model_drawing.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
 #include "progress.hpp"
 #include "relief_options.hpp"
+#include "split_bake.hpp"
 #include "text.hpp"
+#include "wrap_option.hpp"
 
 namespace asperity::command {
 namespace {
@@ -46,7 +49,11 @@ struct bake_command {
   bool keep_uvs = false;
   bool close_holes = false;
   bool without_field = false;
+  bool split = false;
+  std::optional<triangle_mesh> part{};  // to be baked in place of the file's mesh
   std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
+  std::shared_ptr<mesh_placing> placing = std::make_shared<mesh_placing>();
+  std::shared_ptr<wrap_options> wrap = std::make_shared<wrap_options>();
   std::shared_ptr<relief_options> relief = std::make_shared<relief_options>();
 };
 
@@ -108,14 +115,31 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   };
 
   enter("read", 0.0);
-  result<triangle_mesh> full = io::load_mesh(options.full, not_interrupted);
+  result<triangle_mesh> full = options.part ? *options.part : io::load_mesh(options.full, not_interrupted);
   if (!full) return full.error();
+  if (const result<void> ok = fit_scale(*options.placing, options.full, *full, *options.units); !ok) return ok.error();
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
+  turn_up(*options.placing, *full);
   std::vector<std::string> remarks;
   bake::hole_report holes;
+  const bool can_be_wrapped = !options.wrap->wanted && bake::can_wrap(*full);
+  std::optional<bake::wrap_report> wrapped;
+  if (options.wrap->wanted) {
+    if (options.keep_uvs && options.coarse.empty())
+      return error{error_code::invalid_argument,
+                   "--keep-uvs: a wrapped mesh has no texture coordinates; leave --wrap out, or give a --coarse mesh"};
+    result<triangle_mesh> around = bake::wrap(*full,
+                                              {.cell_m = options.wrap->cell_m,
+                                               .thickness_m = options.wrap->thickness_m,
+                                               .threads = options.threads,
+                                               .progress = enter},
+                                              wrapped.emplace());
+    if (!around) return around.error();
+    *full = std::move(*around);
+  }
   if (options.close_holes) {
     const result<bake::hole_report> closed = bake::close_holes(*full);
-    if (!closed) return closed.error();
+    if (!closed) return with_offer_to_wrap(closed.error(), can_be_wrapped);
     holes = *closed;
     if (options.keep_uvs && options.coarse.empty() && holes.holes > 0) {
       return error{error_code::invalid_argument,
@@ -132,7 +156,9 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     return error{error_code::bad_mesh, "--material-map: " + options.full +
                                            " has no texture coordinates, so no image can be laid on it; export it with "
                                            "its UVs (OBJ, glTF)" +
-                                           (holes.holes > 0 ? ", and close its holes there" : "")};
+                                           (holes.holes > 0 ? ", and close its holes there"
+                                            : wrapped       ? "; a wrapped mesh has none"
+                                                            : "")};
   }
 
   bake::bake_settings settings;
@@ -154,12 +180,13 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     result<triangle_mesh> coarse = io::load_mesh(options.coarse, not_interrupted);
     if (!coarse) return coarse.error();
     scale_to_metres(*options.units, *coarse);
+    turn_up(*options.placing, *coarse);
     settings.coarse = std::move(coarse).value();
   }
   // A mesh that the picture does not need is not kept twice.
   result<textured_model> model =
       (drawing && !settings.relief) || *mapped ? bake::bake(*full, settings) : bake::bake(std::move(*full), settings);
-  if (!model) return model.error();
+  if (!model) return with_offer_to_wrap(model.error(), can_be_wrapped);
   *model = io::as_saved(std::move(*model));
   model->surface = std::move(surface);
   if (*mapped) {
@@ -193,7 +220,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     picture::picture_options page;
     if (!settings.relief) {  // with one, the mesh is not what the textured surface should be
       page.original = &*full;
-      page.original_name = fs::path(options.full).filename().string();
+      page.original_name = fs::path(options.full).filename().string() + (wrapped ? ", wrapped" : "");
     }
     page.threads = options.threads;
     page.progress = enter;
@@ -211,6 +238,10 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   answer out = report_bake(
       {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, holes, *relief, clock},
       std::move(remarks));
+  if (wrapped) {
+    out.document["wrap"] = wrap_document(*wrapped);
+    out.text += wrap_text(*wrapped);
+  }
   if (drawing) {
     out.document["picture"] = std::move(picture);
     out.text += row("picture", options.picture);
@@ -218,12 +249,41 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   return out;
 }
 
+// One model for each part of the file. One scale holds for all of them, that of the whole.
+result<answer> run_split(const bake_command& options, const common_options& common) {
+  if (const result<void> ok = check_paths(options); !ok) return ok.error();
+  result<std::vector<io::mesh_part>> parts = io::load_mesh_parts(options.full, not_interrupted);
+  if (!parts) return parts.error();
+  const std::vector<std::string> files = files_of_parts(*parts, options.out);
+  std::vector<named_file> outputs;
+  for (const std::string& file : files) outputs.push_back({"--split", file});
+  if (const result<void> ok = check_outputs(mesh_files(options.full, "the bake"), outputs); !ok) return ok.error();
+
+  bake_command each = options;
+  each.units = std::make_shared<mesh_units>(*options.units);
+  each.placing = std::make_shared<mesh_placing>(*options.placing);
+  triangle_mesh whole;
+  for (const io::mesh_part& part : *parts)
+    whole.positions.insert(whole.positions.end(), part.mesh.positions.begin(), part.mesh.positions.end());
+  if (const result<void> ok = fit_scale(*options.placing, options.full, whole, *each.units); !ok) return ok.error();
+  if (const result<void> ok = bring_to_metres(*each.units, options.full, whole); !ok) return ok.error();
+  each.units->scale = each.units->metres_per_unit();
+  each.placing->fit_m.reset();
+  return bake_parts(options.full, files, [&](std::size_t k, const std::string& file) {
+    each.part = std::move((*parts)[k].mesh);
+    each.out = file;
+    each.name = (options.name.empty() ? "" : options.name + " ") + fs::path(files[k]).stem().string();
+    return run_bake(each, common);
+  });
+}
+
 }  // namespace
 
 void add_bake(command_line& line) {
   const auto o = std::make_shared<bake_command>();
-  CLI::App& sub = line.add("bake", "Turn a full-resolution mesh into a textured model",
-                           [o](const common_options& common) { return run_bake(*o, common); });
+  CLI::App& sub =
+      line.add("bake", "Turn a full-resolution mesh into a textured model",
+               [o](const common_options& common) { return o->split ? run_split(*o, common) : run_bake(*o, common); });
   sub.add_option("full", o->full, "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), closed, in metres")
       ->required();
   sub.add_option("-o,--output", o->out, "Textured model to write (.glb)")
@@ -232,20 +292,28 @@ void add_bake(command_line& line) {
   auto* triangles = sub.add_option("--triangles", o->triangles, "Triangles of the coarse mesh to aim for")
                         ->check(CLI::Range(4, 1000000))
                         ->capture_default_str();
-  sub.add_option("--coarse", o->coarse, "Use this mesh as the coarse mesh instead of simplifying")->excludes(triangles);
+  auto* coarse = sub.add_option("--coarse", o->coarse, "Use this mesh as the coarse mesh instead of simplifying")
+                     ->excludes(triangles);
+  sub.add_flag("--split", o->split,
+               "Make a model of each part of the mesh: groups of an OBJ, nodes of a glTF, or surfaces that are apart; "
+               "OUT-NAME.glb or OUT-1.glb and on, all or none")
+      ->excludes(coarse);
   sub.add_option("--texture", o->texture, "Texels per side of the haptic texture")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
   sub.add_flag("--keep-uvs", o->keep_uvs,
                "Use the coarse mesh's own texture coordinates; without --coarse, those of a full mesh that is its own");
-  add_unit_options(sub, o->units, "the meshes");
+  add_placing_options(sub, o->placing, add_unit_options(sub, o->units, "the meshes"));
   sub.add_option("--pieces", o->pieces, "Convex pieces to aim for; by default as many as the usual tolerances make")
       ->check(CLI::Range(1, 1000000));
   add_relief_options(sub, o->relief);
-  sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
+  auto* wrap = add_wrap_options(sub, o->wrap);
+  sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them")
+      ->excludes(wrap);
   sub.add_flag("--without-field", o->without_field,
                "Keep no depth field in the file, which is then about half as large; every load makes it anew");
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
+      ->excludes("--split")
       ->check([](const std::string& text) { return extension_error(text, {".png"}); }, "FILE.png");
   sub.add_option("--name", o->name, "Name kept in the model; by default the mesh's file name without extension");
   auto* material =

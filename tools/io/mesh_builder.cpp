@@ -1,5 +1,6 @@
 #include "mesh_builder.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <limits>
 #include <random>
@@ -94,6 +95,16 @@ void check_corner_count(std::uint64_t count) {
   check_count(count, max_polygon_corners, "corners in one face", "a polygon may have; triangulate the mesh first");
 }
 
+std::uint32_t part_list::number_of(std::string_view name, bool fresh) {
+  if (!fresh) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return static_cast<std::uint32_t>(found - names.begin());
+  }
+  check_count(names.size() + 1, max_mesh_parts, "parts", "can be told apart; join them");
+  names.emplace_back(name);
+  return static_cast<std::uint32_t>(names.size() - 1);
+}
+
 void polygon_soup::refuse_triangles() {
   throw rejection{error_code::limit_exceeded, "has more than the " + std::to_string(max_mesh_triangles) +
                                                   " triangles that a mesh may have; decimate it first"};
@@ -123,6 +134,7 @@ result<triangle_mesh> build_mesh(polygon_soup&& soup, const std::filesystem::pat
     }
     for (const auto& t : splitter.triangles()) {
       mesh.triangles.push_back({polygon[t[0]], polygon[t[1]], polygon[t[2]]});
+      if (soup.parts != nullptr) soup.parts->of_triangle.push_back(soup.part_of_polygon[k]);
       if (soup.corner_uvs.empty()) continue;
       const auto uv = [&](std::uint32_t corner) { return soup.uvs[soup.corner_uvs[first + corner]]; };
       mesh.uvs.push_back({uv(t[0]), uv(t[1]), uv(t[2])});

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "asperity/core/status.hpp"
@@ -12,6 +14,15 @@
 
 namespace asperity::io {
 
+/// Which part of a file each triangle belongs to, and what the parts are called.
+struct part_list {
+  std::vector<std::string> names;
+  std::vector<std::uint32_t> of_triangle;
+
+  /// Number of the part of this name, a new one where `fresh` or there is none. Throws rejection for too many.
+  std::uint32_t number_of(std::string_view name, bool fresh);
+};
+
 /// Polygons as they stand in a file. Readers have checked that positions are finite and indices are in range.
 struct polygon_soup {
   std::vector<vec3> positions;
@@ -19,10 +30,14 @@ struct polygon_soup {
   std::vector<std::uint32_t> ends;     ///< for each polygon, one past its last corner
   std::vector<vec2> uvs;
   std::vector<std::uint32_t> corner_uvs;  ///< indices into uvs: none, or one per corner
+  part_list* parts = nullptr;             ///< filled in where somebody wants to know
+  std::uint32_t part = 0;                 ///< of the polygons that come
+  std::vector<std::uint32_t> part_of_polygon;
 
   /// Throws rejection where the mesh has become larger than the limits of load_mesh().
   void end_polygon() {
     ends.push_back(static_cast<std::uint32_t>(corners.size()));
+    if (parts != nullptr) part_of_polygon.push_back(part);
     if (corners.size() - 2 * ends.size() > max_mesh_triangles) refuse_triangles();
   }
   /// Throws rejection.

@@ -7,6 +7,8 @@
 #include "asperity/core/float32.hpp"
 #include "file_bytes.hpp"
 #include "file_formats.hpp"
+#include "mesh_builder.hpp"
+#include "mesh_parts.hpp"
 
 namespace asperity::io {
 namespace {
@@ -22,23 +24,49 @@ bool fits_float32(const vec3& p) { return round_to_float32(p) == p; }
 
 }  // namespace
 
-result<triangle_mesh> load_mesh(const std::filesystem::path& file, const std::function<bool()>& keep_going) {
+namespace {
+
+result<triangle_mesh> load(const std::filesystem::path& file, const std::function<bool()>& keep_going,
+                           part_list* parts) {
   return without_exceptions(file, [&]() -> result<triangle_mesh> {
     if (const auto regular = check_regular_file(file); !regular) return regular.error();
     const std::string extension = lower_case_extension(file);
-    const auto reader = extension == ".ply"                           ? read_ply
-                        : extension == ".obj"                         ? read_obj
-                        : extension == ".stl"                         ? read_stl
-                        : extension == ".glb" || extension == ".gltf" ? read_gltf
-                                                                      : nullptr;
-    if (reader == nullptr) {
+    const bool gltf = extension == ".glb" || extension == ".gltf";
+    if (extension != ".ply" && extension != ".obj" && extension != ".stl" && !gltf) {
       return fault(error_code::unsupported, file,
                    "has an unknown extension '" + extension + "'; use .ply, .obj, .stl, .gltf or .glb");
     }
     const reading_watch watch(keep_going);
     const auto bytes = read_file(file, max_mesh_bytes, watch);
     if (!bytes) return bytes.error();
-    return reader(*bytes, file, watch);
+    if (gltf) return read_gltf(*bytes, file, watch, parts);
+    if (extension == ".obj") return read_obj(*bytes, file, watch, parts);
+    return extension == ".ply" ? read_ply(*bytes, file, watch) : read_stl(*bytes, file, watch);
+  });
+}
+
+}  // namespace
+
+result<triangle_mesh> load_mesh(const std::filesystem::path& file, const std::function<bool()>& keep_going) {
+  return load(file, keep_going, nullptr);
+}
+
+result<std::vector<mesh_part>> load_mesh_parts(const std::filesystem::path& file,
+                                               const std::function<bool()>& keep_going) {
+  part_list named;
+  const auto mesh = load(file, keep_going, &named);
+  if (!mesh) return mesh.error();
+  return without_exceptions(file, [&]() -> result<std::vector<mesh_part>> {
+    std::vector<mesh_part> out = named_parts(*mesh, named);
+    if (out.size() > 1) return out;
+    const std::string name = out.empty() ? "" : out.front().name;
+    auto surfaces = separate_surfaces(*mesh);
+    if (!surfaces) {
+      return fault(error_code::limit_exceeded, file,
+                   "has more than " + std::to_string(max_mesh_parts) + " surfaces that share no vertex; join them");
+    }
+    if (surfaces->size() == 1) surfaces->front().name = name;
+    return std::move(*surfaces);
   });
 }
 

@@ -37,6 +37,7 @@ glm::dmat4 local_transform(const tinygltf::Node& node) {
 
 struct placed_mesh {
   int mesh;
+  std::size_t node;
   glm::dmat4 transform;
 };
 
@@ -66,7 +67,7 @@ std::vector<placed_mesh> placed_meshes(const tinygltf::Model& model) {
     seen[at] = true;
     const tinygltf::Node& node = model.nodes[at];
     const glm::dmat4 transform = parent * local_transform(node);
-    if (node.mesh >= 0) out.push_back({node.mesh, transform});
+    if (node.mesh >= 0) out.push_back({node.mesh, at, transform});
     for (auto c = node.children.rbegin(); c != node.children.rend(); ++c) open.emplace_back(*c, transform);
   }
   return out;
@@ -132,15 +133,22 @@ void add_primitive(const gltf_document& document, const tinygltf::Primitive& pri
 
 }  // namespace
 
-result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file, reading_watch watch) {
+result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file, reading_watch watch,
+                                part_list* parts) {
   return refusing(file, mesh_mend, [&] {
     polygon_soup soup;
+    soup.parts = parts;
     const gltf_document document(bytes, file, buffer_policy::own_folder, watch);
     const tinygltf::Model& model = document.geometry();
     bool all_have_uvs = true;
     const std::vector<placed_mesh> scene = placed_meshes(model);
     check_size(model, scene);
     for (const placed_mesh& placed : scene) {
+      if (parts != nullptr) {
+        const std::string& name = model.nodes[placed.node].name;
+        soup.part =
+            parts->number_of(name.empty() ? model.meshes[static_cast<std::size_t>(placed.mesh)].name : name, true);
+      }
       const auto& primitives = model.meshes[static_cast<std::size_t>(placed.mesh)].primitives;
       for (std::size_t p = 0; p < primitives.size(); ++p) {
         const std::string place = "meshes[" + std::to_string(placed.mesh) + "].primitives[" + std::to_string(p) + "]";

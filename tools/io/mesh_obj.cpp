@@ -14,17 +14,21 @@ constexpr std::size_t max_uvs = 3 * max_mesh_triangles;
 
 class obj_reader {
  public:
-  obj_reader(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch)
-      : cursor_(bytes, watch), file_(file), watch_(watch) {}
+  obj_reader(std::string_view bytes, const std::filesystem::path& file, reading_watch& watch, part_list* parts)
+      : cursor_(bytes, watch), file_(file), watch_(watch) {
+    soup_.parts = parts;
+    if (parts != nullptr) parts->number_of("", false);
+  }
 
   result<triangle_mesh> read() {
     do {
       const std::string_view keyword = cursor_.word();
       if (keyword.empty() || keyword[0] == '#') continue;
-      const bool good = keyword == "v"    ? read_vertex()
-                        : keyword == "vt" ? read_uv()
-                        : keyword == "f"  ? read_face()
-                                          : true;
+      const bool good = keyword == "v"                     ? read_vertex()
+                        : keyword == "vt"                  ? read_uv()
+                        : keyword == "f"                   ? read_face()
+                        : keyword == "o" || keyword == "g" ? begin_part()
+                                                           : true;
       if (!good) return fault(error_code::bad_format, file_, line_ + " " + what_ + "; export the mesh again");
     } while (cursor_.next_line());
     if (!check_indices()) return fault(error_code::bad_format, file_, line_ + " " + what_ + "; export the mesh again");
@@ -50,6 +54,11 @@ class obj_reader {
     if (!is_finite(p)) return bad("has a coordinate that is not finite");
     if (soup_.positions.size() == max_mesh_vertices) check_vertex_count(max_mesh_vertices + 1);
     soup_.positions.push_back(p);
+    return true;
+  }
+
+  bool begin_part() {
+    if (soup_.parts != nullptr) soup_.part = soup_.parts->number_of(cursor_.word(), false);
     return true;
   }
 
@@ -138,8 +147,9 @@ class obj_reader {
 
 }  // namespace
 
-result<triangle_mesh> read_obj(std::string_view bytes, const std::filesystem::path& file, reading_watch watch) {
-  return refusing(file, mesh_mend, [&] { return obj_reader(bytes, file, watch).read(); });
+result<triangle_mesh> read_obj(std::string_view bytes, const std::filesystem::path& file, reading_watch watch,
+                               part_list* parts) {
+  return refusing(file, mesh_mend, [&] { return obj_reader(bytes, file, watch, parts).read(); });
 }
 
 }  // namespace asperity::io

@@ -65,6 +65,21 @@ TEST_F(bad_mesh, open_surface) {
   const std::string message = expect_refused("mesh.obj", std::string(cube_vertices) + cube_without_lid, "bad_mesh");
   EXPECT_NE(message.find("4 open edges"), std::string::npos) << message;
   EXPECT_NE(message.find("--close-holes"), std::string::npos) << message;
+  EXPECT_NE(message.find("--wrap"), std::string::npos) << message;
+}
+
+// What a refusal offers works; where nothing can be made of a mesh, nothing is offered.
+TEST_F(bad_mesh, the_way_out_that_a_refusal_offers_is_one) {
+  const std::string cut = std::string(cube_vertices) + "f 4 3 2 1\nf 1 2 6\nf 1 6 2\nf 2 3 7 6\nf 2 3 8\nf 4 1 5 8\n";
+  EXPECT_NE(expect_refused("mesh.obj", cut, "bad_mesh").find("; or add --wrap"), std::string::npos);
+  const json baked = expect_document({"bake", path("mesh.obj"), "--fit", "0.1", "--wrap=0.002", "--triangles", "100",
+                                      "-o", path("out.glb"), "--texture", "128"},
+                                     "asperity.bake/1");
+  EXPECT_GT(baked.at("wrap").at("plate_share"), 0.0);
+  const std::string line = ply("0 0 0\n0.1 0 0\n0.2 0 0\n0.3 0 0\n", 4, "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n", 4);
+  EXPECT_EQ(expect_refused("line.ply", line, "bad_mesh").find("--wrap"), std::string::npos);
+  expect_failure({"bake", path("mesh.obj"), "--wrap", "--keep-uvs", "-o", path("no.glb")}, 1, "invalid_argument");
+  expect_failure({"bake", path("mesh.obj"), "--wrap=1e-9", "-o", path("no.glb")}, 1, "invalid_argument");
 }
 
 // What can be mended without a doubt is mended, and said.

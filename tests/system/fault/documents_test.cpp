@@ -107,6 +107,66 @@ TEST_F(documents, pictures) {
   EXPECT_NE(read("inspected.png"), read("alone.png"));
 }
 
+TEST_F(documents, a_wrap_tells_what_it_did) {
+  write("open.obj",
+        "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 0 3 0\nv 0 0 12\nv 4 0 12\nv 4 3 12\nv 0 3 12\n"
+        "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+  const json d = expect_document({"bake", path("open.obj"), "--fit", "0.13", "--up=-x", "--wrap=0.002", "--thickness",
+                                  "0.006", "--triangles", "60", "--texture", "96", "-o", path("box.glb")},
+                                 "asperity.bake/1");
+  const json& wrap = d["wrap"];
+  expect_keys(wrap, {"cell", "thickness", "triangles_in", "triangles", "components", "dropped_triangles",
+                     "turned_triangles", "plate_share", "cavities_filled", "specks_dropped", "far", "made_up_share",
+                     "lost_share", "to_original", "to_wrap"});
+  for (const char* way : {"to_original", "to_wrap"}) expect_keys(wrap[way], {"p50", "p99", "max"});
+  EXPECT_EQ(wrap["cell"], 0.002);
+  EXPECT_EQ(wrap["thickness"], 0.006);
+  EXPECT_EQ(wrap["triangles_in"], 10);
+  EXPECT_EQ(wrap["triangles"], d["full_triangles"]);
+  EXPECT_EQ(wrap["components"], 1);
+  EXPECT_EQ(wrap["plate_share"], 0.0);
+  EXPECT_NEAR(wrap["made_up_share"], 12.0 / 192.0, 0.03) << "the lid";
+  EXPECT_NEAR(d["scale"], 0.01, 1e-15);
+  // z was 12 long and lies along -x or x now; x, 4 long, points down.
+  const auto length = [&](std::size_t axis) {
+    return d["size"]["high"][axis].get<double>() - d["size"]["low"][axis].get<double>();
+  };
+  EXPECT_NEAR(length(0), 0.12, 0.003);
+  EXPECT_NEAR(length(1), 0.03, 0.003);
+  EXPECT_NEAR(length(2), 0.04, 0.003);
+  EXPECT_NEAR(d["size"]["low"][2], -0.04, 0.003);
+}
+
+TEST_F(documents, a_split_bake_writes_all_models_or_none) {
+  const std::string faces =
+      "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n";
+  const auto cube = [&](const std::string& name, int x) {
+    std::string out = "o " + name + "\n";
+    for (int i = 0; i < 8; ++i)
+      out +=
+          "v " + std::to_string(x + (i & 1)) + " " + std::to_string(i >> 1 & 1) + " " + std::to_string(i >> 2) + "\n";
+    return out + faces;
+  };
+  write("two.obj", cube("left", 0) + cube("right", 2));
+  const std::vector<std::string> how{"--split", "--fit", "0.1", "--triangles", "40", "--texture", "96", "-o"};
+  const auto bake = [&](const std::string& mesh, const std::string& out) {
+    std::vector<std::string> args{"bake", path(mesh)};
+    args.insert(args.end(), how.begin(), how.end());
+    args.push_back(path(out));
+    return args;
+  };
+  const json d = expect_document(bake("two.obj", "out.glb"), "asperity.bake/1");
+  ASSERT_EQ(d["models"].size(), 2U);
+  EXPECT_EQ(d["models"][0]["file"], path("out-left.glb"));
+  EXPECT_EQ(d["models"][1]["name"], "out-right");
+  EXPECT_NEAR(d["models"][1]["size"]["low"][0], 2.0 * 0.1 / std::sqrt(11.0), 1e-6)
+      << "in its place, at the common scale";
+  EXPECT_EQ(files(), (std::set<std::string>{"two.obj", "out-left.glb", "out-right.glb"}));
+  write("bad.obj", cube("left", 0) + "o fin\nv 5 0 0\nv 6 0 0\nv 5 1 0\nf -3 -2 -1\n");
+  expect_failure(bake("bad.obj", "no.glb"), 1, "bad_mesh");
+  EXPECT_EQ(files(), (std::set<std::string>{"two.obj", "bad.obj", "out-left.glb", "out-right.glb"}));
+}
+
 TEST_F(documents, scale_changes_units_and_inspect_warns) {
   const json baked = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",
                                       "64", "--scale", "1000", "-o", path("huge.glb"), "--without-field"},

@@ -63,6 +63,11 @@ TEST_F(same_bytes, with_holes_closed) {
   expect_the_same_on_any_number_of_threads("torus.obj", {"--triangles", "120", "--close-holes", "--without-field"});
 }
 
+TEST_F(same_bytes, wrapped) {
+  write_torus("torus.obj", 3);
+  expect_the_same_on_any_number_of_threads("torus.obj", {"--triangles", "120", "--wrap=0.004"});
+}
+
 // That the comparison can see: other options give another file.
 TEST_F(same_bytes, other_options_give_other_bytes) {
   write_torus("torus.obj");

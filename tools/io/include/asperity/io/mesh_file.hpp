@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/triangle_mesh.hpp"
@@ -27,6 +29,20 @@ inline constexpr std::size_t max_polygon_corners = 65'536;
 ///         mend
 [[nodiscard]] result<triangle_mesh> load_mesh(const std::filesystem::path& file,
                                               const std::function<bool()>& keep_going = {});
+
+/// A mesh that is a part of a file's, with its name there.
+struct mesh_part {
+  std::string name;  ///< may be empty, and several may have the same
+  triangle_mesh mesh;
+};
+inline constexpr std::size_t max_mesh_parts = 1000;
+
+/// The same mesh in parts: the groups and objects of an OBJ, the nodes of a glTF scene. Where a file names fewer than two,
+/// its surfaces that share no vertex, one that lies within the box of a larger one together with that. In the order of
+/// their first triangles; parts without triangles are left out.
+/// @return as load_mesh(); limit_exceeded for more than max_mesh_parts
+[[nodiscard]] result<std::vector<mesh_part>> load_mesh_parts(const std::filesystem::path& file,
+                                                             const std::function<bool()>& keep_going = {});
 
 /// Writes a binary little-endian PLY; the file appears whole or not at all.
 [[nodiscard]] result<void> save_ply(const triangle_mesh& mesh, const std::filesystem::path& file);

@@ -1,0 +1,45 @@
+#include "mesh_placing.hpp"
+
+#include <cmath>
+
+#include "asperity/model/textured_model.hpp"
+#include "options.hpp"
+
+namespace asperity::command {
+
+void add_placing_options(CLI::App& sub, const std::shared_ptr<mesh_placing>& placing, const unit_option_pair& units) {
+  sub.add_option_function<double>(
+         "--fit", [placing](double value) { placing->fit_m = value; },
+         "Scale the meshes so that the diagonal of the full mesh measures so many metres")
+      ->check(positive_number_error, "NUMBER > 0")
+      ->excludes(units.units)
+      ->excludes(units.scale);
+  sub.add_option("--up", placing->up, "Axis of the meshes that points up: x, y, z, -x, -y or -z; it becomes z")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->capture_default_str();
+}
+
+result<void> fit_scale(const mesh_placing& placing, const std::string& file, const triangle_mesh& mesh,
+                       mesh_units& units) {
+  if (!placing.fit_m) return {};
+  const double diagonal = bounds_of(mesh.positions).diagonal();
+  const double scale = *placing.fit_m / diagonal;
+  if (!std::isfinite(diagonal) || !std::isfinite(scale) || !(scale > 0.0))
+    return error{error_code::bad_mesh, "--fit: " + file + " has no extent that could be scaled; export it again"};
+  units.scale = scale;
+  return {};
+}
+
+void turn_up(const mesh_placing& placing, triangle_mesh& mesh) {
+  const auto turned = [&](const vec3& p) -> vec3 {
+    if (placing.up == "x") return {-p.z, p.y, p.x};
+    if (placing.up == "-x") return {p.z, p.y, -p.x};
+    if (placing.up == "y") return {p.x, -p.z, p.y};
+    if (placing.up == "-y") return {p.x, p.z, -p.y};
+    if (placing.up == "-z") return {p.x, -p.y, -p.z};
+    return p;
+  };
+  for (vec3& p : mesh.positions) p = turned(p);
+}
+
+}  // namespace asperity::command
