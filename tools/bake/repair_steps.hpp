@@ -20,6 +20,9 @@ void split_at_edge(triangle_mesh& mesh, std::uint32_t t, std::uint32_t k, std::u
 /// Area of all triangles, m^2.
 [[nodiscard]] double area_of(const triangle_mesh& mesh);
 
+/// Signed volume, m^3; of a closed mesh.
+[[nodiscard]] double volume_of(const triangle_mesh& mesh);
+
 /// Farthest coordinate from the origin, m: what the rounding of coordinates is relative to.
 [[nodiscard]] double reach_of(const triangle_mesh& mesh);
 

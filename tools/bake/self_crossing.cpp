@@ -88,6 +88,31 @@ std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, con
   return out;
 }
 
+std::vector<std::pair<std::uint32_t, std::uint32_t>> list_self_crossings(const triangle_mesh& mesh,
+                                                                         const triangle_bvh& tree, unsigned threads,
+                                                                         std::size_t most) {
+  using pair_list = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+  std::vector<pair_list> of_block(block_count(mesh.triangles.size()));
+  stage_monitor unwatched;
+  const auto body = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const plane at(corners(mesh.positions, mesh.triangles[t]));
+      const vec3 low = glm::min(at.c[0], glm::min(at.c[1], at.c[2]));
+      const vec3 high = glm::max(at.c[0], glm::max(at.c[1], at.c[2]));
+      tree.visit_box(low, high, [&](std::uint32_t other) {
+        if (other > t && of_block[block].size() < most && cross(mesh, mesh.triangles[t], at, mesh.triangles[other]))
+          of_block[block].emplace_back(static_cast<std::uint32_t>(t), other);
+      });
+    }
+  };
+  static_cast<void>(parallel_blocks(mesh.triangles.size(), threads, unwatched, 0.0, 1.0, body));
+  pair_list out;
+  for (const pair_list& found : of_block) out.insert(out.end(), found.begin(), found.end());
+  std::ranges::sort(out);
+  if (out.size() > most) out.resize(most);
+  return out;
+}
+
 std::string crossing_remark(const self_crossings& found) {
   std::ostringstream out;
   out.precision(6);

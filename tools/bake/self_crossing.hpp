@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "asperity/model/triangle_mesh.hpp"
 #include "bake/stage_monitor.hpp"
@@ -21,6 +24,15 @@ struct self_crossings {
 /// @return nothing where the bake was cancelled
 [[nodiscard]] std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, const triangle_bvh& tree,
                                                                 unsigned threads, stage_monitor& monitor);
+
+/// More than these are not listed.
+inline constexpr std::size_t most_listed_crossings = 1'000'000;
+
+/// The same pairs one by one, the lower triangle first, sorted; no more than `most`.
+[[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>> list_self_crossings(const triangle_mesh& mesh,
+                                                                                       const triangle_bvh& tree,
+                                                                                       unsigned threads,
+                                                                                       std::size_t most);
 
 /// The sentence with which a report tells of them. @pre found.pairs > 0
 [[nodiscard]] std::string crossing_remark(const self_crossings& found);
