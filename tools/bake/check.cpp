@@ -124,7 +124,7 @@ std::optional<error> check_connectivity(const triangle_mesh& mesh, const connect
     return bad(
         what,
         "is not closed: " + counted(net.open_edges.count, "open edge", "open edges") + ", " + at_edge(net.open_edges),
-        "close the holes (--close-holes does it) and weld vertices that lie in one place");
+        "close the holes (a bake without --strict does it) and weld vertices that lie in one place");
   if (net.misoriented_edges.count > 0)
     return bad(what,
                "has " + counted(net.misoriented_edges.count, "edge", "edges") +

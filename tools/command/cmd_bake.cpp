@@ -44,7 +44,8 @@ struct bake_command {
   unsigned threads = 0;
   std::optional<std::size_t> pieces;
   bool keep_uvs = false;
-  bool close_holes = false;
+  bool close_holes = false;  // holes are closed anyway: the option is taken for those who gave it before
+  bool strict = false;
   bool without_field = false;
   std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
   std::shared_ptr<relief_options> relief = std::make_shared<relief_options>();
@@ -112,19 +113,16 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!full) return full.error();
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
   std::vector<std::string> remarks;
-  bake::hole_report holes;
-  if (options.close_holes) {
-    const result<bake::hole_report> closed = bake::close_holes(*full);
-    if (!closed) return closed.error();
-    holes = *closed;
-    if (options.keep_uvs && options.coarse.empty() && holes.holes > 0) {
+  bake::repair_report repaired;
+  repaired.triangles_before = repaired.triangles_after = full->triangles.size();
+  if (!options.strict) {
+    const result<bake::repair_report> mended = bake::repair(*full, {.threads = options.threads});
+    if (!mended) return mended.error();
+    repaired = *mended;
+    if (options.keep_uvs && options.coarse.empty() && repaired.triangles_added > 0) {
       return error{error_code::invalid_argument,
                    "--keep-uvs: the triangles that close the holes of " + options.full +
                        " have no texture coordinates; close them where the mesh is unwrapped, or give a --coarse mesh"};
-    }
-    if (holes.triangles_turned > 0) {
-      remarks.push_back("before its holes were closed, " + std::to_string(holes.triangles_turned) +
-                        " triangles that were wound against their neighbours have been turned");
     }
   }
 
@@ -132,7 +130,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     return error{error_code::bad_mesh, "--material-map: " + options.full +
                                            " has no texture coordinates, so no image can be laid on it; export it with "
                                            "its UVs (OBJ, glTF)" +
-                                           (holes.holes > 0 ? ", and close its holes there" : "")};
+                                           (repaired.triangles_added > 0 ? ", and close its holes there" : "")};
   }
 
   bake::bake_settings settings;
@@ -209,7 +207,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   }
   clock.leave();
   answer out = report_bake(
-      {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, holes, *relief, clock},
+      {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, repaired, *relief, clock},
       std::move(remarks));
   if (drawing) {
     out.document["picture"] = std::move(picture);
@@ -224,7 +222,7 @@ void add_bake(command_line& line) {
   const auto o = std::make_shared<bake_command>();
   CLI::App& sub = line.add("bake", "Turn a full-resolution mesh into a textured model",
                            [o](const common_options& common) { return run_bake(*o, common); });
-  sub.add_option("full", o->full, "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), closed, in metres")
+  sub.add_option("full", o->full, "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), in metres; repaired where it is not closed")
       ->required();
   sub.add_option("-o,--output", o->out, "Textured model to write (.glb)")
       ->required()
@@ -242,7 +240,8 @@ void add_bake(command_line& line) {
   sub.add_option("--pieces", o->pieces, "Convex pieces to aim for; by default as many as the usual tolerances make")
       ->check(CLI::Range(1, 1000000));
   add_relief_options(sub, o->relief);
-  sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them");
+  auto* close_holes = sub.add_flag("--close-holes", o->close_holes, "Holes are closed by default; changes nothing");
+  sub.add_flag("--strict", o->strict, "Refuse a full mesh that would have to be repaired")->excludes(close_holes);
   sub.add_flag("--without-field", o->without_field,
                "Keep no depth field in the file, which is then about half as large; every load makes it anew");
   sub.add_option("--picture", o->picture, "Draw the model and its distance to the full mesh here (.png)")
