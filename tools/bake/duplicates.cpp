@@ -9,9 +9,7 @@ namespace asperity::bake {
 namespace {
 
 /// Does the triangle wind as its sorted vertices do?
-bool winds_up(const index_triangle& t) noexcept {
-  return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
-}
+bool winds_up(const index_triangle& t) noexcept { return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2; }
 
 /// Doubled faces that join in common edges, and whether all of their rim hangs on surface that is closed without them.
 class doubled_regions {

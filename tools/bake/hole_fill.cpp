@@ -96,7 +96,6 @@ class smallest_fill {
   std::vector<fill> best_;
 };
 
-
 struct rim {
   std::vector<std::uint32_t> polygon;
   std::vector<vec3> normals;  // of what lies at the edge from each corner to the next
@@ -226,7 +225,10 @@ double fill_hole(triangle_mesh& mesh, const std::vector<std::uint32_t>& hole, do
   const auto n = static_cast<double>(hole.size());
   const bool rich = budget > 0.0;
   budget -= hole.size() <= largest_hole_edges ? n * n * n : n * at_once * at_once;
-  return fill_rim(mesh, border, !rich ? at_once_late : hole.size() <= largest_hole_edges ? largest_hole_edges : at_once);
+  return fill_rim(mesh, border,
+                  !rich                               ? at_once_late
+                  : hole.size() <= largest_hole_edges ? largest_hole_edges
+                                                      : at_once);
 }
 
 double widest_distance(const triangle_mesh& mesh, const std::vector<std::uint32_t>& hole) {

@@ -12,9 +12,9 @@
 namespace asperity::bake {
 namespace {
 
-constexpr double most_filling_steps = 2e10;    // some minutes at the worst
-constexpr double largest_piece_share = 0.1;    // of the whole area: a larger piece is not dropped
-constexpr double largest_piece_filling = 0.25; // of a piece with its holes closed
+constexpr double most_filling_steps = 2e10;     // some minutes at the worst
+constexpr double largest_piece_share = 0.1;     // of the whole area: a larger piece is not dropped
+constexpr double largest_piece_filling = 0.25;  // of a piece with its holes closed
 
 }  // namespace
 

@@ -146,8 +146,7 @@ struct faults {
 faults faults_of(const triangle_mesh& mesh) {
   faults out;
   const double reach = reach_of(mesh);
-  for (const index_triangle& t : mesh.triangles)
-    out.flat = out.flat || has_no_area(corners(mesh.positions, t), reach);
+  for (const index_triangle& t : mesh.triangles) out.flat = out.flat || has_no_area(corners(mesh.positions, t), reach);
   out.net = connect(mesh.triangles, mesh.positions.size());
   return out;
 }
@@ -219,9 +218,9 @@ result<repair_report> repair(triangle_mesh& given, const repair_settings& settin
   report.made_up_share = report.area_added_m2 / area_of(mesh);
   if (report.made_up_share > settings.largest_made_up_share) {
     const repair_action& holes = report[repair_kind::hole];
-    return not_mended("is too open to be closed: " + std::to_string(holes.count) + (holes.count == 1 ? " hole" : " holes") +
-                      " would make up " + percent(report.made_up_share) + " of its surface, more than " +
-                      percent(settings.largest_made_up_share));
+    return not_mended("is too open to be closed: " + std::to_string(holes.count) +
+                      (holes.count == 1 ? " hole" : " holes") + " would make up " + percent(report.made_up_share) +
+                      " of its surface, more than " + percent(settings.largest_made_up_share));
   }
   order_components(mesh, settings, report);
   if (settings.uncross) uncross(mesh, settings, report);

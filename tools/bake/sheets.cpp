@@ -93,8 +93,8 @@ void couple(std::vector<leaf> leaves, std::vector<std::uint32_t>& mate) {
 }
 
 vec3 middle_of(const triangle_mesh& mesh, std::uint32_t h) {
-  return 0.5 * (mesh.positions[origin_of(mesh.triangles, h)] +
-                mesh.positions[origin_of(mesh.triangles, next_halfedge(h))]);
+  return 0.5 *
+         (mesh.positions[origin_of(mesh.triangles, h)] + mesh.positions[origin_of(mesh.triangles, next_halfedge(h))]);
 }
 
 /// Who lies across each halfedge, whichever way it runs.
@@ -190,7 +190,8 @@ void drop_inner_walls(triangle_mesh& mesh, repair_report& report) {
     std::vector<bool> gone(mesh.triangles.size(), false);
     bool any = false;
     for (const region& r : regions) {
-      if (!std::ranges::all_of(r.hangs_on, [&](std::size_t e) { return uses_at[e] % 2 == 1 && uses_at[e] >= 3; })) continue;
+      if (!std::ranges::all_of(r.hangs_on, [&](std::size_t e) { return uses_at[e] % 2 == 1 && uses_at[e] >= 3; }))
+        continue;
       for (const std::size_t e : r.hangs_on) --uses_at[e];
       for (const std::uint32_t t : r.triangles) gone[t] = true;
       report.add(repair_kind::inner_wall, mesh.positions[mesh.triangles[r.triangles.front()][0]], r.box.diagonal(),

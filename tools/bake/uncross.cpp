@@ -62,9 +62,8 @@ void uncross(triangle_mesh& mesh, const repair_settings& settings, repair_report
     drop_degenerate(next, aside);
     const connectivity net = connect(next.triangles, next.positions.size());
     const double reach = reach_of(next);
-    const bool flat = std::ranges::any_of(next.triangles, [&](const index_triangle& t) {
-      return has_no_area(corners(next.positions, t), reach);
-    });
+    const bool flat = std::ranges::any_of(
+        next.triangles, [&](const index_triangle& t) { return has_no_area(corners(next.positions, t), reach); });
     if (!net.closed_manifold() || flat || net.components != was.components || kept >= next.triangles.size()) continue;
     const pair_list left = own_crossings(next, settings.threads);
     if (left.size() >= pairs.size()) continue;

@@ -56,9 +56,8 @@ void weld_equal(triangle_mesh& mesh, repair_report& report) {
     const vec3& p = mesh.positions[v];
     return std::tuple(p.x, p.y, p.z);
   };
-  std::ranges::sort(border, [&](std::uint32_t a, std::uint32_t b) {
-    return std::pair(place(a), a) < std::pair(place(b), b);
-  });
+  std::ranges::sort(border,
+                    [&](std::uint32_t a, std::uint32_t b) { return std::pair(place(a), a) < std::pair(place(b), b); });
   std::vector<std::uint32_t> became = themselves(mesh);
   for (std::size_t i = 1; i < border.size(); ++i)
     if (place(border[i]) == place(border[i - 1])) became[border[i]] = became[border[i - 1]];
@@ -79,8 +78,8 @@ std::vector<double> shortest_edges(const triangle_mesh& mesh) {
   return out;
 }
 
-constexpr double weld_per_edge = 0.4;        // no edge loses both its ends to one vertex
-constexpr std::size_t most_looked_at = 64;   // of one cell: bounds the work where much lies in little room
+constexpr double weld_per_edge = 0.4;       // no edge loses both its ends to one vertex
+constexpr std::size_t most_looked_at = 64;  // of one cell: bounds the work where much lies in little room
 
 /// Border vertices in the cells of a grid as wide as the tolerance.
 class border_grid {

@@ -37,8 +37,8 @@ std::string repair_text(const bake::repair_report& repaired) {
     const bake::repair_action& a = repaired.actions[k];
     if (a.count == 0) continue;
     if (kind == bake::repair_kind::hole) {
-      out += row("holes closed", std::to_string(a.count) + ", the largest " + length_text(a.largest_m) +
-                                     " across; " + brief(100.0 * repaired.made_up_share) + " % of the surface is made up");
+      out += row("holes closed", std::to_string(a.count) + ", the largest " + length_text(a.largest_m) + " across; " +
+                                     brief(100.0 * repaired.made_up_share) + " % of the surface is made up");
       continue;
     }
     std::string told = std::to_string(a.count) + ' ' + bake::in_words(kind, a.count) + ", the first at (" +

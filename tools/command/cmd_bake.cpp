@@ -222,7 +222,8 @@ void add_bake(command_line& line) {
   const auto o = std::make_shared<bake_command>();
   CLI::App& sub = line.add("bake", "Turn a full-resolution mesh into a textured model",
                            [o](const common_options& common) { return run_bake(*o, common); });
-  sub.add_option("full", o->full, "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), in metres; repaired where it is not closed")
+  sub.add_option("full", o->full,
+                 "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), in metres; repaired where it is not closed")
       ->required();
   sub.add_option("-o,--output", o->out, "Textured model to write (.glb)")
       ->required()

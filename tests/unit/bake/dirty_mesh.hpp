@@ -48,8 +48,19 @@ inline double volume(const triangle_mesh& m) {
   return six / 6.0;
 }
 
-enum class kind { unwelded, cracks, degenerate_split, same_twice, both_sides, fin, hole, inner_ball, inner_wall, shard,
-                  turned };
+enum class kind {
+  unwelded,
+  cracks,
+  degenerate_split,
+  same_twice,
+  both_sides,
+  fin,
+  hole,
+  inner_ball,
+  inner_wall,
+  shard,
+  turned
+};
 inline constexpr int kinds = 11;
 inline const char* name(kind k) {
   constexpr const char* names[] = {"unwelded", "cracks",     "cap",        "same twice", "both sides", "fin",

@@ -15,27 +15,27 @@ struct repair_settings {
   /// edge at either; an open edge is split where such a vertex lies on it. At least 1e-6.
   double weld_in_diagonals = 1e-5;
   bool close_holes = true;
-  bool drop_inner = true;   ///< components within the material of another, which nothing can touch
-  bool uncross = true;      ///< where one component passes through itself
+  bool drop_inner = true;               ///< components within the material of another, which nothing can touch
+  bool uncross = true;                  ///< where one component passes through itself
   double largest_made_up_share = 0.25;  ///< of the repaired surface; more is refused
   unsigned threads = 1;                 ///< of the search for crossings; the result does not depend on it
 };
 
 /// What a repair can do, in the order in which it is told.
 enum class repair_kind : std::uint8_t {
-  weld,            ///< vertices merged; change: the farthest that one moved
-  degenerate,      ///< triangles without area dropped; change: the longest edge that was collapsed
-  t_junction,      ///< vertices set into open edges that they lie on; change: the farthest off the edge
-  duplicate,       ///< faces that were there already, dropped; of a doubled inner wall, both
-  inner_wall,      ///< triangles of fins and walls that hang on an edge of three, dropped; change: extent of the widest
-  split_edge,      ///< edges of more than two triangles, parted into sheets
-  split_vertex,    ///< vertices parted where surfaces touched in a point
-  turned,          ///< triangles that wound against their neighbours, turned
-  loose_piece,     ///< triangles of open pieces too flat or too open to bound a volume, dropped; change: their extent
-  hole,            ///< holes closed; change: the longest distance across one
-  turned_inside_out,   ///< components turned; `check` turns a whole mesh
-  inner_component,     ///< components dropped that lay within another's material; change: extent of the largest
-  crossing,            ///< pairs of triangles that crossed and no longer do; change: how far the surface moved
+  weld,          ///< vertices merged; change: the farthest that one moved
+  degenerate,    ///< triangles without area dropped; change: the longest edge that was collapsed
+  t_junction,    ///< vertices set into open edges that they lie on; change: the farthest off the edge
+  duplicate,     ///< faces that were there already, dropped; of a doubled inner wall, both
+  inner_wall,    ///< triangles of fins and walls that hang on an edge of three, dropped; change: extent of the widest
+  split_edge,    ///< edges of more than two triangles, parted into sheets
+  split_vertex,  ///< vertices parted where surfaces touched in a point
+  turned,        ///< triangles that wound against their neighbours, turned
+  loose_piece,   ///< triangles of open pieces too flat or too open to bound a volume, dropped; change: their extent
+  hole,          ///< holes closed; change: the longest distance across one
+  turned_inside_out,  ///< components turned; `check` turns a whole mesh
+  inner_component,    ///< components dropped that lay within another's material; change: extent of the largest
+  crossing,           ///< pairs of triangles that crossed and no longer do; change: how far the surface moved
 };
 inline constexpr std::size_t repair_kinds = 13;
 
@@ -48,9 +48,9 @@ struct repair_action {
 struct repair_report {
   std::array<repair_action, repair_kinds> actions;
   std::size_t triangles_before = 0, triangles_after = 0;
-  std::size_t triangles_added = 0;   ///< made up: of closed holes and resolved crossings
-  double area_added_m2 = 0.0;        ///< of those
-  double made_up_share = 0.0;        ///< of those, of the repaired surface
+  std::size_t triangles_added = 0;  ///< made up: of closed holes and resolved crossings
+  double area_added_m2 = 0.0;       ///< of those
+  double made_up_share = 0.0;       ///< of those, of the repaired surface
 
   [[nodiscard]] const repair_action& operator[](repair_kind kind) const noexcept {
     return actions[static_cast<std::size_t>(kind)];
