@@ -91,7 +91,6 @@ std::optional<error> check_size(const triangle_mesh& mesh, std::string_view what
   return std::nullopt;
 }
 
-// A triangle has no area where its height is lost in the rounding of its coordinates.
 std::optional<error> check_areas(const triangle_mesh& mesh, std::string_view what) {
   const double reach = [&] {
     const bounds box = bounds_of(mesh.positions);
@@ -100,9 +99,7 @@ std::optional<error> check_areas(const triangle_mesh& mesh, std::string_view wha
   }();
   fault_count zero;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto c = corners(mesh.positions, mesh.triangles[t]);
-    const double longest = std::max({glm::length(c[1] - c[0]), glm::length(c[2] - c[1]), glm::length(c[0] - c[2])});
-    if (glm::length(area_normal(c)) <= longest * reach * 1e-15) zero.add(static_cast<std::uint32_t>(t));
+    if (has_no_area(corners(mesh.positions, mesh.triangles[t]), reach)) zero.add(static_cast<std::uint32_t>(t));
   }
   if (zero.count == 0) return std::nullopt;
   const vec3 at = mesh.positions[mesh.triangles[zero.first][0]];
@@ -127,7 +124,7 @@ std::optional<error> check_connectivity(const triangle_mesh& mesh, const connect
     return bad(
         what,
         "is not closed: " + counted(net.open_edges.count, "open edge", "open edges") + ", " + at_edge(net.open_edges),
-        "close the holes (--close-holes does it) and weld vertices that lie in one place");
+        "close the holes (a bake without --strict does it) and weld vertices that lie in one place");
   if (net.misoriented_edges.count > 0)
     return bad(what,
                "has " + counted(net.misoriented_edges.count, "edge", "edges") +

@@ -28,6 +28,14 @@ namespace asperity::bake {
 /// Unit normal of a triangle; zero for one without area.
 [[nodiscard]] inline vec3 unit_normal(const std::array<vec3, 3>& c) noexcept { return normalised(area_normal(c)); }
 
+/// A triangle has no area where its height is lost in the rounding of its coordinates. @param reach  the largest of them
+[[nodiscard]] inline bool has_no_area(const std::array<vec3, 3>& c, double reach) noexcept {
+  const double longest = std::max({glm::length(c[1] - c[0]), glm::length(c[2] - c[1]), glm::length(c[0] - c[2])});
+  return glm::length(area_normal(c)) <= longest * reach * 1e-15;
+}
+/// An edge no longer than this share of the reach makes its triangles have no area.
+inline constexpr double no_length_per_reach = 2e-15;
+
 /// Angle at corner k, rad.
 [[nodiscard]] inline double corner_angle(const std::array<vec3, 3>& c, std::size_t k) noexcept {
   const vec3 a = c[(k + 1) % 3] - c[k];

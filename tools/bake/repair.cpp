@@ -1,165 +1,234 @@
 #include "asperity/bake/repair.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "bake/geometry.hpp"
+#include "bake/check.hpp"
 #include "bake/halfedges.hpp"
+#include "bake/repair_steps.hpp"
 #include "bake/winding.hpp"
 
 namespace asperity::bake {
+
+void repair_report::add(repair_kind kind, const vec3& at, double change_m, std::size_t count) noexcept {
+  repair_action& action = actions[static_cast<std::size_t>(kind)];
+  if (action.count == 0) action.first = at;
+  action.count += count;
+  action.largest_m = std::max(action.largest_m, change_m);
+}
+
+std::size_t repair_report::total() const noexcept {
+  std::size_t sum = 0;
+  for (const repair_action& action : actions) sum += action.count;
+  return sum;
+}
+
+const char* to_string(repair_kind kind) noexcept {
+  constexpr std::array<const char*, repair_kinds> names{
+      "weld",   "degenerate",  "t_junction", "duplicate",         "inner_wall",      "split_edge", "split_vertex",
+      "turned", "loose_piece", "hole",       "turned_inside_out", "inner_component", "crossing"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+const char* in_words(repair_kind kind, std::size_t count) noexcept {
+  constexpr std::array<std::array<const char*, 2>, repair_kinds> words{
+      {{"vertex welded", "vertices welded"},
+       {"triangle without area dropped", "triangles without area dropped"},
+       {"vertex set into an edge that it lies on", "vertices set into edges that they lie on"},
+       {"duplicate face dropped", "duplicate faces dropped"},
+       {"triangle of a fin or an inner wall dropped", "triangles of fins or inner walls dropped"},
+       {"edge of more than two triangles parted", "edges of more than two triangles parted"},
+       {"vertex parted where surfaces touched", "vertices parted where surfaces touched"},
+       {"triangle turned that wound against its neighbours", "triangles turned that wound against their neighbours"},
+       {"triangle of a loose piece dropped", "triangles of loose pieces dropped"},
+       {"hole closed", "holes closed"},
+       {"component turned that was inside-out", "components turned that were inside-out"},
+       {"component dropped that nothing can touch", "components dropped that nothing can touch"},
+       {"crossing of two triangles resolved", "crossings of two triangles resolved"}}};
+  return words[static_cast<std::size_t>(kind)][count == 1 ? 0 : 1];
+}
+
+void drop_triangles(triangle_mesh& mesh, const std::vector<bool>& gone) {
+  const bool has_uvs = mesh.uvs.size() == mesh.triangles.size();
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (gone[t]) continue;
+    mesh.triangles[kept] = mesh.triangles[t];
+    if (has_uvs) mesh.uvs[kept] = mesh.uvs[t];
+    ++kept;
+  }
+  mesh.triangles.resize(kept);
+  if (has_uvs) mesh.uvs.resize(kept);
+}
+
+void split_at_edge(triangle_mesh& mesh, std::uint32_t t, std::uint32_t k, std::uint32_t v, double s) {
+  index_triangle second = mesh.triangles[t];
+  second[k] = v;
+  const std::uint32_t next = (k + 1) % 3;
+  if (mesh.uvs.size() == mesh.triangles.size()) {
+    auto uv = mesh.uvs[t];
+    const vec2 at = (1.0 - s) * uv[k] + s * uv[next];
+    mesh.uvs[t][next] = at;
+    uv[k] = at;
+    mesh.uvs.push_back(uv);
+  }
+  mesh.triangles[t][next] = v;
+  mesh.triangles.push_back(second);
+}
+
+double area_of(const triangle_mesh& mesh) {
+  double sum = 0.0;
+  for (const index_triangle& t : mesh.triangles) sum += 0.5 * glm::length(area_normal(corners(mesh.positions, t)));
+  return sum;
+}
+
+double volume_of(const triangle_mesh& mesh) {
+  double six = 0.0;
+  const vec3 apex = mesh.positions.front();
+  for (const index_triangle& t : mesh.triangles) {
+    const auto c = corners(mesh.positions, t);
+    six += glm::dot(c[0] - apex, glm::cross(c[1] - apex, c[2] - apex));
+  }
+  return six / 6.0;
+}
+
+double reach_of(const triangle_mesh& mesh) {
+  const bounds box = bounds_of(mesh.positions);
+  const vec3 far = glm::max(glm::abs(box.low), glm::abs(box.high));
+  return std::max({far.x, far.y, far.z});
+}
+
 namespace {
 
-// The open halfedge that follows h around its hole: turn about h's end point until an edge without a mate comes.
-std::uint32_t next_along_border(std::uint32_t h, const std::vector<std::uint32_t>& mate) {
-  std::uint32_t g = next_halfedge(h);
-  while (mate[g] != no_halfedge) g = next_halfedge(mate[g]);
-  return g;
+constexpr double least_weld_in_diagonals = 1e-6;
+constexpr double least_volume = 1e-9;  // of the cube of the diagonal: less bounds no solid
+
+/// What no repair can read, and what check refuses for its size, is left to check.
+bool is_readable(const triangle_mesh& mesh) {
+  if (mesh.triangles.size() < 4 || mesh.triangles.size() > most_triangles) return false;
+  if (mesh.positions.size() > 3 * most_triangles) return false;
+  for (const index_triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t)
+      if (v >= mesh.positions.size() || !is_finite(mesh.positions[v])) return false;
+  return true;
 }
 
-// The open halfedges of every hole, in the order in which the triangles around it run along its border.
-std::vector<std::vector<std::uint32_t>> find_holes(const connectivity& around) {
-  std::vector<std::vector<std::uint32_t>> holes;
-  std::vector<bool> seen(around.mate.size(), false);
-  for (std::uint32_t start = 0; start < around.mate.size(); ++start) {
-    if (around.mate[start] != no_halfedge || seen[start]) continue;
-    auto& hole = holes.emplace_back();
-    for (std::uint32_t h = start; !seen[h]; h = next_along_border(h, around.mate)) {
-      seen[h] = true;
-      hole.push_back(h);
+/// Vertices that no triangle uses have no say in size and place.
+void drop_unused_vertices(triangle_mesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.positions.size(), no_halfedge);
+  for (const index_triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) number[v] = 0;
+  std::uint32_t used = 0;
+  for (std::size_t v = 0; v < number.size(); ++v)
+    if (number[v] == 0) {
+      mesh.positions[used] = mesh.positions[v];
+      number[v] = used++;
     }
-  }
-  return holes;
+  mesh.positions.resize(used);
+  for (index_triangle& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = number[v];
 }
 
-// Triangulation of a hole that folds back onto itself or onto the triangles around as rarely as it can, and of those
-// the one of least area: best(i, k) over the corners between i and k, by increasing distance. Area alone is not enough:
-// where a rim is ragged, the least of it may lie back to back with the surface.
-class smallest_fill {
- public:
-  smallest_fill(const triangle_mesh& mesh, const std::vector<std::uint32_t>& hole)
-      : positions_(mesh.positions), n_(hole.size()), best_(n_ * n_) {
-    for (const std::uint32_t h : hole) {
-      polygon_.push_back(origin_of(mesh.triangles, h));
-      rim_.push_back(unit_normal(corners(mesh.positions, mesh.triangles[h / 3])));
-    }
-    for (std::size_t gap = 2; gap < n_; ++gap) {
-      for (std::size_t i = 0; i + gap < n_; ++i) find_best_split(i, i + gap);
-    }
+struct faults {
+  bool flat = false;  // a triangle without area
+  connectivity net;
+
+  [[nodiscard]] bool none() const { return !flat && net.closed_manifold(); }
+  /// Winding alone is what check mends.
+  [[nodiscard]] bool winding_only() const {
+    return !flat && net.open_edges.count + net.non_manifold_edges.count + net.non_manifold_vertices.count == 0;
   }
-
-  [[nodiscard]] double area() const { return best_[n_ - 1].area; }
-
-  void append_to(std::vector<index_triangle>& out) const {
-    std::vector<std::pair<std::size_t, std::size_t>> open{{0, n_ - 1}};
-    while (!open.empty()) {
-      const auto [i, k] = open.back();
-      open.pop_back();
-      if (k - i < 2) continue;
-      const std::size_t j = best_[i * n_ + k].split;
-      // The hole's border runs against the new triangles: its neighbours already run along it this way.
-      out.push_back({polygon_[k], polygon_[j], polygon_[i]});
-      open.emplace_back(i, j);
-      open.emplace_back(j, k);
-    }
-  }
-
- private:
-  static constexpr double folded_cosine = -0.866;  // two triangles that leave less than 30 degrees between them
-
-  // The fill between corner i and corner k, and of it the triangle at the edge from i to k.
-  struct fill {
-    int folds = 0;
-    double area = 0.0;
-    std::size_t split = 0;
-    vec3 normal{0.0};
-  };
-
-  [[nodiscard]] const vec3& normal_across(std::size_t i, std::size_t k) const {
-    return k - i == 1 ? rim_[i] : best_[i * n_ + k].normal;
-  }
-
-  void find_best_split(std::size_t i, std::size_t k) {
-    fill best{std::numeric_limits<int>::max(), 0.0, 0, vec3(0.0)};
-    for (std::size_t j = i + 1; j < k; ++j) {
-      const vec3 across = area_normal(corners(positions_, {polygon_[k], polygon_[j], polygon_[i]}));
-      const fill& before = best_[i * n_ + j];
-      const fill& after = best_[j * n_ + k];
-      fill here{before.folds + after.folds, before.area + after.area + 0.5 * glm::length(across), j,
-                normalised(across)};
-      const auto fold = [&](const vec3& beside) { return glm::dot(here.normal, beside) < folded_cosine ? 1 : 0; };
-      here.folds += fold(normal_across(i, j)) + fold(normal_across(j, k));
-      if (k - i == n_ - 1) here.folds += fold(rim_[n_ - 1]);
-      if (std::pair(here.folds, here.area) < std::pair(best.folds, best.area)) best = here;
-    }
-    best_[i * n_ + k] = best;
-  }
-
-  const std::vector<vec3>& positions_;
-  std::size_t n_;
-  std::vector<std::uint32_t> polygon_;
-  std::vector<vec3> rim_;  // normal of the triangle at the edge from each corner to the next
-  std::vector<fill> best_;
 };
 
-double widest_distance(const triangle_mesh& mesh, const std::vector<std::uint32_t>& hole) {
-  const auto at = [&](std::uint32_t h) { return mesh.positions[origin_of(mesh.triangles, h)]; };
-  double widest = 0.0;
-  for (const std::uint32_t a : hole) {
-    for (const std::uint32_t b : hole) widest = std::max(widest, glm::length(at(a) - at(b)));
+faults faults_of(const triangle_mesh& mesh) {
+  faults out;
+  const double reach = reach_of(mesh);
+  for (const index_triangle& t : mesh.triangles) out.flat = out.flat || has_no_area(corners(mesh.positions, t), reach);
+  out.net = connect(mesh.triangles, mesh.positions.size());
+  return out;
+}
+
+std::string percent(double share) {
+  std::ostringstream out;
+  out.precision(3);
+  out << 100.0 * share << " %";
+  return out.str();
+}
+
+error not_mended(const std::string& what) {
+  return {error_code::bad_mesh, "the mesh " + what + "; --wrap makes a closed solid of it"};
+}
+
+std::string what_is_left(const faults& left) {
+  const auto counted = [](std::size_t n, const char* one, const char* many) {
+    return std::to_string(n) + (n == 1 ? one : many);
+  };
+  if (left.net.non_manifold_edges.count > 0)
+    return counted(left.net.non_manifold_edges.count, " edge", " edges") + " with more than two triangles";
+  if (left.net.open_edges.count > 0) return counted(left.net.open_edges.count, " open edge", " open edges");
+  if (left.net.misoriented_edges.count > 0) return "only one side, as a Klein bottle has,";
+  if (left.net.non_manifold_vertices.count > 0)
+    return counted(left.net.non_manifold_vertices.count, " vertex", " vertices") + " where surfaces touch in a point";
+  return "triangles without area";
+}
+
+result<void> make_closed_manifold(triangle_mesh& mesh, const repair_settings& settings, repair_report& report) {
+  constexpr int most_rounds = 4;
+  const double tolerance_m =
+      std::max(settings.weld_in_diagonals, least_weld_in_diagonals) * bounds_of(mesh.positions).diagonal();
+  for (int round = 0; round < most_rounds; ++round) {
+    drop_degenerate(mesh, report);
+    if (round == 0) {
+      weld_borders(mesh, tolerance_m, report);
+      drop_degenerate(mesh, report);
+      split_t_junctions(mesh, tolerance_m, report);
+    }
+    drop_duplicates(mesh, report);
+    drop_inner_walls(mesh, report);
+    part_sheets(mesh, report);
+    if (const auto turned = make_winding_consistent(mesh); turned && *turned > 0)
+      report.add(repair_kind::turned, vec3(0.0), 0.0, *turned);
+    drop_loose_pieces(mesh, report);
+    if (mesh.triangles.size() < 4) return not_mended("has no part that bounds a volume");
+    if (settings.close_holes) close_all_holes(mesh, report);
+    if (faults_of(mesh).none()) return {};
   }
-  return widest;
+  return not_mended("cannot be repaired, it still has " + what_is_left(faults_of(mesh)));
 }
 
 }  // namespace
 
-result<hole_report> close_holes(triangle_mesh& mesh) {
-  for (const index_triangle& t : mesh.triangles) {
-    if (std::ranges::max(t) >= mesh.positions.size()) {
-      return error{error_code::bad_mesh, "cannot close holes: a triangle names a vertex that the mesh does not have"};
-    }
+result<repair_report> repair(triangle_mesh& given, const repair_settings& settings) {
+  repair_report report;
+  report.triangles_before = report.triangles_after = given.triangles.size();
+  if (!is_readable(given)) return report;
+  triangle_mesh mesh = given;
+  if (mesh.uvs.size() != mesh.triangles.size()) mesh.uvs.clear();
+  drop_unused_vertices(mesh);
+  if (!(bounds_of(mesh.positions).diagonal() > 0.0)) return report;
+  if (!faults_of(mesh).winding_only()) {
+    if (const result<void> ok = make_closed_manifold(mesh, settings, report); !ok) return ok.error();
+    drop_unused_vertices(mesh);
+  } else if (!faults_of(mesh).net.closed_manifold()) {
+    return report;  // check turns triangles that wind against their neighbours
   }
-  connectivity around = connect(mesh.triangles, mesh.positions.size());
-  if (around.non_manifold_edges.count != 0) {
-    return error{error_code::bad_mesh, "cannot close holes: " + std::to_string(around.non_manifold_edges.count) +
-                                           (around.non_manifold_edges.count == 1 ? " edge has" : " edges have") +
-                                           " more than two triangles; remove duplicate or inner faces first"};
+  report.made_up_share = report.area_added_m2 / area_of(mesh);
+  if (report.made_up_share > settings.largest_made_up_share) {
+    const repair_action& holes = report[repair_kind::hole];
+    return not_mended("is too open to be closed: " + std::to_string(holes.count) +
+                      (holes.count == 1 ? " hole" : " holes") + " would make up " + percent(report.made_up_share) +
+                      " of its surface, more than " + percent(settings.largest_made_up_share));
   }
-  hole_report report;
-  triangle_mesh wound{{}, mesh.triangles, mesh.uvs};
-  if (around.misoriented_edges.count != 0) {
-    const auto turned = make_winding_consistent(wound);
-    if (!turned) {
-      return error{error_code::bad_mesh,
-                   "cannot close holes: the surface has only one side, as a Moebius band has; cut it or remove faces"};
-    }
-    report.triangles_turned = *turned;
-    around = connect(wound.triangles, mesh.positions.size());
-  }
-
-  const auto holes = find_holes(around);
-  for (const auto& hole : holes) {
-    if (hole.size() > largest_hole_edges) {
-      return error{error_code::bad_mesh, "cannot close holes: one has " + std::to_string(hole.size()) +
-                                             " edges, more than " + std::to_string(largest_hole_edges) +
-                                             "; close it in a mesh editor, where its shape can be chosen"};
-    }
-  }
-  mesh.triangles = std::move(wound.triangles);
-  mesh.uvs = std::move(wound.uvs);
-  report.holes = holes.size();
-  const std::size_t before = mesh.triangles.size();
-  for (const auto& hole : holes) {
-    const smallest_fill fill(mesh, hole);
-    fill.append_to(mesh.triangles);
-    report.area_added_m2 += fill.area();
-    report.largest_m = std::max(report.largest_m, widest_distance(mesh, hole));
-  }
-  report.triangles_added = mesh.triangles.size() - before;
-  if (report.holes != 0) mesh.uvs.clear();
+  order_components(mesh, settings, report);
+  if (settings.uncross) uncross(mesh, settings, report);
+  if (report.total() == 0) return report;
+  if (!(std::abs(volume_of(mesh)) > least_volume * std::pow(bounds_of(mesh.positions).diagonal(), 3)))
+    return not_mended("bounds no volume");
+  report.triangles_after = mesh.triangles.size();
+  given = std::move(mesh);
   return report;
 }
 

@@ -98,18 +98,18 @@ std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, con
   return out;
 }
 
-std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> list_self_crossings(const triangle_mesh& mesh,
-                                                                                        const triangle_bvh& tree,
-                                                                                        unsigned threads,
-                                                                                        stage_monitor& monitor) {
+std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> list_self_crossings(
+    const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads, std::size_t most, stage_monitor& monitor) {
   using pair_list = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
   std::vector<pair_list> of_block(block_count(mesh.triangles.size()));
   const auto found = [&](std::size_t block, std::uint32_t t, std::uint32_t other) {
-    of_block[block].emplace_back(t, other);
+    if (of_block[block].size() < most) of_block[block].emplace_back(t, other);
   };
   if (!visit_crossings(mesh, tree, threads, monitor, found)) return std::nullopt;
   pair_list out;
   for (const pair_list& part : of_block) out.insert(out.end(), part.begin(), part.end());
+  std::ranges::sort(out);
+  if (out.size() > most) out.resize(most);
   return out;
 }
 

@@ -25,9 +25,12 @@ struct self_crossings {
 [[nodiscard]] std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, const triangle_bvh& tree,
                                                                 unsigned threads, stage_monitor& monitor);
 
-/// The pairs themselves, the lower number first, in order. @return nothing where it was cancelled
+/// More than these are not listed.
+inline constexpr std::size_t most_listed_crossings = 1'000'000;
+
+/// The pairs themselves, the lower number first, sorted; no more than `most`. @return nothing where it was cancelled
 [[nodiscard]] std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> list_self_crossings(
-    const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads, stage_monitor& monitor);
+    const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads, std::size_t most, stage_monitor& monitor);
 
 /// The sentence with which a report tells of them. @pre found.pairs > 0
 [[nodiscard]] std::string crossing_remark(const self_crossings& found);

@@ -131,7 +131,7 @@ bool fit_to_original(triangle_mesh& mesh, const triangle_mesh& original, const t
   for (int mend = 0; mend < most_mends; ++mend) {
     const triangle_bvh own(mesh.positions, mesh.triangles, threads, &monitor);
     if (monitor.cancelled()) return false;
-    const auto crossing = list_self_crossings(mesh, own, threads, monitor);
+    const auto crossing = list_self_crossings(mesh, own, threads, most_listed_crossings, monitor);
     if (!crossing) return false;
     if (crossing->empty()) return true;
     for (const auto& [a, b] : *crossing)

@@ -41,7 +41,7 @@ struct finished_bake {
   const textured_model& model;
   double scale = 1.0;  ///< metres per unit
   bool kept_uvs = false;
-  const bake::hole_report& holes;
+  const bake::repair_report& repaired;
   const relief_job& relief;
   const stage_clock& clock;
 };

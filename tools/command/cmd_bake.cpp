@@ -47,7 +47,9 @@ struct bake_command {
   unsigned threads = 0;
   std::optional<std::size_t> pieces;
   bool keep_uvs = false;
-  bool close_holes = false;
+  bool close_holes = false;  // holes are closed anyway: the option is taken for those who gave it before
+  bool strict = false;
+  std::string repair = "keep";
   bool without_field = false;
   bool split = false;
   std::optional<triangle_mesh> part{};  // to be baked in place of the file's mesh
@@ -121,13 +123,14 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
   turn_up(*options.placing, *full);
   std::vector<std::string> remarks;
-  bake::hole_report holes;
   const bool can_be_wrapped = !options.wrap->wanted && bake::can_wrap(*full);
   std::optional<bake::wrap_report> wrapped;
-  if (options.wrap->wanted) {
+  const auto wrap = [&]() -> result<void> {
     if (options.keep_uvs && options.coarse.empty())
-      return error{error_code::invalid_argument,
-                   "--keep-uvs: a wrapped mesh has no texture coordinates; leave --wrap out, or give a --coarse mesh"};
+      return error{
+          error_code::invalid_argument,
+          "--keep-uvs: a wrapped mesh has no texture coordinates; leave --wrap and --repair wrap out, or give a "
+          "--coarse mesh"};
     result<triangle_mesh> around = bake::wrap(*full,
                                               {.cell_m = options.wrap->cell_m,
                                                .thickness_m = options.wrap->thickness_m,
@@ -136,19 +139,27 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
                                               wrapped.emplace());
     if (!around) return around.error();
     *full = std::move(*around);
-  }
-  if (options.close_holes) {
-    const result<bake::hole_report> closed = bake::close_holes(*full);
-    if (!closed) return with_offer_to_wrap(closed.error(), can_be_wrapped);
-    holes = *closed;
-    if (options.keep_uvs && options.coarse.empty() && holes.holes > 0) {
+    return {};
+  };
+  bake::repair_report repaired;
+  repaired.triangles_before = repaired.triangles_after = full->triangles.size();
+  if (options.wrap->wanted) {
+    if (const result<void> ok = wrap(); !ok) return ok.error();
+  } else if (!options.strict) {
+    if (!enter("repair", 0.0)) return error{error_code::cancelled, "interrupted: nothing was written"};
+    const result<bake::repair_report> mended = bake::repair(*full, {.threads = options.threads});
+    if (mended) {
+      repaired = *mended;
+    } else if (options.repair == "wrap" && mended.error().code == error_code::bad_mesh) {
+      remarks.push_back("wrapped, since it could not be repaired: " + mended.error().message);
+      if (const result<void> ok = wrap(); !ok) return ok.error();
+    } else {
+      return mended.error();
+    }
+    if (options.keep_uvs && options.coarse.empty() && repaired.triangles_added > 0) {
       return error{error_code::invalid_argument,
                    "--keep-uvs: the triangles that close the holes of " + options.full +
                        " have no texture coordinates; close them where the mesh is unwrapped, or give a --coarse mesh"};
-    }
-    if (holes.triangles_turned > 0) {
-      remarks.push_back("before its holes were closed, " + std::to_string(holes.triangles_turned) +
-                        " triangles that were wound against their neighbours have been turned");
     }
   }
 
@@ -156,9 +167,9 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     return error{error_code::bad_mesh, "--material-map: " + options.full +
                                            " has no texture coordinates, so no image can be laid on it; export it with "
                                            "its UVs (OBJ, glTF)" +
-                                           (holes.holes > 0 ? ", and close its holes there"
-                                            : wrapped       ? "; a wrapped mesh has none"
-                                                            : "")};
+                                           (repaired.triangles_added > 0 ? ", and close its holes there"
+                                            : wrapped                    ? "; a wrapped mesh has none"
+                                                                         : "")};
   }
 
   bake::bake_settings settings;
@@ -236,7 +247,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   }
   clock.leave();
   answer out = report_bake(
-      {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, holes, *relief, clock},
+      {options.full, options.out, *model, options.units->metres_per_unit(), options.keep_uvs, repaired, *relief, clock},
       std::move(remarks));
   if (wrapped) {
     out.document["wrap"] = wrap_document(*wrapped);
@@ -284,7 +295,8 @@ void add_bake(command_line& line) {
   CLI::App& sub =
       line.add("bake", "Turn a full-resolution mesh into a textured model",
                [o](const common_options& common) { return o->split ? run_split(*o, common) : run_bake(*o, common); });
-  sub.add_option("full", o->full, "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), closed, in metres")
+  sub.add_option("full", o->full,
+                 "Full-resolution mesh (.ply, .obj, .stl, .gltf, .glb), in metres; repaired where it is not closed")
       ->required();
   sub.add_option("-o,--output", o->out, "Textured model to write (.glb)")
       ->required()
@@ -308,7 +320,15 @@ void add_bake(command_line& line) {
       ->check(CLI::Range(1, 1000000));
   add_relief_options(sub, o->relief);
   auto* wrap = add_wrap_options(sub, o->wrap);
-  sub.add_flag("--close-holes", o->close_holes, "Close the holes of the full mesh first, and report them")
+  auto* close_holes = sub.add_flag("--close-holes", o->close_holes, "Holes are closed by default; changes nothing");
+  auto* strict = sub.add_flag("--strict", o->strict, "Refuse a full mesh that would have to be repaired")
+                     ->excludes(close_holes)
+                     ->excludes(wrap);
+  sub.add_option("--repair", o->repair,
+                 "What becomes of a mesh that no repair can mend: keep (it is refused) or wrap (as --wrap does)")
+      ->check(CLI::IsMember({"keep", "wrap"}))
+      ->capture_default_str()
+      ->excludes(strict)
       ->excludes(wrap);
   sub.add_flag("--without-field", o->without_field,
                "Keep no depth field in the file, which is then about half as large; every load makes it anew");

@@ -1,4 +1,5 @@
 // Meshes that cannot become a textured model.
+#include <cmath>
 #include <sstream>
 
 #include "command_process.hpp"
@@ -62,10 +63,21 @@ TEST_F(bad_mesh, all_vertices_in_one_point) {
 }
 
 TEST_F(bad_mesh, open_surface) {
-  const std::string message = expect_refused("mesh.obj", std::string(cube_vertices) + cube_without_lid, "bad_mesh");
+  write("mesh.obj", std::string(cube_vertices) + cube_without_lid);
+  std::vector<std::string> bake{"bake", path("mesh.obj"), "-o", path("out.glb"), "--texture", "64"};
+  const json repair = expect_document(bake, "asperity.bake/1").at("repair");
+  EXPECT_EQ(repair.at("holes_closed"), 1);
+  ASSERT_EQ(repair.at("actions").size(), 1U) << repair;
+  EXPECT_EQ(repair.at("actions").at(0).at("action"), "hole");
+  EXPECT_EQ(repair.at("actions").at(0).at("count"), 1);
+  EXPECT_NEAR(repair.at("actions").at(0).at("largest_change").get<double>(), 0.1 * std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(repair.at("made_up_share").get<double>(), 1.0 / 6.0, 1e-6);
+  EXPECT_EQ(repair.at("triangles_before"), 10);
+  EXPECT_EQ(repair.at("triangles_after"), 12);
+  bake.emplace_back("--strict");
+  const std::string message = expect_failure(bake, 1, "bad_mesh");
   EXPECT_NE(message.find("4 open edges"), std::string::npos) << message;
-  EXPECT_NE(message.find("--close-holes"), std::string::npos) << message;
-  EXPECT_NE(message.find("--wrap"), std::string::npos) << message;
+  EXPECT_NE(message.find("without --strict"), std::string::npos) << message;
 }
 
 // What a refusal offers works; where nothing can be made of a mesh, nothing is offered.
@@ -80,6 +92,13 @@ TEST_F(bad_mesh, the_way_out_that_a_refusal_offers_is_one) {
   EXPECT_EQ(expect_refused("line.ply", line, "bad_mesh").find("--wrap"), std::string::npos);
   expect_failure({"bake", path("mesh.obj"), "--wrap", "--keep-uvs", "-o", path("no.glb")}, 1, "invalid_argument");
   expect_failure({"bake", path("mesh.obj"), "--wrap=1e-9", "-o", path("no.glb")}, 1, "invalid_argument");
+}
+
+// Half of it is missing: one command is offered.
+TEST_F(bad_mesh, too_open_to_be_closed) {
+  const std::string message =
+      expect_refused("mesh.obj", std::string(cube_vertices) + "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\n", "bad_mesh");
+  EXPECT_NE(message.find("--wrap"), std::string::npos) << message;
 }
 
 // What can be mended without a doubt is mended, and said.

@@ -1,14 +1,79 @@
-// Repairs that a user asks for by name; a bake never repairs silently. Component asperity::bake.
+// Repair of a mesh before it is baked: everything that is done is counted and told. Component asperity::bake.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/triangle_mesh.hpp"
 
 namespace asperity::bake {
 
-/// Largest hole, in edges, that close_holes fills: in a larger one a flat patch would not resemble the surface.
+struct repair_settings {
+  /// Vertices on open edges are welded within this share of the diagonal, and never across more than 0.4 of the shortest
+  /// edge at either; an open edge is split where such a vertex lies on it. At least 1e-6.
+  double weld_in_diagonals = 1e-5;
+  bool close_holes = true;
+  bool drop_inner = true;               ///< components within the material of another, which nothing can touch
+  bool uncross = true;                  ///< where one component passes through itself
+  double largest_made_up_share = 0.25;  ///< of the repaired surface; more is refused
+  unsigned threads = 1;                 ///< of the search for crossings; the result does not depend on it
+};
+
+/// What a repair can do, in the order in which it is told.
+enum class repair_kind : std::uint8_t {
+  weld,          ///< vertices merged; change: the farthest that one moved
+  degenerate,    ///< triangles without area dropped; change: the longest edge that was collapsed
+  t_junction,    ///< vertices set into open edges that they lie on; change: the farthest off the edge
+  duplicate,     ///< faces that were there already, dropped; of a doubled inner wall, both
+  inner_wall,    ///< triangles of fins and walls that hang on an edge of three, dropped; change: extent of the widest
+  split_edge,    ///< edges of more than two triangles, parted into sheets
+  split_vertex,  ///< vertices parted where surfaces touched in a point
+  turned,        ///< triangles that wound against their neighbours, turned
+  loose_piece,   ///< triangles of open pieces too flat or too open to bound a volume, dropped; change: their extent
+  hole,          ///< holes closed; change: the longest distance across one
+  turned_inside_out,  ///< components turned; `check` turns a whole mesh
+  inner_component,    ///< components dropped that lay within another's material; change: extent of the largest
+  crossing,           ///< pairs of triangles that crossed and no longer do; change: how far the surface moved
+};
+inline constexpr std::size_t repair_kinds = 13;
+
+struct repair_action {
+  std::size_t count = 0;
+  vec3 first{0.0};         ///< where it was done first, m
+  double largest_m = 0.0;  ///< largest change to the surface, see repair_kind
+};
+
+struct repair_report {
+  std::array<repair_action, repair_kinds> actions;
+  std::size_t triangles_before = 0, triangles_after = 0;
+  std::size_t triangles_added = 0;  ///< made up: of closed holes and resolved crossings
+  double area_added_m2 = 0.0;       ///< of those
+  double made_up_share = 0.0;       ///< of those, of the repaired surface
+
+  [[nodiscard]] const repair_action& operator[](repair_kind kind) const noexcept {
+    return actions[static_cast<std::size_t>(kind)];
+  }
+  void add(repair_kind kind, const vec3& at, double change_m, std::size_t count = 1) noexcept;
+  [[nodiscard]] std::size_t total() const noexcept;
+};
+
+/// The action as it stands in JSON documents, and in words: "vertices welded".
+[[nodiscard]] const char* to_string(repair_kind kind) noexcept;
+[[nodiscard]] const char* in_words(repair_kind kind, std::size_t count) noexcept;
+
+/// Makes a closed, 2-manifold mesh that bounds a volume of one that nearly is, and keeps its surface where it can. What
+/// `check` takes is not changed, except that components that lie within another's material are dropped and that one
+/// which passes through itself is mended there. Texture coordinates stay at their corners; they are dropped where a
+/// triangle was made up. The same input gives the same bits. What is no mesh at all (no triangles, indices out of
+/// range, coordinates that are not finite) is left as it is for `check` to name.
+/// @return bad_mesh where more than largest_made_up_share would be made up, or where the mesh cannot be mended; the
+///         mesh is then as it was
+/// @source Guéziec et al. 2001 (cutting and stitching); Barequet and Sharir 1995, Liepa 2003 (holes)
+[[nodiscard]] result<repair_report> repair(triangle_mesh& mesh, const repair_settings& settings = {});
+
+/// Largest hole, in edges, that close_holes fills.
 inline constexpr std::size_t largest_hole_edges = 500;
 
 struct hole_report {
@@ -19,9 +84,9 @@ struct hole_report {
   std::size_t triangles_turned = 0;  ///< that were wound against their neighbours, so that borders can be followed
 };
 
-/// Closes every hole with a triangulation over the hole's own vertices; no vertex is added or moved. It is
-/// searched for the fewest folds, onto itself or onto the triangles around, and of those for the least area.
-/// Texture coordinates are dropped where a hole was closed: the new triangles have none.
+/// Closes every hole with a triangulation over the hole's own vertices and does nothing else; no vertex is added or
+/// moved. It is searched for the fewest folds, onto itself or onto the triangles around, and of those for the least
+/// area. Texture coordinates are dropped where a hole was closed: the new triangles have none.
 /// @return bad_mesh where a hole has more than largest_hole_edges edges, or where edges are shared by more than two
 ///         triangles (a hole has no border there that could be followed), or where a surface has only one side
 /// @source Barequet and Sharir 1995 (least-area triangulation of a hole by dynamic programming);

@@ -1,0 +1,166 @@
+// Repair of whole meshes: what is clean stays as it is, and what is dirty comes out closed, near to what it was.
+#include <gtest/gtest.h>
+#include <string>
+
+#include "asperity/bake/repair.hpp"
+#include "bake/check.hpp"
+#include "dirty_mesh.hpp"
+#include "support/extent.hpp"
+#include "support/fresh_seed.hpp"
+
+namespace asperity::bake {
+namespace {
+
+using dirt::kind;
+
+std::vector<triangle_mesh> clean_meshes() {
+  const shapes::wavy_torus torus;
+  return {dirt::ball(14, 22), torus.mesh(30, 16), shapes::box({0.06, 0.05, 0.07}, {5, 4, 6}),
+          shapes::both(dirt::ball(10, 14), shapes::scaled(dirt::ball(8, 12), 0.5, {0.2, 0, 0}))};
+}
+
+TEST(Mend, LeavesCleanMeshesByteForByte) {
+  std::vector<triangle_mesh> all = clean_meshes();
+  all.push_back(
+      shapes::both(dirt::ball(10, 14), shapes::reversed(shapes::scaled(dirt::ball(8, 12), 0.5))));  // a cavity
+  all.push_back(shapes::reversed(dirt::ball(10, 14)));  // inside-out as a whole: check turns it
+  for (const triangle_mesh& clean : all) {
+    triangle_mesh m = clean;
+    const auto report = repair(m);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ(report->total(), 0U);
+    EXPECT_EQ(m.positions, clean.positions);
+    EXPECT_EQ(m.triangles, clean.triangles);
+  }
+}
+
+struct expected {
+  kind seeded;
+  repair_kind told;
+  std::size_t count;
+};
+
+// One defect on one mesh: the report tells that one and no other.
+TEST(Mend, TellsWhatWasSeeded) {
+  const expected all[] = {{kind::cracks, repair_kind::weld, 3},
+                          {kind::degenerate_split, repair_kind::degenerate, 1},
+                          {kind::same_twice, repair_kind::duplicate, 1},
+                          {kind::both_sides, repair_kind::duplicate, 1},
+                          {kind::fin, repair_kind::inner_wall, 1},
+                          {kind::hole, repair_kind::hole, 1},
+                          {kind::inner_ball, repair_kind::inner_component, 1},
+                          {kind::inner_wall, repair_kind::inner_wall, 1},
+                          {kind::shard, repair_kind::loose_piece, 1}};
+  shapes::dice dice(test_support::fresh_seed("mend, one defect", "9 defects"));
+  for (const expected& e : all) {
+    SCOPED_TRACE(dirt::name(e.seeded));
+    triangle_mesh m = dirt::ball(14, 22);
+    const double area = dirt::area(m), volume = dirt::volume(m);
+    dirt::plant(m, e.seeded, dice);
+    const auto report = repair(m);
+    ASSERT_TRUE(report) << report.error().message;
+    const std::size_t told = (*report)[e.told].count;
+    if (e.seeded == kind::inner_wall) {
+      EXPECT_TRUE(told == 1 || told == 3) << told;  // the lid or the dent behind it: the smaller goes
+    } else {
+      EXPECT_EQ(told, e.count);
+    }
+    EXPECT_EQ(report->total(), told) << "and nothing else";
+    EXPECT_EQ(report->triangles_after, m.triangles.size());
+    ASSERT_TRUE(check(m));
+    EXPECT_NEAR(dirt::area(m), area, 0.01 * area);
+    EXPECT_NEAR(dirt::volume(m), volume, 0.01 * volume);
+  }
+}
+
+TEST(Mend, DirtyMeshesComeOutClosedAndNearToWhatTheyWere) {
+  const std::size_t runs = test_support::extent<std::size_t>(600, 20000);
+  shapes::dice dice(test_support::fresh_seed("mend, dirty meshes", "600 or 20,000 meshes"));
+  const std::vector<triangle_mesh> clean = clean_meshes();
+  for (std::size_t run = 0; run < runs; ++run) {
+    const std::size_t which = run % clean.size();
+    triangle_mesh m = clean[which];
+    std::string planted;
+    const std::size_t defects = run % 3 == 0 ? 1 : 1 + dice.below(6);
+    std::size_t holes = 0;
+    for (std::size_t i = 0; i < defects; ++i) {
+      const auto k = static_cast<kind>(dice.below(dirt::kinds));
+      if (k == kind::inner_ball && which == 1) continue;  // nothing is in the middle of a torus
+      planted += std::string(dirt::name(k)) + ", ";
+      holes += k == kind::hole ? 1 : 0;
+      dirt::plant(m, k, dice);
+    }
+    SCOPED_TRACE("run " + std::to_string(run) + ", mesh " + std::to_string(which) + ": " + planted);
+    triangle_mesh twin = m;
+    const auto report = repair(m);
+    ASSERT_TRUE(report) << report.error().message;
+    const auto checked = check(m);
+    ASSERT_TRUE(checked) << checked.error().message;
+    EXPECT_NEAR(dirt::area(checked->mesh), dirt::area(clean[which]), 0.03 * dirt::area(clean[which]));
+    EXPECT_NEAR(dirt::volume(checked->mesh), dirt::volume(clean[which]), 0.03 * dirt::volume(clean[which]));
+    ASSERT_TRUE(repair(twin));
+    EXPECT_EQ(twin.triangles, m.triangles) << "another time it comes out otherwise";
+    const auto again = repair(m);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(again->total(), 0U) << "what is repaired is clean";
+    if (HasFailure() && run > 20) break;
+  }
+}
+
+TEST(Mend, OffersOneCommandForWhatIsTooOpen) {
+  triangle_mesh bowl = dirt::ball(14, 22);
+  std::erase_if(bowl.triangles, [&](const auto& t) { return bowl.positions[t[0]].z > -0.01; });
+  const triangle_mesh before = bowl;
+  const auto report = repair(bowl);
+  ASSERT_FALSE(report);
+  EXPECT_NE(report.error().message.find("; --wrap makes"), std::string::npos) << report.error().message;
+  EXPECT_EQ(bowl.triangles, before.triangles);
+}
+
+// A lid whose rim is straight, and a cap whose rim is round.
+TEST(Mend, ClosesHolesOfThousandsOfEdges) {
+  triangle_mesh open_box = shapes::box({0.1, 0.1, 0.1}, {300, 300, 2});
+  std::erase_if(open_box.triangles, [&](const auto& t) {
+    return open_box.positions[t[0]].z + open_box.positions[t[1]].z + open_box.positions[t[2]].z > 0.1499;
+  });
+  triangle_mesh ball = dirt::ball(40, 3000);
+  const double whole = dirt::volume(ball);
+  std::erase_if(ball.triangles, [&](const auto& t) { return ball.positions[t[0]].z > 0.0455; });
+  for (triangle_mesh* m : {&open_box, &ball}) {
+    const auto report = repair(*m);
+    ASSERT_TRUE(report) << report.error().message;
+    EXPECT_EQ((*report)[repair_kind::hole].count, 1U);
+    EXPECT_TRUE(check(*m));
+  }
+  EXPECT_NEAR(dirt::volume(open_box), 1e-3, 1e-12);
+  EXPECT_NEAR(dirt::volume(ball), whole, 0.02 * whole);
+}
+
+// A nose pushed through the opposite side: what crosses is cut out.
+TEST(Mend, ResolvesASheetThatPassesThroughItself) {
+  triangle_mesh m = dirt::ball(28, 44);
+  vec3& tip = m.positions[1 + 13 * 44];
+  const vec3 beside = m.positions[1 + 13 * 44 + 2];
+  tip = tip + 1.6 * (beside - tip);
+  tip *= 0.99;
+  const double volume = dirt::volume(m);
+  const auto report = repair(m);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_GT((*report)[repair_kind::crossing].count, 0U);
+  EXPECT_LT((*report)[repair_kind::crossing].largest_m, 0.01);
+  EXPECT_TRUE(check(m));
+  EXPECT_NEAR(dirt::volume(m), volume, 0.01 * volume);
+  EXPECT_EQ(repair(m)->total(), 0U);
+}
+
+TEST(Mend, TurnsAComponentThatIsInsideOutAndKeepsACavity) {
+  triangle_mesh apart =
+      shapes::both(dirt::ball(10, 14), shapes::reversed(shapes::scaled(dirt::ball(8, 12), 0.5, {0.2, 0, 0})));
+  const auto report = repair(apart);
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ((*report)[repair_kind::turned_inside_out].count, 1U);
+  EXPECT_TRUE(check(apart));
+}
+
+}  // namespace
+}  // namespace asperity::bake

@@ -1,0 +1,126 @@
+// Holes closed, and open pieces that no hole can be told of dropped.
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "bake/halfedges.hpp"
+#include "bake/hole_fill.hpp"
+#include "bake/repair_steps.hpp"
+#include "bake/winding.hpp"
+
+namespace asperity::bake {
+namespace {
+
+constexpr double most_filling_steps = 2e10;     // some minutes at the worst
+constexpr double largest_piece_share = 0.1;     // of the whole area: a larger piece is not dropped
+constexpr double largest_piece_filling = 0.25;  // of a piece with its holes closed
+
+}  // namespace
+
+// An open piece is loose where closing its holes would make up much of it. Its filling is judged by the least area that
+// its borders can have: that of their vector areas.
+void drop_loose_pieces(triangle_mesh& mesh, repair_report& report) {
+  const connectivity net = connect(mesh.triangles, mesh.positions.size());
+  if (net.open_edges.count == 0) return;
+  struct piece {
+    double area = 0.0, filling = 0.0;
+    std::size_t triangles = 0;
+    std::uint32_t first = no_halfedge;
+    bounds box;
+  };
+  std::vector<piece> pieces(net.components);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto c = corners(mesh.positions, mesh.triangles[t]);
+    piece& p = pieces[net.component[t]];
+    if (p.triangles++ == 0) {
+      p.first = t;
+      p.box = {c[0], c[0]};
+    }
+    p.area += 0.5 * glm::length(area_normal(c));
+    for (const vec3& at : c) {
+      p.box.low = glm::min(p.box.low, at);
+      p.box.high = glm::max(p.box.high, at);
+    }
+  }
+  double whole = 0.0;
+  for (const piece& p : pieces) whole += p.area;
+  for (const auto& hole : find_holes(net)) {
+    const vec3 apex = mesh.positions[origin_of(mesh.triangles, hole.front())];
+    vec3 twice{0.0};
+    for (const std::uint32_t h : hole)
+      twice += glm::cross(mesh.positions[origin_of(mesh.triangles, h)] - apex,
+                          mesh.positions[origin_of(mesh.triangles, next_halfedge(h))] - apex);
+    pieces[net.component[hole.front() / 3]].filling += 0.5 * glm::length(twice);
+  }
+  std::vector<bool> loose(pieces.size(), false);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const piece& p = pieces[i];
+    loose[i] = p.area < largest_piece_share * whole && p.filling > largest_piece_filling * (p.area + p.filling);
+    if (loose[i])
+      report.add(repair_kind::loose_piece, mesh.positions[mesh.triangles[p.first][0]], p.box.diagonal(), p.triangles);
+  }
+  std::vector<bool> gone(mesh.triangles.size(), false);
+  for (std::size_t t = 0; t < gone.size(); ++t) gone[t] = loose[net.component[t]];
+  drop_triangles(mesh, gone);
+}
+
+void close_all_holes(triangle_mesh& mesh, repair_report& report) {
+  const connectivity net = connect(mesh.triangles, mesh.positions.size());
+  double budget = most_filling_steps;
+  const std::size_t before = mesh.triangles.size();
+  for (const auto& hole : find_simple_holes(mesh, net)) {
+    report.add(repair_kind::hole, mesh.positions[origin_of(mesh.triangles, hole.front())], widest_distance(mesh, hole));
+    report.area_added_m2 += fill_hole(mesh, hole, budget);
+  }
+  report.triangles_added += mesh.triangles.size() - before;
+  if (mesh.triangles.size() != before) mesh.uvs.clear();
+}
+
+result<hole_report> close_holes(triangle_mesh& mesh) {
+  for (const index_triangle& t : mesh.triangles) {
+    if (std::ranges::max(t) >= mesh.positions.size()) {
+      return error{error_code::bad_mesh, "cannot close holes: a triangle names a vertex that the mesh does not have"};
+    }
+  }
+  connectivity around = connect(mesh.triangles, mesh.positions.size());
+  if (around.non_manifold_edges.count != 0) {
+    return error{error_code::bad_mesh, "cannot close holes: " + std::to_string(around.non_manifold_edges.count) +
+                                           (around.non_manifold_edges.count == 1 ? " edge has" : " edges have") +
+                                           " more than two triangles; remove duplicate or inner faces first"};
+  }
+  hole_report report;
+  triangle_mesh wound{{}, mesh.triangles, mesh.uvs};
+  if (around.misoriented_edges.count != 0) {
+    const auto turned = make_winding_consistent(wound);
+    if (!turned) {
+      return error{error_code::bad_mesh,
+                   "cannot close holes: the surface has only one side, as a Moebius band has; cut it or remove faces"};
+    }
+    report.triangles_turned = *turned;
+    around = connect(wound.triangles, mesh.positions.size());
+  }
+
+  const auto holes = find_holes(around);
+  for (const auto& hole : holes) {
+    if (hole.size() > largest_hole_edges) {
+      return error{error_code::bad_mesh, "cannot close holes: one has " + std::to_string(hole.size()) +
+                                             " edges, more than " + std::to_string(largest_hole_edges) +
+                                             "; close it in a mesh editor, where its shape can be chosen"};
+    }
+  }
+  mesh.triangles = std::move(wound.triangles);
+  mesh.uvs = std::move(wound.uvs);
+  report.holes = holes.size();
+  const std::size_t before = mesh.triangles.size();
+  double budget = std::numeric_limits<double>::infinity();
+  for (const auto& hole : holes) {
+    report.area_added_m2 += fill_hole(mesh, hole, budget);
+    report.largest_m = std::max(report.largest_m, widest_distance(mesh, hole));
+  }
+  report.triangles_added = mesh.triangles.size() - before;
+  if (report.holes != 0) mesh.uvs.clear();
+  return report;
+}
+
+}  // namespace asperity::bake
