@@ -159,7 +159,7 @@ std::string percent(double share) {
 }
 
 error not_mended(const std::string& what) {
-  return {error_code::bad_mesh, "the mesh " + what + "; --wrap makes a closed solid of it"};
+  return {error_code::bad_mesh, "the mesh " + what + "; mend it in a mesh editor"};
 }
 
 std::string what_is_left(const faults& left) {

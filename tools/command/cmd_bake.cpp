@@ -154,7 +154,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
       remarks.push_back("wrapped, since it could not be repaired: " + mended.error().message);
       if (const result<void> ok = wrap(); !ok) return ok.error();
     } else {
-      return mended.error();
+      return with_offer_to_wrap(mended.error(), can_be_wrapped);
     }
     if (options.keep_uvs && options.coarse.empty() && repaired.triangles_added > 0) {
       return error{error_code::invalid_argument,
