@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bake/check.hpp"
 #include "bake/halfedges.hpp"
@@ -189,8 +190,11 @@ result<void> make_closed_manifold(triangle_mesh& mesh, const repair_settings& se
     drop_duplicates(mesh, report);
     drop_inner_walls(mesh, report);
     part_sheets(mesh, report);
-    if (const auto turned = make_winding_consistent(mesh); turned && *turned > 0)
-      report.add(repair_kind::turned, vec3(0.0), 0.0, *turned);
+    const std::vector<index_triangle> before = mesh.triangles;
+    if (const auto turned = make_winding_consistent(mesh); turned && *turned > 0) {
+      const auto [first, was] = std::ranges::mismatch(mesh.triangles, before);
+      report.add(repair_kind::turned, mesh.positions[first->front()], 0.0, *turned);
+    }
     drop_loose_pieces(mesh, report);
     if (mesh.triangles.size() < 4) return not_mended("has no part that bounds a volume");
     if (settings.close_holes) close_all_holes(mesh, report);
@@ -222,8 +226,14 @@ result<repair_report> repair(triangle_mesh& given, const repair_settings& settin
                       (holes.count == 1 ? " hole" : " holes") + " would make up " + percent(report.made_up_share) +
                       " of its surface, more than " + percent(settings.largest_made_up_share));
   }
-  order_components(mesh, settings, report);
-  if (settings.uncross) uncross(mesh, settings, report);
+  // One may make work for the other: a component that was turned, or cut apart, may lie in another now.
+  constexpr int most_rounds = 4;
+  for (int round = 0; round < most_rounds; ++round) {
+    const std::size_t before = report.total();
+    order_components(mesh, settings, report);
+    if (settings.uncross) uncross(mesh, settings, report);
+    if (report.total() == before) break;
+  }
   if (report.total() == 0) return report;
   if (!(std::abs(volume_of(mesh)) > least_volume * std::pow(bounds_of(mesh.positions).diagonal(), 3)))
     return not_mended("bounds no volume");

@@ -34,6 +34,13 @@ real_mesh_fault() {
     sed 's/;.*//; s/, the first is.*//; s/^is not closed: //; s/^has //; s/ with more than two triangles/ of more than 2 triangles/'
 }
 
+# What a repair did, as "hole 5, weld 12".
+real_mesh_actions() {
+  awk '
+    $1 == "\"action\":" { gsub(/[",]/, "", $2); gsub(/_/, " ", $2); what = $2 }
+    $1 == "\"count\":" && what != "" { gsub(/,/, "", $2); printf "%s%s %s", between, what, $2; between = ", "; what = "" }' "$1"
+}
+
 # run_real_meshes [--from FOLDER] [NAME...]: all of the list, or those named.
 run_real_meshes() {
   local from= asperity=build/release/bin/asperity folder=build/real_meshes out=out/real_meshes
@@ -59,21 +66,24 @@ run_real_meshes() {
     report=$out/$name.json refused=$out/$name.refused.json
     local options=(--fit 0.15 --texture 512 --without-field -o "$out/${name%.*}.glb" --json --quiet)
     local fault=none did="as it is" far="" near="" shares=""
-    if "$asperity" bake "$folder/$name" "${options[@]}" > "$report" 2> /dev/null; then
-      rm -f "$refused"
-    else
+    rm -f "$refused"
+    if ! "$asperity" bake "$folder/$name" --strict "${options[@]}" > "$report" 2> /dev/null; then
       mv "$report" "$refused"
       fault=$(real_mesh_fault "$refused")
-      if ! "$asperity" bake "$folder/$name" --wrap "${options[@]}" > "$report" 2> /dev/null; then
+      if "$asperity" bake "$folder/$name" "${options[@]}" > "$report" 2> /dev/null; then
+        did="repaired: $(real_mesh_actions "$report")"
+        shares="$(real_mesh_percent "$(real_mesh_value "$report" repair made_up_share)"),"
+      elif "$asperity" bake "$folder/$name" --wrap "${options[@]}" > "$report" 2> /dev/null; then
+        local plates
+        did="wrapped, cells of $(real_mesh_um "$(real_mesh_value "$report" wrap cell)") um"
+        plates=$(real_mesh_value "$report" wrap plate_share)
+        [[ $plates == 0.0 ]] || did+=", $(real_mesh_percent "$plates") % plates"
+        far=wrapped
+      else
         bad=$(sed -n 's/.*"message": "\(.*\)".*/\1/p' "$report")
         echo "| $name | | ${fault:-?} | refused: $bad | | | | | |" >> "$table"
         continue
       fi
-      did="wrapped, cells of $(real_mesh_um "$(real_mesh_value "$report" wrap cell)") um"
-      local plates
-      plates=$(real_mesh_value "$report" wrap plate_share)
-      [[ $plates == 0.0 ]] || did+=", $(real_mesh_percent "$plates") % plates"
-      far=wrapped
     fi
     local rms max seconds triangles
     rms=$(real_mesh_um "$(real_mesh_value "$report" bake rms_error)")
