@@ -10,7 +10,7 @@ endif()
 file(MAKE_DIRECTORY ${DIR})
 
 # The meshes have no unit: these scales make each of them 16 cm from corner to corner.
-foreach(_mesh "igea.ply 1.0230267" "rocker-arm.obj 0.13733901" "stanford-bunny.obj 0.63936925 --close-holes")
+foreach(_mesh "igea.ply 1.0230267" "rocker-arm.obj 0.13733901" "stanford-bunny.obj 0.63936925")
   separate_arguments(_mesh)
   list(POP_FRONT _mesh _file _scale)
   cmake_path(GET _file STEM _name)

@@ -9,6 +9,7 @@
 #include "file_formats.hpp"
 #include "fuzz_runs.hpp"
 #include "gltf_mutator.hpp"
+#include "mesh_builder.hpp"
 #include "mesh_mutator.hpp"
 #include "support/extent.hpp"
 #include "survival.hpp"
@@ -58,7 +59,12 @@ TEST(Fuzz, PlainMeshes) {
   const std::vector<mesh_format> formats{
       {"ascii PLY", good_ascii_ply(), std::string::npos, io::read_ply, 15},
       {"binary PLY", binary_ply, ply_text, io::read_ply, 15},
-      {"OBJ", good_obj(), std::string::npos, io::read_obj, 8},
+      {"OBJ", good_obj(), std::string::npos,
+       [](std::string_view bytes, const std::filesystem::path& file, io::reading_watch watch) {
+         io::part_list parts;
+         return io::read_obj(bytes, file, watch, &parts);
+       },
+       8},
       {"ascii STL", good_ascii_stl(), std::string::npos, io::read_stl, 8},
       {"binary STL", good_binary_stl(), 0, io::read_stl, 3},
   };

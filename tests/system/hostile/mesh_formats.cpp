@@ -7,6 +7,7 @@
 
 #include "attacks.hpp"
 #include "file_formats.hpp"
+#include "mesh_builder.hpp"
 
 namespace asperity::hostile {
 namespace {
@@ -131,17 +132,27 @@ std::string gltf_file(const triangle_mesh& mesh) {
   return made.document.dump(1);
 }
 
+// With the names of their parts, as a bake with --split reads them.
+result<triangle_mesh> read_obj(std::string_view bytes, const std::filesystem::path& file, io::reading_watch watch) {
+  io::part_list parts;
+  return io::read_obj(bytes, file, watch, &parts);
+}
+result<triangle_mesh> read_gltf(std::string_view bytes, const std::filesystem::path& file, io::reading_watch watch) {
+  io::part_list parts;
+  return io::read_gltf(bytes, file, watch, &parts);
+}
+
 }  // namespace
 
 const std::array<mesh_format, 7>& mesh_formats() {
   static const std::array<mesh_format, 7> all{{
       {"ascii PLY", ".ply", ascii_ply, io::read_ply, true, true},
       {"binary PLY", ".ply", binary_ply, io::read_ply, true, false},
-      {"OBJ", ".obj", obj, io::read_obj, true, true},
+      {"OBJ", ".obj", obj, read_obj, true, true},
       {"ascii STL", ".stl", ascii_stl, io::read_stl, false, true},
       {"binary STL", ".stl", binary_stl, io::read_stl, false, false},
-      {"glTF", ".gltf", gltf_file, io::read_gltf, true, true},
-      {"GLB", ".glb", glb_file, io::read_gltf, true, false},
+      {"glTF", ".gltf", gltf_file, read_gltf, true, true},
+      {"GLB", ".glb", glb_file, read_gltf, true, false},
   }};
   return all;
 }
