@@ -156,7 +156,8 @@ class sorter {
       sum[net.component[p.triangle]] += a * std::clamp(inner[p.place], 0.0, 1.0);
     }
     std::vector<char> sheet(mesh_.triangles.size());
-    for (std::size_t t = 0; t < sheet.size(); ++t) sheet[t] = sum[net.component[t]] < sheet_winding * area[net.component[t]] ? 1 : 0;
+    for (std::size_t t = 0; t < sheet.size(); ++t)
+      sheet[t] = sum[net.component[t]] < sheet_winding * area[net.component[t]] ? 1 : 0;
     return sheet;
   }
 

@@ -54,7 +54,7 @@ struct free_bodies_settings {
   /// from sample to sample, and a soft bristle takes up too slowly what it gave up. With 50 N/mm blocks of 4 to 10 kg were
   /// held back by up to a tenth too little.
   friction_settings friction{.stiffness_n_per_m = 1e6};
-  double linear_damping_per_s = 0.1;       ///< a body alone loses this share of its speed
+  double linear_damping_per_s = 0.1;  ///< a body alone loses this share of its speed
   double angular_damping_per_s = 0.1;
   /// Bodies that touch each other and are all slower than this for sleep_after_s stand still until something awake
   /// touches one of them. The turning counts by the body's radius.
