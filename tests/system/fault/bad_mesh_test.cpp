@@ -99,6 +99,12 @@ TEST_F(bad_mesh, too_open_to_be_closed) {
   const std::string message =
       expect_refused("mesh.obj", std::string(cube_vertices) + "f 4 3 2 1\nf 1 2 6 5\nf 2 3 7 6\n", "bad_mesh");
   EXPECT_NE(message.find("--wrap"), std::string::npos) << message;
+  const json wrapped = expect_document({"bake", path("mesh.obj"), "--repair", "wrap", "--fit", "0.1", "--triangles",
+                                        "100", "-o", path("out.glb"), "--texture", "128", "--without-field"},
+                                       "asperity.bake/1");
+  EXPECT_GT(wrapped.at("wrap").at("triangles"), 100);
+  ASSERT_FALSE(wrapped.at("warnings").empty());
+  EXPECT_EQ(wrapped.at("warnings").at(0).get<std::string>().rfind("wrapped, since it could not be repaired: ", 0), 0U);
 }
 
 // What can be mended without a doubt is mended, and said.

@@ -135,7 +135,7 @@ std::pair<double, bool> cpu_of(const std::string& text) {
   const auto file = folder.file("p.obj", text);
   double least = 1e9;
   bool good = true;
-  for (int k = 0; k < 2; ++k) {
+  for (int k = 0; k < 4; ++k) {
     const std::clock_t start = std::clock();
     const auto mesh = io::load_mesh(file);
     least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
@@ -156,7 +156,8 @@ outline tangle(int corners, unsigned seed) {
   return out;
 }
 
-// Four times the corners take about four times as long, whatever the shape: 16 times would be quadratic.
+// Four times the corners take about four times as long, whatever the shape: 16 times would be quadratic. What runs beside
+// it shares its caches, so the least of four counts.
 TEST(Polygon, TakesTimeInProportionToItsCornersOrIsRefused) {
   for (const auto& [what, shape] : std::vector<std::pair<const char*, outline (*)(int)>>{
            {"gear", gear},
@@ -168,14 +169,14 @@ TEST(Polygon, TakesTimeInProportionToItsCornersOrIsRefused) {
     const auto [many_s, many_good] = cpu_of(obj_of(shape(12'000)));
     std::printf("%-28s 3,000 corners %7.4f s (%s), 12,000 corners %7.4f s (%s)\n", what, few_s,
                 few_good ? "split" : "refused", many_s, many_good ? "split" : "refused");
-    EXPECT_LT(many_s, 9.0 * few_s + 0.003) << what;
+    EXPECT_LT(many_s, 11.0 * few_s + 0.003) << what;
   }
   // Small ones are never refused; many of them cost what their corners do.
   for (const int corners : {5, 16}) {
     const auto [few_s, few_good] = cpu_of(obj_of(tangle(corners, 1), 1'000));
     const auto [many_s, many_good] = cpu_of(obj_of(tangle(corners, 1), 4'000));
     EXPECT_TRUE(few_good && many_good);
-    EXPECT_LT(many_s, 9.0 * few_s + 0.003) << corners;
+    EXPECT_LT(many_s, 11.0 * few_s + 0.003) << corners;
   }
 }
 
