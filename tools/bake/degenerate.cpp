@@ -69,8 +69,10 @@ bool split_caps(triangle_mesh& mesh, const std::vector<bool>& flat, repair_repor
     const std::uint32_t k = middle_corner(mesh, t);
     const index_triangle v = mesh.triangles[t];
     const auto [low, high] = std::minmax({v[(k + 1) % 3], v[(k + 2) % 3]});
-    const auto uses = std::ranges::equal_range(edges, std::pair(low, high), {},
-                                               [](const edge_use& e) { return std::pair(e.low, e.high); });
+    const auto ends = [](const edge_use& e) { return std::pair(e.low, e.high); };
+    const std::pair edge(low, high);
+    const std::span<const edge_use> uses(std::ranges::lower_bound(edges, edge, {}, ends),
+                                         std::ranges::upper_bound(edges, edge, {}, ends));
     if (std::ranges::any_of(uses, [&](const edge_use& e) { return used[e.halfedge / 3]; })) continue;
     const vec3 a = mesh.positions[low];
     const vec3 d = mesh.positions[high] - a;

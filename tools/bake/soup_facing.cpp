@@ -118,7 +118,7 @@ std::size_t drop_useless_triangles(triangle_mesh& mesh) {
     const double longest = std::max({glm::length(c[1] - c[0]), glm::length(c[2] - c[1]), glm::length(c[0] - c[2])});
     return !(glm::length(area_normal(c)) > longest * reach * 1e-15);
   });
-  for (index_triangle& t : mesh.triangles) std::ranges::rotate(t, std::ranges::min_element(t));
+  for (index_triangle& t : mesh.triangles) std::rotate(t.begin(), std::ranges::min_element(t), t.end());
   std::vector<std::uint32_t> order(mesh.triangles.size());
   for (std::uint32_t t = 0; t < order.size(); ++t) order[t] = t;
   std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) {

@@ -29,8 +29,7 @@ std::vector<std::uint32_t> border_vertices(const triangle_mesh& mesh) {
     out.push_back(origin_of(mesh.triangles, next_halfedge(h)));
   }
   std::ranges::sort(out);
-  const auto rest = std::ranges::unique(out);
-  out.erase(rest.begin(), rest.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
