@@ -1,6 +1,8 @@
 // Triangles without area, and the T-junctions that they hide.
 #include <algorithm>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "bake/edge_table.hpp"
 #include "bake/repair_steps.hpp"
