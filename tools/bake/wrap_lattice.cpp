@@ -76,7 +76,7 @@ class node_store {
   [[nodiscard]] static lattice_point point_in_block(std::uint64_t key, std::uint32_t node) noexcept {
     const std::uint32_t odd = node >> 9U;
     const auto at = [&](std::uint64_t block, std::uint32_t cell) {
-      return static_cast<std::int32_t>(block * block_units + 2 * cell + odd);
+      return static_cast<std::int32_t>(block * block_units + 2 * std::uint64_t{cell} + odd);
     };
     return {at(key & 0xffffU, node & 7U), at(key >> 16U & 0xffffU, node >> 3U & 7U), at(key >> 32U, node >> 6U & 7U)};
   }
@@ -181,11 +181,11 @@ std::vector<cut_edge> number_cuts(node_store& store, const std::vector<std::uint
       block.first_cut[node] = static_cast<std::uint32_t>(cuts.size());
       const lattice_point p = node_store::point_in_block(store.key(b), node);
       const bool inside = block.value[node] >= 0.0F;
-      for (std::uint8_t kind = 0; kind < edge_steps.size(); ++kind) {
+      for (std::size_t kind = 0; kind < edge_steps.size(); ++kind) {
         const place other = store.find(p + edge_steps[kind]);
         if (other.block == no_block || store.inside(other) == inside) continue;
         block.cuts[node] = static_cast<std::uint8_t>(block.cuts[node] | 1U << kind);
-        cuts.push_back({p, kind});
+        cuts.push_back({p, static_cast<std::uint8_t>(kind)});
       }
     }
     if (cuts.size() > most_vertices) break;

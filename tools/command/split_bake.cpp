@@ -64,8 +64,8 @@ std::vector<std::string> files_of_parts(const std::vector<io::mesh_part>& parts,
 result<answer> bake_parts(const std::string& source, const std::vector<std::string>& files,
                           const std::function<result<answer>(std::size_t, const std::string&)>& bake_part) {
   std::vector<std::string> names;
-  for (std::size_t k = 0; k < files.size(); ++k) {
-    const std::filesystem::path path(files[k]);
+  for (const std::string& file : files) {
+    const std::filesystem::path path(file);
     names.push_back(
         (path.parent_path() / ("." + path.stem().string() + "." + std::to_string(getpid()) + ".glb")).string());
   }
