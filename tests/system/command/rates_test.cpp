@@ -12,6 +12,7 @@
 #include "render_choice.hpp"
 #include "session.hpp"
 #include "support/fresh_seed.hpp"
+#include "support/sanitizers.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/analytic_wall.hpp"
 
@@ -161,6 +162,7 @@ TEST(rate_check, judges_by_the_99th_percentile) {
 
 // A look at the speed before a session leaves no trace in it.
 TEST(rate_check, changes_no_bit_of_the_session) {
+  if (ASPERITY_THREAD_SANITIZER) GTEST_SKIP() << "it has one thread: the other builds run it";
   using test_support::make_textured_box;
   const auto cube = std::make_shared<const textured_model>(
       make_textured_box({0.006, 0.006, 0.006}, 48, test_support::ridges(0.0002, 0.003)));
