@@ -61,18 +61,7 @@ std::optional<error> check_numbers(const triangle_mesh& mesh, std::string_view w
 // The mesh without unused vertices, and without texture coordinates that are not there for all triangles, in place.
 void compact(triangle_mesh& mesh) {
   if (mesh.uvs.size() != mesh.triangles.size()) mesh.uvs = {};
-  std::vector<std::uint32_t> number(mesh.positions.size(), no_halfedge);
-  for (const index_triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) number[v] = 0;
-  std::uint32_t used = 0;
-  for (std::size_t v = 0; v < number.size(); ++v)
-    if (number[v] == 0) {
-      mesh.positions[used] = mesh.positions[v];
-      number[v] = used++;
-    }
-  mesh.positions.resize(used);
-  for (index_triangle& t : mesh.triangles)
-    for (std::uint32_t& v : t) v = number[v];
+  drop_unused_vertices(mesh);
 }
 
 std::optional<error> check_size(const triangle_mesh& mesh, std::string_view what) {

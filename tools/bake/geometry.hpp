@@ -5,12 +5,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "asperity/core/float32.hpp"
 #include "asperity/core/math.hpp"
 #include "asperity/model/textured_model.hpp"
+#include "asperity/model/triangle_mesh.hpp"
 #include "bake/halfedges.hpp"
 
 namespace asperity::bake {
@@ -66,6 +68,37 @@ inline constexpr double no_length_per_reach = 2e-15;
   }
   for (vec3& n : normals) n = normalised(n);
   return normals;
+}
+
+/// Removes the vertices that no triangle uses; the others keep their order. @pre indices in range
+inline void drop_unused_vertices(triangle_mesh& mesh) {
+  std::vector<std::uint32_t> number(mesh.positions.size(), no_halfedge);
+  for (const index_triangle& t : mesh.triangles)
+    for (const std::uint32_t v : t) number[v] = 0;
+  std::uint32_t used = 0;
+  for (std::size_t v = 0; v < number.size(); ++v) {
+    if (number[v] == no_halfedge) continue;
+    mesh.positions[used] = mesh.positions[v];
+    number[v] = used++;
+  }
+  mesh.positions.resize(used);
+  for (index_triangle& t : mesh.triangles)
+    for (std::uint32_t& v : t) v = number[v];
+}
+
+/// Shortest edge at each vertex that has a length, m; infinite at a vertex without one.
+[[nodiscard]] inline std::vector<double> shortest_edges(const triangle_mesh& mesh) {
+  std::vector<double> out(mesh.positions.size(), std::numeric_limits<double>::infinity());
+  for (const index_triangle& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t a = t[k];
+      const std::uint32_t b = t[(k + 1) % 3];
+      const double length = glm::length(mesh.positions[a] - mesh.positions[b]);
+      if (!(length > 0.0)) continue;
+      out[a] = std::min(out[a], length);
+      out[b] = std::min(out[b], length);
+    }
+  return out;
 }
 
 }  // namespace asperity::bake

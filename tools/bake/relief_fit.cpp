@@ -66,19 +66,6 @@ std::vector<double> mean_offsets(const triangle_mesh& coarse, const std::vector<
   return sum;
 }
 
-std::vector<double> shortest_edges(const triangle_mesh& mesh) {
-  std::vector<double> out(mesh.positions.size(), std::numeric_limits<double>::infinity());
-  for (const index_triangle& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k];
-      const std::uint32_t b = t[(k + 1) % 3];
-      const double length = glm::length(mesh.positions[a] - mesh.positions[b]);
-      out[a] = std::min(out[a], length);
-      out[b] = std::min(out[b], length);
-    }
-  return out;
-}
-
 }  // namespace
 
 void fit_to_relief(triangle_mesh& coarse, const triangle_bvh& full, double range_m, unsigned threads,

@@ -117,22 +117,6 @@ bool is_readable(const triangle_mesh& mesh) {
   return true;
 }
 
-/// Vertices that no triangle uses have no say in size and place.
-void drop_unused_vertices(triangle_mesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.positions.size(), no_halfedge);
-  for (const index_triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) number[v] = 0;
-  std::uint32_t used = 0;
-  for (std::size_t v = 0; v < number.size(); ++v)
-    if (number[v] == 0) {
-      mesh.positions[used] = mesh.positions[v];
-      number[v] = used++;
-    }
-  mesh.positions.resize(used);
-  for (index_triangle& t : mesh.triangles)
-    for (std::uint32_t& v : t) v = number[v];
-}
-
 struct faults {
   bool flat = false;  // a triangle without area
   connectivity net;
@@ -213,10 +197,10 @@ result<repair_report> repair(triangle_mesh& given, const repair_settings& settin
   if (mesh.uvs.size() != mesh.triangles.size()) mesh.uvs.clear();
   drop_unused_vertices(mesh);
   if (!(bounds_of(mesh.positions).diagonal() > 0.0)) return report;
-  if (!faults_of(mesh).winding_only()) {
+  if (const faults found = faults_of(mesh); !found.winding_only()) {
     if (const result<void> ok = make_closed_manifold(mesh, settings, report); !ok) return ok.error();
     drop_unused_vertices(mesh);
-  } else if (!faults_of(mesh).net.closed_manifold()) {
+  } else if (!found.net.closed_manifold()) {
     return report;  // check turns triangles that wind against their neighbours
   }
   report.made_up_share = report.area_added_m2 / area_of(mesh);

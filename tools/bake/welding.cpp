@@ -63,20 +63,6 @@ void weld_equal(triangle_mesh& mesh, repair_report& report) {
   rename(mesh, became, report);
 }
 
-std::vector<double> shortest_edges(const triangle_mesh& mesh) {
-  std::vector<double> out(mesh.positions.size(), std::numeric_limits<double>::infinity());
-  for (const index_triangle& t : mesh.triangles)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[k];
-      const std::uint32_t b = t[(k + 1) % 3];
-      const double length = glm::length(mesh.positions[a] - mesh.positions[b]);
-      if (!(length > 0.0)) continue;
-      out[a] = std::min(out[a], length);
-      out[b] = std::min(out[b], length);
-    }
-  return out;
-}
-
 constexpr double weld_per_edge = 0.4;       // no edge loses both its ends to one vertex
 constexpr std::size_t most_looked_at = 64;  // of one cell: bounds the work where much lies in little room
 

@@ -29,9 +29,9 @@ class winding_field {
     std::array<float, 3> centre{};
     float reach2 = 0.0F;            // square of the distance from which on they may be used
     std::array<float, 3> area{};    // sum of n
-    std::array<float, 6> first{};   // r' (sum of d n') r: xx yy zz xy xz yz
+    std::array<float, 6> first{};   // r' (sum of d n') r: x^2 y^2 z^2, xy, xz, yz
     std::array<float, 3> linear{};  // sum of 2 d (d.n) + d.d n
-    std::array<float, 10> cubic{};  // sum of (r.d)^2 (r.n): xxx yyy zzz xxy xxz yyx yyz zzx zzy xyz
+    std::array<float, 10> cubic{};  // (r.d)^2 (r.n): x^3 y^3 z^3, x^2 y, x^2 z, y^2 x, y^2 z, z^2 x, z^2 y, xyz
   };
 
   const triangle_bvh& tree_;

@@ -87,21 +87,6 @@ void keep_parts(triangle_mesh& mesh, const connectivity& net, const std::vector<
   mesh.triangles.resize(kept);
 }
 
-void drop_unused_vertices(triangle_mesh& mesh) {
-  std::vector<std::uint32_t> number(mesh.positions.size(), no_halfedge);
-  for (const index_triangle& t : mesh.triangles)
-    for (const std::uint32_t v : t) number[v] = 0;
-  std::uint32_t used = 0;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == no_halfedge) continue;
-    mesh.positions[used] = mesh.positions[v];
-    number[v] = used++;
-  }
-  mesh.positions.resize(used);
-  for (index_triangle& t : mesh.triangles)
-    for (std::uint32_t& v : t) v = number[v];
-}
-
 }  // namespace
 
 bool fit_to_original(triangle_mesh& mesh, const triangle_mesh& original, const triangle_bvh& tree, double cell_m,
