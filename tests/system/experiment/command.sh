@@ -20,9 +20,10 @@ grep -q '"schema": *"asperity.experiment/1"' "$work/one.json" || fault "no schem
 grep -q '"pass": *true' "$work/one.json" || fault "no statement in the document"
 [[ -z $(find "$work/one" -name '*.partial*') ]] || fault "something half-written is left"
 
-# interrupt_at PID FILE: interrupts that process as soon as the file is there.
+# interrupt_at PID FILE: interrupts that process as soon as the file is there. A busy machine may take minutes over it, and
+# the process ends by itself where the file never comes.
 interrupt_at() {
-  for ((i = 0; i < 600; ++i)); do
+  for ((i = 0; i < 9000; ++i)); do
     [[ -e $2 ]] && break
     kill -0 "$1" 2> /dev/null || break
     sleep 0.1
