@@ -33,7 +33,7 @@ constexpr std::size_t stack_bytes = std::size_t{512} << 10U;
 
 // Nothing is asked of anybody else, nothing runs but the page's own files, and nobody may put the page into theirs.
 constexpr const char* headers =
-    "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
+    "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; "
     "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'\r\n"
     "X-Content-Type-Options: nosniff\r\n"
     "Referrer-Policy: no-referrer\r\n"

@@ -10,7 +10,7 @@
 namespace asperity::view {
 
 /// Points of all bodies of a scene together that a page is sent, at the most: about twice as many triangles.
-inline constexpr std::size_t live_points = 300'000;
+inline constexpr std::size_t live_points = 200'000;
 /// The same for a page that is one file.
 inline constexpr std::size_t exported_points = 60'000;
 

@@ -31,7 +31,7 @@
     return [5, 2, 1].map((f) => f * ten).find((v) => v <= x * (1 + 1e-9)) ?? ten;
   };
 
-  const left = 46, bottom = 14;
+  const left = 62, bottom = 14;
 
   function timeAxis(g, width, height, from, to) {
     g.fillStyle = css("--soft");

@@ -209,7 +209,7 @@
       const views = { corner: [-0.9, 0.5], front: [-Math.PI / 2, 0], side: [0, 0], top: [-Math.PI / 2, Math.PI / 2 - 1e-3] };
       [this.camera.yaw, this.camera.pitch] = views[name] ?? [-0.9, 0.25];
       this.camera.at = name === "touch" && touch !== null ? touch : times(0.5, add(box.low, box.high));
-      this.camera.distance = (name === "touch" ? 0.5 : 1.45) * box.size;
+      this.camera.distance = (name === "touch" ? 0.6 : 1.7) * box.size;
       this.asked = true;
     }
 
@@ -359,12 +359,12 @@
       const gl = this.gl, size = this.size;
       const shown = s.shown;
       // Arrows and the hand are what people look for: they are seen through bodies, faintly.
-      const both = (paint) => {
+      const both = (paint, hidden = 0.28) => {
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
         gl.depthFunc(gl.GREATER);
         gl.depthMask(false);
-        paint(0.28);
+        paint(hidden);
         gl.depthMask(true);
         gl.depthFunc(gl.LEQUAL);
         paint(1);
@@ -375,16 +375,18 @@
         both((strength) => {
           for (const c of s.contacts) {
             const heat = Math.max(0, Math.min(1, 0.5 + c.depth / 2e-4));
-            const tint = c.depth > 0 ? [0.85, 0.25 + 0.4 * (1 - heat), 0.1, strength] : [0.25, 0.5, 0.8, 0.55 * strength];
+            // A gap is small and blue; what presses is large, the deeper the redder.
+            const touches = c.depth > 0;
+            const tint = touches ? [0.85, 0.25 + 0.4 * (1 - heat), 0.1, strength] : [0.15, 0.42, 0.75, 0.5 * strength];
             const out = times(-0.0015 * size, c.n);
-            this.shape("ball", poseMatrix(c.p, [0, 0, 0, 1], 0.0045 * size), tint);
-            if (shown.planes) {
+            this.shape("ball", poseMatrix(c.p, [0, 0, 0, 1], (touches ? 0.006 : 0.003) * size), tint);
+            if (shown.planes && touches) {
               const radius = Math.max(0.012 * size, Math.min(0.1 * size, c.spread));
               this.shape("disc", along(add(c.p, out), c.n, radius), [...tint.slice(0, 3), 0.3 * strength]);
               this.shape("rod", along(c.p, times(-0.05 * size, c.n), 0.0014 * size), tint);
             }
           }
-        });
+        }, 0.15);
       }
       both((strength) => {
         const hand = s.target.centre, probe = s.probe.centre;
