@@ -299,30 +299,30 @@ result<answer> run_session(const run_command& options, const common_options& com
     page.emplace(std::move(opened).value());
     complain("note: the page is at " + page->url());
   }
-  result<session_outcome> ended = run_session(
-      {.feel = page ? page->around(std::move(feel).value()) : std::move(feel).value(),
-       .placement = {poses->T_wb, shape.centre_of_mass},
-       .device = std::move(device),
-       .control = control,
-       .moves = std::move(moves),
-       .clock = clock_of(options) == "real" ? session_clock::real_time : session_clock::virtual_time,
-       .seconds =
-           options.seconds.value_or(felt.replay ? felt.replay->seconds(periods_of(options).device_ns) : seconds_of(options)),
-       .periods = periods_of(options),
-       .ticks = felt.replay ? std::optional(felt.replay->ticks()) : std::nullopt,
-       .on_tick = [&](const session_record& tick) -> result<void> {
-         found.summary.add(tick);
-         if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
-         return files->add(tick);
-       },
-       .on_start =
-           [&](const real_time_grants& got) {
-             if (!common.quiet) complain("note: real time: " + to_text(got));
-           },
-       .guard = guard ? &*guard : nullptr,
-       .rescue = &rescue,
-       .watch = page ? std::optional(page->watch()) : std::nullopt},
-      progress);
+  result<session_outcome> ended =
+      run_session({.feel = page ? page->around(std::move(feel).value()) : std::move(feel).value(),
+                   .placement = {poses->T_wb, shape.centre_of_mass},
+                   .device = std::move(device),
+                   .control = control,
+                   .moves = std::move(moves),
+                   .clock = clock_of(options) == "real" ? session_clock::real_time : session_clock::virtual_time,
+                   .seconds = options.seconds.value_or(felt.replay ? felt.replay->seconds(periods_of(options).device_ns)
+                                                                   : seconds_of(options)),
+                   .periods = periods_of(options),
+                   .ticks = felt.replay ? std::optional(felt.replay->ticks()) : std::nullopt,
+                   .on_tick = [&](const session_record& tick) -> result<void> {
+                     found.summary.add(tick);
+                     if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
+                     return files->add(tick);
+                   },
+                   .on_start =
+                       [&](const real_time_grants& got) {
+                         if (!common.quiet) complain("note: real time: " + to_text(got));
+                       },
+                   .guard = guard ? &*guard : nullptr,
+                   .rescue = &rescue,
+                   .watch = page ? std::optional(page->watch()) : std::nullopt},
+                  progress);
   page.reset();
   if (!ended) return ended.error();
   if (felt.replay) found.replay = felt.replay->outcome();
@@ -438,8 +438,9 @@ void add_run(command_line& line) {
             return extension_error(text, {".png", ".svg"});
           },
           "FILE");
-  sub.add_option("--view", o->view,
-                 "Show the session on a page of a browser, at this port or 8765; the session then lasts 600 s by default")
+  sub.add_option(
+         "--view", o->view,
+         "Show the session on a page of a browser, at this port or 8765; the session then lasts 600 s by default")
       ->expected(0, 1)
       ->type_name("[PORT]");
   sub.add_option("--view-address", o->view_address,

@@ -1,5 +1,5 @@
-#include <cstdint>
 #include <cstddef>
+#include <cstdint>
 
 #include "view/page_files.hpp"
 
@@ -40,7 +40,8 @@ void replace(std::string& in, std::string_view what, std::string_view by) {
 }
 
 std::string data_element(std::string_view id, std::string_view type, std::string_view text) {
-  return "<script type=\"" + std::string(type) + "\" id=\"" + std::string(id) + "\">" + std::string(text) + "</script>\n";
+  return "<script type=\"" + std::string(type) + "\" id=\"" + std::string(id) + "\">" + std::string(text) +
+         "</script>\n";
 }
 
 }  // namespace

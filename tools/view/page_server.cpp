@@ -154,11 +154,15 @@ struct page_server::inside {
     const std::string_view method = asked.request_method == nullptr ? "" : asked.request_method;
     const std::string_view query = asked.query_string == nullptr ? "" : asked.query_string;
     if (!comes_from_its_own_page(to)) return refuse(to, 403, "this page is for the address that it was opened at");
+    // No address of the page has an escape, and one could end a name early.
+    const std::string_view as_sent = asked.request_uri == nullptr ? "" : asked.request_uri;
+    if (as_sent.find('%') != std::string_view::npos) return refuse(to, 404, "there is no such page");
     // A body would have to be read to keep the connection, and nothing here has one.
     if (asked.content_length > 0 || !header_of(to, "Transfer-Encoding").empty()) {
       return refuse(to, 400, "a request has no body here");
     }
-    if (method == "POST") return may_look(to) ? command(to, path, query) : refuse(to, 403, "the token is missing or wrong");
+    if (method == "POST")
+      return may_look(to) ? command(to, path, query) : refuse(to, 403, "the token is missing or wrong");
     if (method != "GET") return refuse(to, 405, "GET, or POST to /do");
     for (const page_file& f : page_files()) {
       if (path == f.path) return answer(to, 200, f.type, f.bytes);
@@ -232,8 +236,8 @@ struct page_server::inside {
     append_rows(out, rows_now);
     const auto put = [&](double x) { append(out, static_cast<float>(x)); };
     for (const shown_contact& c : touched.list) {
-      for (const double x : {c.point_w.x, c.point_w.y, c.point_w.z, c.n_ab_w.x, c.n_ab_w.y, c.n_ab_w.z, c.depth_m,
-                             c.spread_m}) {
+      for (const double x :
+           {c.point_w.x, c.point_w.y, c.point_w.z, c.n_ab_w.x, c.n_ab_w.y, c.n_ab_w.z, c.depth_m, c.spread_m}) {
         put(x);
       }
     }
@@ -246,7 +250,8 @@ struct page_server::inside {
 
   int command(mg_connection* to, std::string_view path, std::string_view query) {
     // A header of its own: a form of somebody else's page cannot send one.
-    if (path != "/do" || header_of(to, "X-Asperity").empty()) return refuse(to, 404, "POST is for /do, with X-Asperity");
+    if (path != "/do" || header_of(to, "X-Asperity").empty())
+      return refuse(to, 404, "POST is for /do, with X-Asperity");
     if (live == nullptr) return refuse(to, 404, "there is no session to pause");
     if (query == "pause" || query == "resume") {
       live->forget_steps();
@@ -286,7 +291,8 @@ bool same_token(std::string_view given, std::string_view token) noexcept {
 }
 
 bool is_loopback(std::string_view address) noexcept {
-  return address == "::1" || (address.starts_with("127.") && address.find_first_not_of("0123456789.") == std::string_view::npos);
+  return address == "::1" ||
+         (address.starts_with("127.") && address.find_first_not_of("0123456789.") == std::string_view::npos);
 }
 
 result<page_server> page_server::start(const server_settings& settings, page_content content, feed* live) {
@@ -305,9 +311,9 @@ result<page_server> page_server::start(const server_settings& settings, page_con
   const std::array<const char*, 21> options{"listening_ports", listen.c_str(), "num_threads", threads.c_str(),
                                             // What a client may take to say what it wants, and to read the answer.
                                             "request_timeout_ms", "2000", "keep_alive_timeout_ms", "1000",
-                                            "enable_keep_alive", "yes", "max_request_size", "4096",
-                                            "tcp_nodelay", "1", "enable_directory_listing", "no",
-                                            "linger_timeout_ms", "0", "decode_url", "yes", nullptr};
+                                            "enable_keep_alive", "yes", "max_request_size", "4096", "tcp_nodelay", "1",
+                                            "enable_directory_listing", "no", "linger_timeout_ms", "0", "decode_url",
+                                            "yes", nullptr};
   mg_callbacks callbacks{};
   // Every request ends here: nothing of the server's own, which would read files, is reached.
   callbacks.begin_request = [](mg_connection* to) {

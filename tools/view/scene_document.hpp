@@ -27,16 +27,16 @@ struct page_scene {
   std::string title;
   std::vector<shown_body> bodies;
   workspace_map map{};
-  bool virtual_clock = false;      ///< pages may pause a live session
-  double device_period_s = 1e-3;   ///< a tick that takes longer is late
-  double most_force_n = 0.0;       ///< of the device; 0: not known
+  bool virtual_clock = false;     ///< pages may pause a live session
+  double device_period_s = 1e-3;  ///< a tick that takes longer is late
+  double most_force_n = 0.0;      ///< of the device; 0: not known
 };
 
 /// Everything of a page that does not change while it is open.
 struct page_content {
-  std::string document;               ///< JSON, see scene_document.cpp
-  std::vector<std::string> meshes;    ///< one for each body, see shown_mesh
-  std::vector<trace_row> rows;        ///< of a replay
+  std::string document;             ///< JSON, see scene_document.cpp
+  std::vector<std::string> meshes;  ///< one for each body, see shown_mesh
+  std::vector<trace_row> rows;      ///< of a replay
 };
 
 /// @param most_points of all bodies together

@@ -48,7 +48,8 @@ shown_mesh show_mesh(const textured_model& model, std::size_t most_points) {
   constexpr double coarser = 1.25;
   constexpr int most_tries = 24;
   shown_mesh out;
-  picture::fine_surface surface = picture::sample_fine_surface(model, out.step_m = std::sqrt(area_m2(model.mesh) / static_cast<double>(most_points)));
+  picture::fine_surface surface = picture::sample_fine_surface(
+      model, out.step_m = std::sqrt(area_m2(model.mesh) / static_cast<double>(most_points)));
   // Each patch rounds up: with many small ones there are more points than the area says.
   for (int i = 0; i < most_tries && surface.points.size() > most_points; ++i) {
     out.step_m *= coarser;

@@ -22,8 +22,8 @@ struct shown_mesh {
   std::string bytes;
   std::size_t points = 0;
   std::size_t triangles = 0;
-  double step_m = 0.0;   ///< least distance of the points; 0 where each texel has one
-  double low_m = 0.0;    ///< relief over the coarse mesh, the range of the colours
+  double step_m = 0.0;  ///< least distance of the points; 0 where each texel has one
+  double low_m = 0.0;   ///< relief over the coarse mesh, the range of the colours
   double high_m = 0.0;
 };
 

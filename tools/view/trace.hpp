@@ -14,14 +14,19 @@
 namespace asperity::view {
 
 /// Columns of a row, in their order, SI. A page finds a column by its name; see scene_document().
-inline constexpr std::array trace_columns{
-    "probe_x", "probe_y", "probe_z", "probe_qx", "probe_qy", "probe_qz", "probe_qw",         // T_wa
-    "target_x", "target_y", "target_z", "target_qx", "target_qy", "target_qz", "target_qw",  // T_wa_target
-    "contact_fx", "contact_fy", "contact_fz", "contact_tx", "contact_ty", "contact_tz",      // on_probe_w
-    "hand_fx", "hand_fy", "hand_fz", "hand_tx", "hand_ty", "hand_tz",                        // on_hand_d
-    "depth", "contacts", "planes", "overlap", "contact_age", "delivered", "surplus", "guard_alpha", "guard_scale",
-    "rate_scale", "clutch", "took",                                           // took: seconds of the tick, or below 0
-    "sample", "flags", "contact_status", "probe_status", "device", "fault"};  // numbers of the enumerations
+inline constexpr std::array trace_columns{"probe_x",    "probe_y",    "probe_z",        "probe_qx",     "probe_qy",
+                                          "probe_qz",   "probe_qw",  // T_wa
+                                          "target_x",   "target_y",   "target_z",       "target_qx",    "target_qy",
+                                          "target_qz",  "target_qw",  // T_wa_target
+                                          "contact_fx", "contact_fy", "contact_fz",     "contact_tx",   "contact_ty",
+                                          "contact_tz",  // on_probe_w
+                                          "hand_fx",    "hand_fy",    "hand_fz",        "hand_tx",      "hand_ty",
+                                          "hand_tz",  // on_hand_d
+                                          "depth",      "contacts",   "planes",         "overlap",      "contact_age",
+                                          "delivered",  "surplus",    "guard_alpha",    "guard_scale",  "rate_scale",
+                                          "clutch",     "took",  // took: seconds of the tick, or below 0
+                                          "sample",     "flags",      "contact_status", "probe_status", "device",
+                                          "fault"};  // numbers of the enumerations
 inline constexpr std::size_t trace_width = trace_columns.size();
 static_assert(trace_width % 2 == 0, "a row is a whole number of 64-bit words");
 
