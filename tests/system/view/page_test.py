@@ -112,13 +112,15 @@ class Page(unittest.TestCase):
             b.key("ArrowRight")
             self.assertNotEqual(b.value("asperity.page.scene.camera.yaw"), before)
         finally:
+            b.open("about:blank")  # so that it does not complain about the server's end
             served.end()
 
     def test_replay_shows_the_row_of_its_time(self):
         b = self.browser
         recording = PICTURES / "recording.csv"
         subprocess.run([EXE, "run", *models("--seconds", "2", "--quiet", "--record", str(recording))], check=True)
-        rows = list(csv.DictReader(recording.open()))
+        with recording.open() as table:
+            rows = list(csv.DictReader(table))
         served = Served("view", str(recording), *models("--port", "0"))
         try:
             b.open(served.url)
@@ -135,6 +137,7 @@ class Page(unittest.TestCase):
                     self.assertAlmostEqual(one, other, delta=1e-6 + 1e-5 * abs(other))
             b.picture(PICTURES / "replay.png")
         finally:
+            b.open("about:blank")  # so that it does not complain about the server's end
             served.end()
 
     def test_exported_pages_open_alone(self):
