@@ -154,9 +154,6 @@ struct page_server::inside {
     const std::string_view method = asked.request_method == nullptr ? "" : asked.request_method;
     const std::string_view query = asked.query_string == nullptr ? "" : asked.query_string;
     if (!comes_from_its_own_page(to)) return refuse(to, 403, "this page is for the address that it was opened at");
-    // No address of the page has an escape, and one could end a name early.
-    const std::string_view as_sent = asked.request_uri == nullptr ? "" : asked.request_uri;
-    if (as_sent.find('%') != std::string_view::npos) return refuse(to, 404, "there is no such page");
     // A body would have to be read to keep the connection, and nothing here has one.
     if (asked.content_length > 0 || !header_of(to, "Transfer-Encoding").empty()) {
       return refuse(to, 400, "a request has no body here");
@@ -313,7 +310,7 @@ result<page_server> page_server::start(const server_settings& settings, page_con
                                             "request_timeout_ms", "2000", "keep_alive_timeout_ms", "1000",
                                             "enable_keep_alive", "yes", "max_request_size", "4096", "tcp_nodelay", "1",
                                             "enable_directory_listing", "no", "linger_timeout_ms", "0", "decode_url",
-                                            "yes", nullptr};
+                                            "no", nullptr};
   mg_callbacks callbacks{};
   // Every request ends here: nothing of the server's own, which would read files, is reached.
   callbacks.begin_request = [](mg_connection* to) {

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "asperity/core/printable.hpp"
-#include "asperity/version.hpp"
 #include "view/shown_mesh.hpp"
 
 namespace asperity::view {
@@ -64,7 +63,6 @@ page_content make_content(const page_scene& scene, std::vector<trace_row> rows, 
   }
   const json document = {
       {"schema", "asperity.view/1"},
-      {"version", ASPERITY_VERSION_STRING},
       {"mode", to_string(scene.mode)},
       {"title", printable(scene.title)},
       {"virtual_clock", scene.virtual_clock},

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import time
 import unittest
+import warnings
 
 EXE, PROBE, FIXED = sys.argv[1:4]
 SEED = int.from_bytes(os.urandom(4), "little") if "ASPERITY_SEED" not in os.environ else int(os.environ["ASPERITY_SEED"])
@@ -260,4 +261,5 @@ class Ports(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    warnings.simplefilter("ignore", ResourceWarning)
     unittest.main(argv=sys.argv[:1])
