@@ -76,5 +76,6 @@ void add_models(command_line& line);
 void add_devices(command_line& line);
 void add_experiment(command_line& line);
 void add_bench(command_line& line);
+void add_view(command_line& line);  // in builds that have the live page
 
 }  // namespace asperity::command

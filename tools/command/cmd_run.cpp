@@ -24,6 +24,7 @@
 #include "run_files.hpp"
 #include "run_report.hpp"
 #include "run_start.hpp"
+#include "run_view.hpp"
 #include "scene_loading.hpp"
 #include "session.hpp"
 #include "session_summary.hpp"
@@ -33,6 +34,13 @@ namespace asperity::command {
 namespace {
 
 result<void> check_options(const run_command& options) {
+  if (options.view && !view_port_of(*options.view)) {
+    return error{error_code::invalid_argument,
+                 "--view " + *options.view + ": a port is a whole number from 0 (any that is free) to 65535"};
+  }
+  if (!options.view && options.view_address != run_command().view_address) {
+    return error{error_code::invalid_argument, "--view-address is of the live page: add --view"};
+  }
   if (const result<void> ok = check(options.render); !ok) return ok;
   if (is_replay(options) && replayed_file(options).empty()) {
     return error{error_code::invalid_argument, "--device replay: names no file: use --device replay:FILE"};
@@ -61,7 +69,7 @@ result<void> check_options(const run_command& options) {
                  "--move is for support planes, which go with their bodies: leave it out, or use --contacts planes"};
   }
   const double longest_recorded_s = most_recorded_ticks / options.device_rate_hz;
-  if (!options.record_device.empty() && options.seconds.value_or(usual_seconds) > longest_recorded_s) {
+  if (!options.record_device.empty() && seconds_of(options) > longest_recorded_s) {
     return error{error_code::invalid_argument, "--record-device holds " + brief(longest_recorded_s) +
                                                    " s at the most, more calls are in no recording: use --seconds " +
                                                    brief(longest_recorded_s)};
@@ -94,7 +102,7 @@ struct felt_device {
 // The simulated hand holds the clutch's button down for a fifth of the session, in its middle.
 std::vector<scripted_press> presses_of(const run_command& options) {
   if (options.clutch_button == 0) return {};
-  const double length_ns = 1e9 * options.seconds.value_or(usual_seconds);
+  const double length_ns = 1e9 * seconds_of(options);
   return {{.buttons = button_bit(options.clutch_button),
            .from_ns = std::llround(0.4 * length_ns),
            .until_ns = std::llround(0.6 * length_ns)}};
@@ -283,29 +291,39 @@ result<answer> run_session(const run_command& options, const common_options& com
   found.rate = look_at_rate(chosen, *feel, {poses->T_wb, shape.centre_of_mass}, touch_T_wa, control);
   if (found.rate && !common.quiet && !common.json) complain("note: " + to_text(*found.rate));
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
-  result<session_outcome> ended = run_session(
-      {.feel = std::move(feel).value(),
-       .placement = {poses->T_wb, shape.centre_of_mass},
-       .device = std::move(device),
-       .control = control,
-       .moves = std::move(moves),
-       .clock = clock_of(options) == "real" ? session_clock::real_time : session_clock::virtual_time,
-       .seconds =
-           options.seconds.value_or(felt.replay ? felt.replay->seconds(periods_of(options).device_ns) : usual_seconds),
-       .periods = periods_of(options),
-       .ticks = felt.replay ? std::optional(felt.replay->ticks()) : std::nullopt,
-       .on_tick = [&](const session_record& tick) -> result<void> {
-         found.summary.add(tick);
-         if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
-         return files->add(tick);
-       },
-       .on_start =
-           [&](const real_time_grants& got) {
-             if (!common.quiet) complain("note: real time: " + to_text(got));
-           },
-       .guard = guard ? &*guard : nullptr,
-       .rescue = &rescue},
-      progress);
+  std::optional<run_view> page;
+  if (options.view) {
+    result<run_view> opened =
+        run_view::open(options, feel->scene(), poses->T_wb, *poses->T_wa, control.map, device.capabilities());
+    if (!opened) return opened.error();
+    page.emplace(std::move(opened).value());
+    complain("note: the page is at " + page->url());
+  }
+  result<session_outcome> ended =
+      run_session({.feel = page ? page->around(std::move(feel).value()) : std::move(feel).value(),
+                   .placement = {poses->T_wb, shape.centre_of_mass},
+                   .device = std::move(device),
+                   .control = control,
+                   .moves = std::move(moves),
+                   .clock = clock_of(options) == "real" ? session_clock::real_time : session_clock::virtual_time,
+                   .seconds = options.seconds.value_or(felt.replay ? felt.replay->seconds(periods_of(options).device_ns)
+                                                                   : seconds_of(options)),
+                   .periods = periods_of(options),
+                   .ticks = felt.replay ? std::optional(felt.replay->ticks()) : std::nullopt,
+                   .on_tick = [&](const session_record& tick) -> result<void> {
+                     found.summary.add(tick);
+                     if (gpu && tick.contact_status == status::backend_failed) return gpu_lost(tick);
+                     return files->add(tick);
+                   },
+                   .on_start =
+                       [&](const real_time_grants& got) {
+                         if (!common.quiet) complain("note: real time: " + to_text(got));
+                       },
+                   .guard = guard ? &*guard : nullptr,
+                   .rescue = &rescue,
+                   .watch = page ? std::optional(page->watch()) : std::nullopt},
+                  progress);
+  page.reset();
   if (!ended) return ended.error();
   if (felt.replay) found.replay = felt.replay->outcome();
   if (felt.known) found.driver = felt.known->what_happened();
@@ -420,6 +438,15 @@ void add_run(command_line& line) {
             return extension_error(text, {".png", ".svg"});
           },
           "FILE");
+  sub.add_option(
+         "--view", o->view,
+         "Show the session on a page of a browser, at this port or 8765; the session then lasts 600 s by default")
+      ->expected(0, 1)
+      ->type_name("[PORT]");
+  sub.add_option("--view-address", o->view_address,
+                 "Address of this machine at which the page is; another one than the loopback needs the token that is "
+                 "printed")
+      ->capture_default_str();
   o->render.usual_contacts = "planes";
   add_render_options(sub, o->render, {"planes", "least-motion", "window"});
 }

@@ -10,6 +10,9 @@ int main(int argc, char** argv) {
   asperity::command::add_query(line);
   asperity::command::add_run(line);
   asperity::command::add_models(line);
+#if defined(ASPERITY_HAS_VIEW)
+  asperity::command::add_view(line);
+#endif
   asperity::command::add_devices(line);
   asperity::command::add_bench(line);
   asperity::command::add_experiment(line);

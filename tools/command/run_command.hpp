@@ -41,15 +41,22 @@ struct run_command {
   std::string record;
   std::string record_device;
   std::string plot;
+  std::optional<std::string> view;  // port of the live page, or no number: the usual one
+  std::string view_address = "127.0.0.1";
   render_options render;
 };
 
 inline constexpr double usual_seconds = 3.0;
+inline constexpr double usual_viewed_seconds = 600.0;  ///< where somebody looks at it
 inline constexpr std::string_view replay_prefix = "replay:";
 
 [[nodiscard]] inline bool is_simulated(const run_command& options) { return options.device == "simulated"; }
 [[nodiscard]] inline bool is_replay(const run_command& options) {
   return std::string_view(options.device).starts_with(replay_prefix);
+}
+/// Length of a session that is no replay.
+[[nodiscard]] inline double seconds_of(const run_command& options) {
+  return options.seconds.value_or(options.view ? usual_viewed_seconds : usual_seconds);
 }
 /// File of a replay. @pre is_replay()
 [[nodiscard]] inline std::string replayed_file(const run_command& options) {

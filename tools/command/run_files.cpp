@@ -57,7 +57,7 @@ result<session_files> session_files::open(const run_command& options) {
     result<output_file> opened = output_file::create(options.plot);
     if (!opened) return opened.error();
     files.plot_.emplace(std::move(opened).value());
-    files.curves_.emplace(static_cast<std::size_t>(options.seconds.value_or(usual_seconds) * options.device_rate_hz));
+    files.curves_.emplace(static_cast<std::size_t>(seconds_of(options) * options.device_rate_hz));
   }
   return files;
 }

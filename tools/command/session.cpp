@@ -128,6 +128,7 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
     return cpu_seconds() - begin;
   };
   const auto step = [&] {
+    if (setup.watch) setup.watch->pace(session.now_ns() - times.origin_ns());
     if (const std::optional<std::int64_t> at_ns = times.at(session.device_ticks())) session.next_device_at(*at_ns);
     session.beat();
     bodies.tell(session, session.now_ns(), times.origin_ns());
@@ -141,6 +142,7 @@ result<session_outcome> run_virtual(session_setup setup, any_device& dev, progre
     if (out.device.seconds.size() < device_ticks) out.device.seconds.push_back(taken);
     if (failed) return;
     last.time_ns -= times.origin_ns();
+    if (setup.watch) setup.watch->on_tick(last, taken);
     try {
       if (const result<void> seen = setup.on_tick(last); !seen) failed = seen.error();
     } catch (...) {  // thrown on when the device is at rest
@@ -229,8 +231,9 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
                                .set_up_thread = set_up_and_count};
   setup.control.watchdog_ns = longest_silence_ns;
   const auto queue = std::make_unique<record_queue>();
+  constexpr auto clock_ns = &real_session<any_renderer, any_device, record_queue::writer>::clock_ns;
   real_session session(std::move(setup.feel), setup.placement, dev, setup.control, schedule,
-                       record_queue::writer{queue.get()});
+                       record_queue::writer{queue.get(), setup.watch ? clock_ns : nullptr});
 
   std::optional<std::int64_t> origin_ns;
   std::optional<error> failed;
@@ -239,10 +242,12 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
   session_rescue& rescue = setup.rescue != nullptr ? *setup.rescue : unshared;
   const auto take_records = [&] {
     session_record record;
-    while (!failed && queue->pop(record)) {
+    std::int64_t took_ns = 0;
+    while (!failed && queue->pop(record, took_ns)) {
       if (!origin_ns) origin_ns = record.time_ns;
       record.time_ns -= *origin_ns;
       shut = shut || record.fault != gate_fault::none;
+      if (setup.watch) setup.watch->on_tick(record, 1e-9 * static_cast<double>(took_ns));
       if (!shut) out.ended_at_s = 1e-9 * static_cast<double>(record.time_ns);
       if (const result<void> seen = setup.on_tick(record); !seen) failed = seen.error();
     }

@@ -46,6 +46,14 @@ struct session_rescue {
   std::function<void()> take_records;
 };
 
+/// Who watches a session while it runs. Both are called outside ticks, by the thread that called run_session().
+struct session_watch {
+  /// Told of every device tick, in order, and how long it took.
+  std::function<void(const session_record&, double took_s)> on_tick;
+  /// Virtual clock only: asked before each device tick at this time; the session goes on when it returns.
+  std::function<void(std::int64_t time_ns)> pace;
+};
+
 struct session_setup {
   any_renderer feel;
   scene_placement placement{};
@@ -65,6 +73,7 @@ struct session_setup {
   /// Real clock only, and may be null: who looks after the driver, and what it may rescue.
   driver_guard* guard = nullptr;
   session_rescue* rescue = nullptr;
+  std::optional<session_watch> watch{};
 };
 
 /// Times of the ticks of one loop. CPU time on the virtual clock, time on the wall on the real one.

@@ -22,7 +22,7 @@ all_edges() {
     edges "$folder/include" "$(basename "$folder")"
   done
   for folder in backends/*/include; do edges "$folder" gl; done
-  for folder in tools/{picture,text}; do edges "$folder" "$(basename "$folder")"; done
+  for folder in tools/{picture,text,view}; do edges "$folder" "$(basename "$folder")"; done
 }
 
 allowed=$(sed -n '/^## Rooms and who may include whom/,/^## /p' docs/explanation/architecture.md |

@@ -1,0 +1,166 @@
+#!/usr/bin/python3
+"""The live page, the replay and the exported page in a headless Chromium. ASPERITY PROBE FIXED FOLDER."""
+import csv
+import json
+import math
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import browser
+
+EXE, PROBE, FIXED, FOLDER = sys.argv[1:5]
+PICTURES = pathlib.Path(FOLDER)
+
+CONTRAST = """(() => {
+  const light = (c) => { const [r, g, b] = c.map((v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+  const parse = (t) => { const n = t.match(/[\\d.]+/g).map(Number); return { rgb: n.slice(0, 3), a: n.length > 3 ? n[3] : 1 }; };
+  const behind = (e) => { for (; e; e = e.parentElement) { const c = parse(getComputedStyle(e).backgroundColor); if (c.a > 0.99) return c.rgb; } return [255, 255, 255]; };
+  const bad = [];
+  for (const e of document.querySelectorAll('h1, p, button, label, summary, figcaption, b, li, th, td, output, #scale-text')) {
+    if (e.textContent.trim() === '' || e.offsetParent === null || e.disabled) continue;
+    const [a, b] = [light(parse(getComputedStyle(e).color).rgb), light(behind(e))];
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (ratio < 4.5) bad.push(e.tagName + ' ' + e.textContent.trim().slice(0, 20) + ' ' + ratio.toFixed(2));
+  }
+  return bad;
+})()"""
+
+
+class Served:
+    """A command that serves a page."""
+
+    def __init__(self, *arguments):
+        self.process = subprocess.Popen([EXE, *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.url, said = None, []
+        while self.url is None:
+            line = self.process.stderr.readline()
+            assert line != "", said
+            said.append(line)
+            found = re.search(r"http://\S+/", line)
+            self.url = found[0] if found else None
+
+    def end(self):
+        self.process.send_signal(signal.SIGINT)
+        self.process.communicate(timeout=30)
+
+
+def models(*more):
+    return ["--probe", PROBE, "--fixed", FIXED, *more]
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.browser = browser.Browser(browser.find()[0])
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+
+    def setUp(self):
+        self.browser.complaints.clear()
+        self.browser.requests = []
+        self.browser.size(1280, 720)
+        self.browser.dark(False)
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints, [])
+
+    def test_live(self):
+        b = self.browser
+        served = Served("run", *models("--view", "0", "--seconds", "600"))
+        try:
+            b.open(served.url)
+            b.wait("asperity.page.ready && asperity.page.history.size > 500 && asperity.page.scene.drawn.contacts > 0", 90)
+            b.value("document.getElementById('pause').click()")
+            b.wait("asperity.page.paused && document.getElementById('state').textContent === 'paused'")
+            time.sleep(0.5)
+            # What was drawn against what the server tells of the same row: length, and where the arrow points.
+            found = json.loads(b.value("""(() => {
+              const p = asperity.page, a = p.scene.drawn.arrows.hand_force, row = p.state.row, h = p.history;
+              return JSON.stringify({tip: a.tip, from: a.from, scale: a.scale, felt: Array.from(h.some(row, 'hand_fx', 3))});
+            })()"""))
+            drawn = [(t - f) / found["scale"] for t, f in zip(found["tip"], found["from"])]
+            self.assertGreater(math.hypot(*found["felt"]), 0.1)
+            for one, other in zip(drawn, found["felt"]):
+                self.assertAlmostEqual(one, other, delta=0.01 * math.hypot(*found["felt"]))
+            for dark in (False, True):
+                b.dark(dark)
+                b.value(f"document.documentElement.dataset.theme === '{'dark' if dark else 'light'}' || document.getElementById('theme').click()")
+                for width, height in ((1280, 720), (390, 844)):
+                    b.size(width, height)
+                    time.sleep(0.6)
+                    b.picture(PICTURES / f"live-{width}-{'dark' if dark else 'light'}.png")
+                    self.assertLessEqual(b.value("document.documentElement.scrollWidth"), width, "nothing is cut off")
+                self.assertEqual(b.value(CONTRAST), [])
+            self.assertGreater(b.value("asperity.csvOf({from: 0, to: 1e9}).split('\\n').length"), 400)
+            with_keys = set()
+            b.size(1280, 720)
+            for _ in range(60):
+                b.key("Tab")
+                with_keys.add(b.value("document.activeElement.id || document.activeElement.dataset.from || document.activeElement.tagName"))
+            for wanted in ("scene", "theme", "hold", "time", "span", "table", "pause", "step", "speed", "colours", "picture", "turn", "front", "touch"):
+                self.assertIn(wanted, with_keys)
+            before = b.value("asperity.page.scene.camera.yaw")
+            b.value("document.getElementById('scene').focus()")
+            b.key("ArrowRight")
+            self.assertNotEqual(b.value("asperity.page.scene.camera.yaw"), before)
+        finally:
+            b.open("about:blank")  # so that it does not complain about the server's end
+            served.end()
+
+    def test_replay_shows_the_row_of_its_time(self):
+        b = self.browser
+        recording = PICTURES / "recording.csv"
+        subprocess.run([EXE, "run", *models("--seconds", "2", "--quiet", "--record", str(recording))], check=True)
+        with recording.open() as table:
+            rows = list(csv.DictReader(table))
+        served = Served("view", str(recording), *models("--port", "0"))
+        try:
+            b.open(served.url)
+            b.wait("asperity.page.state", 90)
+            for share in (0.25, 0.5, 0.9):
+                b.value(f"""(() => {{ const s = document.getElementById('time'); s.value = {round(1000 * share)};
+                        s.dispatchEvent(new Event('input')); }})()""")
+                b.wait(f"Math.abs(asperity.page.at - {share} * {float(rows[-1]['time_s'])}) < 1e-9 && !asperity.page.changed")
+                time.sleep(0.2)
+                row = rows[int(share * float(rows[-1]["time_s"]) / 1e-3 + 1e-6)]
+                shown = b.value("[...asperity.page.scene.bodies[0].pose.slice(0, 3), ...asperity.page.state.hand.force]")
+                wanted = [float(row[k]) for k in ("probe_x_m", "probe_y_m", "probe_z_m", "hand_fx_n", "hand_fy_n", "hand_fz_n")]
+                for one, other in zip(shown, wanted):
+                    self.assertAlmostEqual(one, other, delta=1e-6 + 1e-5 * abs(other))
+            b.picture(PICTURES / "replay.png")
+        finally:
+            b.open("about:blank")  # so that it does not complain about the server's end
+            served.end()
+
+    def test_exported_pages_open_alone(self):
+        b = self.browser
+        recording = PICTURES / "recording.csv"
+        subprocess.run([EXE, "run", *models("--seconds", "1", "--quiet", "--record", str(recording))], check=True)
+        for name, arguments in (("replay", [str(recording), *models()]), ("model", [FIXED])):
+            page = PICTURES / f"exported-{name}.html"
+            subprocess.run([EXE, "view", *arguments, "--export", str(page), "--quiet"], check=True)
+            b.requests = []
+            b.open(page.as_uri())
+            b.wait("asperity.page.ready && asperity.page.frames > 1", 90)
+            time.sleep(1)
+            b.picture(PICTURES / f"exported-{name}.png")
+            self.assertTrue(b.value("asperity.isExported()"))
+            self.assertEqual([u for u in b.requests if not u.startswith(("file:", "data:"))], [])
+            self.assertTrue(b.value("document.getElementById('trouble').hidden"))
+
+
+if __name__ == "__main__":
+    missing = browser.find()[1]
+    if missing is not None:
+        print(f"skipped: {missing}")
+        sys.exit(77)
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,156 @@
+// asperity view: a recording or a model on a page of a browser.
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "asperity/io/textured_model_file.hpp"
+#include "cli.hpp"
+#include "file_names.hpp"
+#include "interrupt.hpp"
+#include "options.hpp"
+#include "output_file.hpp"
+#include "poses.hpp"
+#include "recording_reader.hpp"
+#include "run_start.hpp"
+#include "run_view.hpp"
+#include "scene_loading.hpp"
+#include "text.hpp"
+#include "view/page_files.hpp"
+#include "view/page_server.hpp"
+#include "view/shown_mesh.hpp"
+
+namespace asperity::command {
+namespace {
+
+struct view_command {
+  std::string file;
+  std::string probe;
+  std::vector<std::string> fixed;
+  std::vector<std::string> fixed_poses;
+  double scale = 1.0;
+  std::string port = std::to_string(usual_view_port);
+  std::string address = "127.0.0.1";
+  std::string exported;
+};
+
+bool is_recording(const view_command& options) { return extension_error(options.file, {".csv"}).empty(); }
+
+result<view::page_scene> recorded_scene(const view_command& options) {
+  if (options.probe.empty() || options.fixed.empty()) {
+    return error{error_code::invalid_argument,
+                 "a recording does not hold the models: name those of its session with --probe and --fixed"};
+  }
+  const result<std::vector<pose>> T_wb = read_fixed_poses(options.fixed_poses, options.fixed.size());
+  if (!T_wb) return T_wb.error();
+  const result<scene> bodies = load_scene(options.probe, options.fixed, true);
+  if (!bodies) return bodies.error();
+  view::page_scene shown{.mode = view::page_mode::replay, .title = file_stem(options.file), .bodies = {}};
+  shown.bodies.push_back({file_stem(options.probe), bodies->probe, {}});
+  for (std::size_t b = 0; b < options.fixed.size(); ++b) {
+    shown.bodies.push_back({file_stem(options.fixed[b]), bodies->fixed[b], (*T_wb)[b]});
+  }
+  return shown;
+}
+
+result<view::page_scene> model_scene(const view_command& options) {
+  if (!options.probe.empty() || !options.fixed.empty()) {
+    return error{error_code::invalid_argument,
+                 "--probe and --fixed are of a recording (.csv): leave them out for a model"};
+  }
+  result<textured_model> model = io::load_textured_model(options.file);
+  if (!model) return model.error();
+  return view::page_scene{
+      .mode = view::page_mode::model,
+      .title = file_stem(options.file),
+      .bodies = {{file_stem(options.file), std::make_shared<const textured_model>(std::move(model).value()), {}}}};
+}
+
+result<void> serve(const view_command& options, view::page_content content) {
+  view::server_settings settings{
+      .address = options.address, .port = view_port_of(options.port).value_or(usual_view_port), .token = {}};
+  if (!view::is_loopback(settings.address)) {
+    result<std::string> token = view::make_token();
+    if (!token) return token.error();
+    settings.token = std::move(token).value();
+  }
+  const result<view::page_server> server = view::page_server::start(settings, std::move(content), nullptr);
+  if (!server) return server.error();
+  complain("note: the page is at " + server->url() + ", until Ctrl-C");
+  while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return {};
+}
+
+result<answer> show(const view_command& options, const common_options&) {
+  if (!view_port_of(options.port)) {
+    return error{error_code::invalid_argument, "--port " + options.port + ": a port is a whole number from 0 to 65535"};
+  }
+  std::vector<named_file> inputs{{"view", options.file}, {"--probe", options.probe}};
+  for (const std::string& body : options.fixed) inputs.push_back({"--fixed", body});
+  const named_file exported{"--export", options.exported};
+  if (const result<void> ok = check_outputs(inputs, {&exported, 1}); !ok) return ok.error();
+  std::optional<output_file> page;
+  if (!options.exported.empty()) {
+    result<output_file> opened = output_file::create(options.exported);
+    if (!opened) return opened.error();
+    page.emplace(std::move(opened).value());
+  }
+  std::vector<view::trace_row> rows;
+  if (is_recording(options)) {
+    result<std::vector<view::trace_row>> read = read_recording(options.file, options.scale);
+    if (!read) return read.error();
+    rows = std::move(read).value();
+  }
+  result<view::page_scene> shown = is_recording(options) ? recorded_scene(options) : model_scene(options);
+  if (!shown) return shown.error();
+  if (rows.size() > 1) {
+    shown->device_period_s = (rows.back().time_s - rows.front().time_s) / static_cast<double>(rows.size() - 1);
+  }
+  shown->map.scale = options.scale;
+  const std::size_t points = page ? view::exported_points : view::live_points;
+  const std::size_t ticks = rows.size();
+  view::page_content content = view::make_content(*shown, std::move(rows), points);
+  answer out;
+  out.document = {{"file", options.file}, {"ticks", ticks}};
+  if (!page) {
+    if (const result<void> served = serve(options, std::move(content)); !served) return served.error();
+    return out;
+  }
+  const std::string text = view::export_page(content);
+  if (const result<void> written = page->write(text); !written) return written.error();
+  if (const result<void> there = page->commit(); !there) return there.error();
+  out.document["export"] = {{"file", options.exported}, {"bytes", text.size()}};
+  out.text = row("page", options.exported + ", " + memory_text(text.size()));
+  return out;
+}
+
+}  // namespace
+
+void add_view(command_line& line) {
+  const auto o = std::make_shared<view_command>();
+  CLI::App& sub = line.add("view", "Show a recording or a model on a page of a browser",
+                           [o](const common_options& common) { return show(*o, common); });
+  sub.add_option("file", o->file, "Recording of `run --record` (.csv) or textured model (.glb)")->required();
+  sub.add_option("--probe", o->probe, "Model that the hand moved, for a recording");
+  sub.add_option("--fixed", o->fixed, "Model that it touched, for a recording; may be given several times")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  sub.add_option("--fixed-pose", o->fixed_poses, "Pose of each fixed body, in their order; the origin by default")
+      ->check(pose_form_error, "POSE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  sub.add_option("--scale", o->scale, "Motion scaling of the session on record")
+      ->check(positive_number_error, "NUMBER > 0")
+      ->capture_default_str();
+  sub.add_option("--port", o->port, "Port of the page; 0: any that is free")->capture_default_str();
+  sub.add_option("--view-address", o->address,
+                 "Address of this machine at which the page is; another one than the loopback needs the token that is "
+                 "printed")
+      ->capture_default_str();
+  sub.add_option("--export", o->exported, "Write the page as one file that anybody can open, and serve nothing")
+      ->check([](const std::string& text) { return extension_error(text, {".html"}); }, "FILE");
+}
+
+}  // namespace asperity::command

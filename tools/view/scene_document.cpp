@@ -1,0 +1,98 @@
+#include "view/scene_document.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "asperity/core/printable.hpp"
+#include "view/shown_mesh.hpp"
+
+namespace asperity::view {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json numbers(const vec3& v) { return {v.x, v.y, v.z}; }
+
+json numbers(const pose& T) {
+  json out = numbers(T.position);
+  for (const double q : to_xyzw(T.rotation)) out.push_back(q);
+  return out;
+}
+
+template <class Enum>
+json names(int count) {
+  json out = json::array();
+  for (int i = 0; i < count; ++i) out.push_back(to_string(static_cast<Enum>(i)));
+  return out;
+}
+
+const char* to_string(page_mode m) {
+  return m == page_mode::live ? "live" : m == page_mode::replay ? "replay" : "model";
+}
+
+json facts(const textured_model& model) {
+  const bake_report& r = model.report;
+  json out = {{"coarse_triangles", model.mesh.triangles.size()},
+              {"pieces", model.pieces.size()},
+              {"texture", {model.texture.width, model.texture.height}},
+              {"texels", r.texels},
+              {"full_triangles", r.full_triangles},
+              {"rms_error_m", r.rms_error_m},
+              {"max_error_m", r.max_error_m},
+              {"peak_to_valley_m", r.peak_to_valley_m}};
+  if (r.quality) out["texel_m"] = r.quality->texel_m;
+  return out;
+}
+
+}  // namespace
+
+page_content make_content(const page_scene& scene, std::vector<trace_row> rows, std::size_t most_points) {
+  page_content out;
+  json bodies = json::array();
+  for (const shown_body& b : scene.bodies) {
+    shown_mesh mesh = show_mesh(*b.model, most_points / scene.bodies.size());
+    bodies.push_back({{"name", printable(b.name)},
+                      {"pose", numbers(b.T_w)},
+                      {"centre_of_mass", numbers(b.model->mass.centre_of_mass)},
+                      {"size_m", b.model->box.diagonal()},
+                      {"points", mesh.points},
+                      {"triangles", mesh.triangles},
+                      {"step_m", mesh.step_m},
+                      {"relief_m", {mesh.low_m, mesh.high_m}},
+                      {"facts", facts(*b.model)}});
+    out.meshes.push_back(std::move(mesh.bytes));
+  }
+  const json document = {
+      {"schema", "asperity.view/1"},
+      {"mode", to_string(scene.mode)},
+      {"title", printable(scene.title)},
+      {"virtual_clock", scene.virtual_clock},
+      {"device_period_s", scene.device_period_s},
+      {"most_force_n", scene.most_force_n},
+      {"device_axes",
+       {scene.map.T_wd.rotation.x, scene.map.T_wd.rotation.y, scene.map.T_wd.rotation.z, scene.map.T_wd.rotation.w}},
+      {"motion_scale", scene.map.scale},
+      {"columns", trace_columns},
+      {"names",
+       {{"sample", names<sample_verdict>(7)},
+        {"device", names<device_state>(device_state_count)},
+        {"fault", names<gate_fault>(gate_fault_count)},
+        {"status", names<status>(8)},
+        {"flags",
+         {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out", "body_lost",
+          "stands_back"}}}},
+      {"rows", rows.size()},
+      {"bodies", std::move(bodies)}};
+  // File names need not be UTF-8; JSON must be.
+  out.document = document.dump(-1, ' ', false, json::error_handler_t::replace);
+  out.rows = std::move(rows);
+  return out;
+}
+
+void append_rows(std::string& to, const std::vector<trace_row>& rows) {
+  const auto bytes = [&](const auto& value) { to.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  to.reserve(to.size() + rows.size() * (sizeof(double) + sizeof(float) * trace_width));
+  for (const trace_row& r : rows) bytes(r.time_s);
+  for (const trace_row& r : rows) bytes(r.values);
+}
+
+}  // namespace asperity::view

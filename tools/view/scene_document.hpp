@@ -1,0 +1,48 @@
+// What a page is told once: which bodies there are, where, and what the numbers of a row mean.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "asperity/control/workspace_map.hpp"
+#include "asperity/model/textured_model.hpp"
+#include "view/trace.hpp"
+
+namespace asperity::view {
+
+/// What a page shows.
+enum class page_mode : std::uint8_t { live, replay, model };
+
+/// A body of the scene. The first is the probe, but for page_mode::model.
+struct shown_body {
+  std::string name;
+  model_ptr model;
+  pose T_w{};
+};
+
+struct page_scene {
+  page_mode mode = page_mode::live;
+  std::string title;
+  std::vector<shown_body> bodies;
+  workspace_map map{};
+  bool virtual_clock = false;     ///< pages may pause a live session
+  double device_period_s = 1e-3;  ///< a tick that takes longer is late
+  double most_force_n = 0.0;      ///< of the device; 0: not known
+};
+
+/// Everything of a page that does not change while it is open.
+struct page_content {
+  std::string document;             ///< JSON, see scene_document.cpp
+  std::vector<std::string> meshes;  ///< one for each body, see shown_mesh
+  std::vector<trace_row> rows;      ///< of a replay
+};
+
+/// @param most_points of all bodies together
+[[nodiscard]] page_content make_content(const page_scene& scene, std::vector<trace_row> rows, std::size_t most_points);
+
+/// Rows as bytes: their times as doubles, then their values as floats. What a page reads of a replay and in frames.
+void append_rows(std::string& to, const std::vector<trace_row>& rows);
+
+}  // namespace asperity::view
