@@ -82,7 +82,7 @@ class Recording(Mapping[str, npt.NDArray[Any]]):
 
     def to_pandas(self) -> Any:
         """The table as a pandas DataFrame, with the time as its index. Needs pandas."""
-        import pandas
+        import pandas  # type: ignore[import]
 
         return pandas.DataFrame(dict(self._columns)).set_index("time_s")
 
