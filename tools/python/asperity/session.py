@@ -1,0 +1,76 @@
+"""Sessions of the two-rate loop with a simulated device, on a clock that is a number."""
+
+from __future__ import annotations
+
+from typing import Optional, Tuple
+
+import numpy.typing as npt
+
+from . import _asperity
+from .recording import Recording, recording_of
+
+
+class Session:
+    """A control loop with a hand at a simulated device: contacts, virtual coupling, passivity guard and output gate.
+
+    The clock is virtual, so a session runs as fast as the machine can and the same one gives the same numbers, those of
+    `asperity run --record`. It has a renderer of its own, like the one given; formulation="planes" is the one for loops.
+    """
+
+    def __init__(
+        self,
+        renderer: _asperity.Renderer,
+        device: Optional[_asperity.SimulatedDevice] = None,
+        *,
+        start_pose: Optional[npt.ArrayLike] = None,
+        device_rate_hz: float = 1000.0,
+        contact_rate_hz: float = 1000.0,
+        coupling_n_per_m: Optional[float] = None,
+        coupling_n_m_per_rad: Optional[float] = None,
+        scale: float = 1.0,
+        friction: Optional[Tuple[float, float]] = None,
+    ) -> None:
+        """Arms the device and begins at time 0.
+
+        renderer: whose bodies, poses of fixed bodies and formulation are taken.
+        device: a SimulatedDevice; None: the usual one, which scrubs.
+        start_pose: of the probe (7,); None: just above its first touch when it comes straight down.
+        device_rate_hz, contact_rate_hz: of the two loops, 100 to 10000 Hz.
+        coupling_n_per_m, coupling_n_m_per_rad: of the virtual coupling; None: what device and contacts allow.
+        scale: metres of the world for a metre of the device.
+        friction: coefficients, static and dynamic, in place of the materials'; planes only.
+
+        Raises Error, or ValueError for a number out of range.
+        """
+        self._loop = _asperity.SessionLoop(
+            renderer,
+            device if device is not None else _asperity.SimulatedDevice(),
+            start_pose=start_pose,
+            device_rate_hz=device_rate_hz,
+            contact_rate_hz=contact_rate_hz,
+            coupling_n_per_m=coupling_n_per_m,
+            coupling_n_m_per_rad=coupling_n_m_per_rad,
+            scale=scale,
+            friction=friction,
+        )
+
+    def run(self, seconds: float) -> Recording:
+        """Runs for that much virtual time and returns the Recording of it: fewer ticks where the gate shuts.
+
+        Call it again to go on. Raises Error after stop().
+        """
+        return recording_of(self._loop.run(seconds))
+
+    def stop(self) -> Recording:
+        """Ends the session: the wrench goes to zero, the device is disarmed. Returns the Recording of that."""
+        return recording_of(self._loop.stop())
+
+    @property
+    def fault(self) -> str:
+        """What shut the output gate; "none" while it is open."""
+        return self._loop.fault
+
+    @property
+    def time_s(self) -> float:
+        """Time of the next device tick, s."""
+        return self._loop.time_s

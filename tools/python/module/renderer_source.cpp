@@ -1,0 +1,119 @@
+#include "renderer_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "asperity/planes/plane_renderer.hpp"
+#include "asperity/window/window_renderer.hpp"
+#include "exact/exact_renderer.hpp"
+
+namespace asperity::python {
+namespace {
+
+template <class Renderer>
+result<any_renderer> erased(result<Renderer> made) {
+  if (!made) return made.error();
+  return any_renderer(std::move(made).value());
+}
+
+error no_choice(const std::string& name, const std::string& given, const std::string& choices) {
+  return {error_code::invalid_argument, name + " is '" + given + "': give " + choices};
+}
+
+result<void> check(const scene& bodies, const renderer_wish& wish) {
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok;
+  const std::string& f = wish.formulation;
+  if (f != "least-motion" && f != "planes" && f != "window" && f != "exact")
+    return no_choice("formulation", f, "least-motion, planes, window or exact");
+  if (wish.gradient != "soft" && wish.gradient != "central")
+    return no_choice("gradient", wish.gradient, "soft or central");
+  if (wish.lookup != "exact" && wish.lookup != "paper") return no_choice("lookup", wish.lookup, "exact or paper");
+  if (!(wish.period_s > 0.0 && std::isfinite(wish.period_s)))
+    return error{error_code::invalid_argument, "period_s has to be above 0: the time between two steps, s"};
+  if (!(wish.stiffness_n_per_m >= 0.0 && std::isfinite(wish.stiffness_n_per_m)))
+    return error{error_code::invalid_argument, "stiffness_n_per_m has to be above 0, or None for the usual one"};
+  return {};
+}
+
+double smallest_diagonal_m(const scene& bodies) {
+  double out_m = bodies.probe->box.diagonal();
+  for (const model_ptr& b : bodies.fixed) out_m = std::min(out_m, b->box.diagonal());
+  return out_m;
+}
+
+double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
+
+// As the command does: a loop below 180 Hz meets fast touches a little late, one above 3.6 kHz looks further than it
+// has to. 0 is what is usual, which fits small bodies by itself.
+double reach_of(const scene& bodies, double wanted_m) {
+  constexpr double most_m = 0.01, least_m = 0.0005;
+  const double usual_m = reach_for(1e-3);
+  if (wanted_m > usual_m) return std::min(most_m, wanted_m);
+  if (wanted_m < usual_m) return std::min(0.1 * smallest_diagonal_m(bodies), std::max(least_m, wanted_m));
+  return 0.0;
+}
+
+}  // namespace
+
+result<renderer_source> renderer_source::make(scene bodies, renderer_wish wish) {
+  if (const result<void> ok = check(bodies, wish); !ok) return ok.error();
+  renderer_source out(std::move(bodies), std::move(wish));
+  if (out.remembers()) return out;
+  result<field_scene> fields = make_field_scene(out.bodies_);
+  if (!fields) return fields.error();
+  out.fields_ = std::make_shared<const field_scene>(std::move(fields).value());
+  if (out.wish_.formulation == "least-motion") out.exits_ = exits::make_exit_scene(*out.fields_);
+  return out;
+}
+
+result<any_renderer> renderer_source::another() const {
+  if (wish_.formulation == "least-motion") return least_motion(wish_.period_s);
+  if (wish_.formulation == "planes")
+    return planes(wish_.reach_m > 0.0 ? wish_.reach_m : reach_of(bodies_, reach_for(wish_.period_s)));
+  return wish_.formulation == "exact" ? exact() : window();
+}
+
+result<any_renderer> renderer_source::another_for(const loop_periods& periods, double motion_scale) const {
+  if (wish_.formulation == "least-motion") return least_motion(seconds(periods.renewal_ns()));
+  if (wish_.formulation == "planes" && !(wish_.reach_m > 0.0)) {
+    return planes(reach_of(
+        bodies_, std::max(1.0, motion_scale) * reach_for(seconds(periods.contact_ns), seconds(periods.device_ns))));
+  }
+  return another();
+}
+
+result<any_renderer> renderer_source::least_motion(double period_s) const {
+  least_motion_renderer_settings settings;
+  settings.force.period_s = period_s;
+  settings.force.softness_m = wish_.softness_m;
+  settings.force.sharpness = wish_.sharpness;
+  settings.reach_m = wish_.reach_m;
+  if (wish_.stiffness_n_per_m > 0.0) settings.force.stiffness_n_per_m = wish_.stiffness_n_per_m;
+  return erased(make_least_motion_renderer(bodies_, fields_, exits_, settings));
+}
+
+result<any_renderer> renderer_source::planes(double reach_m) const {
+  plane_renderer_settings settings;
+  settings.reach_m = reach_m;
+  if (wish_.stiffness_n_per_m > 0.0) settings.springs.stiffness_n_per_m = wish_.stiffness_n_per_m;
+  return erased(make_plane_renderer(bodies_, fields_, settings));
+}
+
+result<any_renderer> renderer_source::window() const {
+  window_renderer_settings settings;
+  settings.depth.gradient =
+      wish_.gradient == "central" ? gradient_scheme::central_difference : gradient_scheme::soft_max;
+  settings.depth.parallax = wish_.lookup == "paper" ? parallax_mode::paper_lookup : parallax_mode::exact;
+  settings.depth.grid = wish_.grid;
+  if (wish_.stiffness_n_per_m > 0.0) settings.force.stiffness_n_per_m = wish_.stiffness_n_per_m;
+  return erased(make_window_renderer(bodies_, settings));
+}
+
+result<any_renderer> renderer_source::exact() const {
+  exact_renderer_settings settings;
+  if (wish_.stiffness_n_per_m > 0.0) settings.force.stiffness_n_per_m = wish_.stiffness_n_per_m;
+  return erased(make_exact_renderer(bodies_, settings));
+}
+
+}  // namespace asperity::python

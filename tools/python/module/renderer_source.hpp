@@ -1,0 +1,62 @@
+// Renderers of one scene that share what is made of its models, so that each thread can have one.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "asperity/control/control_settings.hpp"
+#include "asperity/field/field_scene.hpp"
+#include "asperity/least_motion/least_motion_renderer.hpp"
+#include "asperity/render/any_renderer.hpp"
+
+namespace asperity::python {
+
+/// What a Renderer of Python is asked to be.
+struct renderer_wish {
+  std::string formulation = "least-motion";  ///< or planes, window, exact
+  double stiffness_n_per_m = 0.0;            ///< 0: the formulation's own
+  double period_s = 1e-3;                    ///< of the loop that asks
+  double softness_m = 0.0;                   ///< of least motion; 0: what fits the period
+  double sharpness = 0.0;                    ///< of least motion; 0: what fits the period
+  double reach_m = 0.0;                      ///< gaps that planes report; 0: what fits the period
+  std::uint32_t grid = 64;                   ///< samples per side of a window
+  std::string gradient = "soft";             ///< of windows: or central
+  std::string lookup = "exact";              ///< of windows: or paper
+};
+
+/// A scene, and what its renderers share.
+class renderer_source {
+ public:
+  /// Makes what renderers share; allocates, and takes fractions of a second.
+  /// @return invalid_argument | bad_mesh | bad_texture
+  [[nodiscard]] static result<renderer_source> make(scene bodies, renderer_wish wish);
+
+  /// Another renderer that answers as every other one of this source, to the bit.
+  [[nodiscard]] result<any_renderer> another() const;
+  /// The same for a control loop of these periods.
+  /// @param motion_scale workspace_map::scale
+  [[nodiscard]] result<any_renderer> another_for(const loop_periods& periods, double motion_scale) const;
+
+  /// Whether an answer depends on the poses that the same renderer was asked for before: windows hold contacts that grew
+  /// too deep.
+  [[nodiscard]] bool remembers() const noexcept {
+    return wish_.formulation == "window" || wish_.formulation == "exact";
+  }
+  [[nodiscard]] const scene& bodies() const noexcept { return bodies_; }
+  [[nodiscard]] const renderer_wish& wish() const noexcept { return wish_; }
+
+ private:
+  renderer_source(scene bodies, renderer_wish wish) : bodies_(std::move(bodies)), wish_(std::move(wish)) {}
+
+  [[nodiscard]] result<any_renderer> least_motion(double period_s) const;
+  [[nodiscard]] result<any_renderer> planes(double reach_m) const;
+  [[nodiscard]] result<any_renderer> window() const;
+  [[nodiscard]] result<any_renderer> exact() const;
+
+  scene bodies_;
+  renderer_wish wish_;
+  std::shared_ptr<const field_scene> fields_;
+  std::shared_ptr<const exits::exit_scene> exits_;
+};
+
+}  // namespace asperity::python

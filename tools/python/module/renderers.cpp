@@ -1,0 +1,253 @@
+// From poses to wrenches.
+#include <chrono>
+#include <thread>
+
+#include "arrays.hpp"
+#include "batch.hpp"
+#include "errors.hpp"
+#include "long_work.hpp"
+#include "model_handle.hpp"
+#include "parts.hpp"
+#include "renderer_handle.hpp"
+#include "touches.hpp"
+
+namespace asperity::python {
+namespace {
+
+constexpr unsigned most_threads = 256;
+
+std::vector<model_ptr> models_of(const py::object& fixed) {
+  std::vector<model_ptr> out;
+  if (py::isinstance<model_handle>(fixed)) {
+    out.push_back(fixed.cast<model_handle>().inside);
+    return out;
+  }
+  for (const py::handle one : fixed) {
+    if (!py::isinstance<model_handle>(one)) throw py::type_error("fixed has to be a Model or a sequence of Models");
+    out.push_back(one.cast<model_handle>().inside);
+  }
+  return out;
+}
+
+std::vector<pose> fixed_poses_of(const py::object& given, std::size_t bodies) {
+  if (given.is_none()) return std::vector<pose>(bodies);
+  std::vector<pose> out = poses_of(given, "fixed_poses");
+  if (out.size() != bodies) {
+    throw py::value_error("fixed_poses has shape (" + std::to_string(out.size()) +
+                          ", 7): give one row for each of the " + std::to_string(bodies) + " fixed bodies");
+  }
+  return out;
+}
+
+void check_sizes(const scene& bodies, bool allow_scale_mismatch) {
+  constexpr double largest_ratio = 500.0;
+  for (std::size_t i = 0; i < bodies.fixed.size() && !allow_scale_mismatch; ++i) {
+    const double a_m = bodies.probe->box.diagonal(), b_m = bodies.fixed[i]->box.diagonal();
+    if (a_m <= largest_ratio * b_m && b_m <= largest_ratio * a_m) continue;
+    raise("invalid_argument", "the diagonals of the probe (" + std::to_string(a_m) + " m) and of fixed body " +
+                                  std::to_string(i) + " (" + std::to_string(b_m) +
+                                  " m) differ more than 500 times: is one of them in millimetres? Bake it again with "
+                                  "scale=0.001, or pass allow_scale_mismatch=True if this is meant");
+  }
+}
+
+std::unique_ptr<renderer_handle> made_renderer(const model_handle& probe, const py::object& fixed,
+                                               const py::object& fixed_poses, const std::string& formulation,
+                                               std::optional<double> stiffness_n_per_m, double period_s,
+                                               double softness_m, double sharpness, double reach_m, std::uint32_t grid,
+                                               const std::string& gradient, const std::string& lookup,
+                                               bool allow_scale_mismatch) {
+  scene bodies{probe.inside, models_of(fixed)};
+  check_sizes(bodies, allow_scale_mismatch);
+  auto out = std::make_unique<renderer_handle>();
+  out->T_wb = fixed_poses_of(fixed_poses, bodies.fixed.size());
+  if (stiffness_n_per_m && !(*stiffness_n_per_m > 0.0))
+    raise("invalid_argument", "stiffness_n_per_m has to be above 0, or None for the usual one");
+  renderer_wish wish{
+      formulation, stiffness_n_per_m.value_or(0.0), period_s, softness_m, sharpness, reach_m, grid, gradient, lookup};
+  const auto work = [bodies = std::move(bodies), wish = std::move(wish)](work_monitor&) mutable
+      -> result<std::pair<std::shared_ptr<const renderer_source>, std::shared_ptr<any_renderer>>> {
+    result<renderer_source> source = renderer_source::make(std::move(bodies), std::move(wish));
+    if (!source) return source.error();
+    result<any_renderer> feel = source->another();
+    if (!feel) return feel.error();
+    return std::pair(std::make_shared<const renderer_source>(std::move(*source)),
+                     std::make_shared<any_renderer>(std::move(*feel)));
+  };
+  auto [source, feel] =
+      run_interruptibly<std::pair<std::shared_ptr<const renderer_source>, std::shared_ptr<any_renderer>>>(work,
+                                                                                                          py::none());
+  out->source = std::move(source);
+  out->feel.push_back(std::move(*feel));
+  return out;
+}
+
+void refuse(status answered, const std::string& where) {
+  raise("unsupported",
+        "the contact could not be computed at " + where + " (" + to_string(answered) + "): inspect the models");
+}
+
+// One tick without the GIL; `look` sees what it found before another thread can step.
+template <class Look>
+void step_one(renderer_handle& self, const py::object& given, const Look& look) {
+  const pose T_wa = pose_of(given, "pose");
+  status answered;
+  {
+    const py::gil_scoped_release others_may_run;
+    const std::lock_guard lock(self.busy);
+    tick found;
+    answered = self.feel.front().step({T_wa, self.T_wb}, found);
+    if (answered == status::capacity_reached) ++self.incomplete;
+    look(found, answered);
+  }
+  if (answered != status::ok && answered != status::capacity_reached) refuse(answered, "this pose");
+}
+
+py::array_t<double> step(renderer_handle& self, const py::object& given) {
+  wrench felt;
+  step_one(self, given, [&](const tick& found, status) { felt = found.force.on_probe_w; });
+  return to_array(felt);
+}
+
+touch query(renderer_handle& self, const py::object& given) {
+  touch out;
+  step_one(self, given, [&](const tick& found, status answered) { out = touch_of(found, answered); });
+  return out;
+}
+
+result<void> have_renderers(renderer_handle& self, std::size_t wanted) {
+  while (self.feel.size() < wanted) {
+    result<any_renderer> more = self.source->another();
+    if (!more) return more.error();
+    self.feel.push_back(std::move(*more));
+  }
+  return {};
+}
+
+py::array_t<double> step_batch(renderer_handle& self, const py::object& given, unsigned threads) {
+  if (threads > most_threads)
+    throw py::value_error("threads has to be from 0 (all of the machine's) to " + std::to_string(most_threads));
+  const std::vector<pose> T_wa = poses_of(given, "poses");
+  py::array_t<double> out({static_cast<py::ssize_t>(T_wa.size()), py::ssize_t{6}});
+  const std::span<double> rows(out.mutable_data(), static_cast<std::size_t>(out.size()));
+  std::size_t used = threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
+  if (self.source->remembers()) used = 1;
+  std::optional<py::error_already_set> raised;
+  auto last_look = std::chrono::steady_clock::now();
+  const auto keep_going = [&] {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_look < std::chrono::milliseconds(50)) return true;
+    last_look = now;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() == 0) return true;
+    raised.emplace();
+    return false;
+  };
+  batch_outcome outcome;
+  result<void> ready;
+  {
+    const py::gil_scoped_release others_may_run;
+    const std::lock_guard lock(self.busy);
+    ready = have_renderers(self, used);
+    if (ready) outcome = step_all(std::span(self.feel).first(used), T_wa, self.T_wb, rows, keep_going);
+    self.incomplete += outcome.incomplete;
+  }
+  unwrap(ready);
+  if (raised) throw *raised;
+  if (outcome.failed != status::ok) refuse(outcome.failed, "row " + std::to_string(outcome.failed_at) + " of poses");
+  return out;
+}
+
+// What another thread may be changing; it holds the lock without the GIL.
+auto read_locked(renderer_handle& self, auto&& read) {
+  const py::gil_scoped_release others_may_run;
+  const std::lock_guard lock(self.busy);
+  return read();
+}
+
+py::array_t<double> fixed_poses(renderer_handle& self) {
+  const std::vector<pose> T_wb = read_locked(self, [&] { return self.T_wb; });
+  py::array_t<double> out({static_cast<py::ssize_t>(T_wb.size()), py::ssize_t{7}});
+  for (std::size_t i = 0; i < T_wb.size(); ++i) {
+    const py::array_t<double> row = to_array(T_wb[i]);
+    std::copy(row.data(), row.data() + 7, out.mutable_data() + 7 * i);
+  }
+  return out;
+}
+
+void set_fixed_poses(renderer_handle& self, const py::object& given) {
+  std::vector<pose> T_wb = fixed_poses_of(given, self.source->bodies().fixed.size());
+  read_locked(self, [&] {
+    self.T_wb = std::move(T_wb);
+    return true;
+  });
+}
+
+std::size_t memory_of(renderer_handle& self) {
+  return read_locked(self, [&] {
+    std::size_t bytes = 0;
+    for (const any_renderer& r : self.feel) bytes += r.memory_bytes();
+    return bytes;
+  });
+}
+
+}  // namespace
+
+void add_renderers(py::module_& m) {
+  py::class_<renderer_handle>(
+      m, "Renderer",
+      "Feels the contact between a probe, which moves, and fixed bodies. Poses are x y z (m) qx "
+      "qy qz qw, wrenches force (N) and torque (N m) about the probe's centre of mass, both in "
+      "world axes. Several threads may use one; steps wait for each other.")
+      .def(py::init(&made_renderer), py::arg("probe"), py::arg("fixed"), py::kw_only(),
+           py::arg("fixed_poses") = py::none(), py::arg("formulation") = "least-motion",
+           py::arg("stiffness_n_per_m") = py::none(), py::arg("period_s") = 1e-3, py::arg("softness_m") = 0.0,
+           py::arg("sharpness") = 0.0, py::arg("reach_m") = 0.0, py::arg("grid") = 64, py::arg("gradient") = "soft",
+           py::arg("lookup") = "exact", py::arg("allow_scale_mismatch") = false,
+           "A renderer of a Model and one or several others.\n\n"
+           "fixed_poses: (M, 7), one row per fixed body; None: all at the origin.\n"
+           "formulation: least-motion, the default; planes, for control loops, the only one that feels materials;\n"
+           "    window, the paper's; exact, the same with the maximum itself, slow.\n"
+           "stiffness_n_per_m: of a contact; None: the formulation's own.\n"
+           "period_s: between two steps, which says how soft contacts of least motion are and how far planes look.\n"
+           "softness_m, sharpness: of least motion; 0: what fits the period.\n"
+           "reach_m: gaps up to this are reported as planes; 0: none with least motion, what fits the period with "
+           "planes.\n"
+           "grid, gradient, lookup: of windows.\n"
+           "Raises Error.")
+      .def("step", &step, py::arg("pose"),
+           "The wrench on the probe (6,) at a pose (7,). Raises ValueError for another shape, Error for what is no "
+           "pose.")
+      .def("step_batch", &step_batch, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U,
+           "The wrenches (N, 6) at poses (N, 7), on several threads, 0: as many as the machine has. Each row has the "
+           "bits of step() at that pose, whatever the threads. Windows depend on the pose before: theirs are computed "
+           "in order on one thread.")
+      .def("query", &query, py::arg("pose"), "A Touch at a pose (7,): contacts, planes, and the wrench in its parts.")
+      .def_property("fixed_poses", &fixed_poses, &set_fixed_poses,
+                    "Poses of the fixed bodies (M, 7); set them between steps to move bodies.")
+      .def_property_readonly(
+          "formulation", [](const renderer_handle& self) { return self.source->wish().formulation; },
+          "least-motion, planes, window or exact.")
+      .def_property_readonly(
+          "probe", [](const renderer_handle& self) { return model_handle{self.source->bodies().probe}; },
+          "The Model that moves.")
+      .def_property_readonly(
+          "fixed",
+          [](const renderer_handle& self) {
+            std::vector<model_handle> out;
+            for (const model_ptr& b : self.source->bodies().fixed) out.push_back({b});
+            return out;
+          },
+          "The Models that stay, as a list.")
+      .def_property_readonly(
+          "incomplete", [](renderer_handle& self) { return read_locked(self, [&] { return self.incomplete; }); },
+          "Steps so far at which a capacity was reached: usable, and something was missing.")
+      .def_property_readonly("memory_bytes", &memory_of, "Memory that it takes beside its models, bytes.")
+      .def("__repr__", [](const renderer_handle& self) {
+        return "Renderer('" + self.source->bodies().probe->name + "' on " +
+               std::to_string(self.source->bodies().fixed.size()) + " fixed, formulation='" +
+               self.source->wish().formulation + "')";
+      });
+}
+
+}  // namespace asperity::python

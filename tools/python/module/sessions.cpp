@@ -1,0 +1,365 @@
+// Sessions of the two-rate loop with a simulated device, on the virtual clock.
+#include <chrono>
+#include <utility>
+
+#include "approach.hpp"
+#include "arrays.hpp"
+#include "asperity/control/virtual_session.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
+#include "errors.hpp"
+#include "parts.hpp"
+#include "renderer_handle.hpp"
+#include "simulated.hpp"
+
+namespace asperity::python {
+namespace {
+
+constexpr double clearance_m = 0.003;  // the hand starts this far above the touch, as in the command's sessions
+constexpr std::size_t number_columns = 34;
+
+/// The columns of the command's recordings, in its order; the last three are words.
+py::list column_names() {
+  py::list out;
+  out.append("time_s");
+  for (const std::string who : {"device", "probe"}) {
+    for (const char* axis : {"_x_m", "_y_m", "_z_m", "_qx", "_qy", "_qz", "_qw"}) out.append(who + axis);
+  }
+  for (const std::string who : {"contact", "hand"}) {
+    for (const char* axis : {"_fx_n", "_fy_n", "_fz_n", "_tx_n_m", "_ty_n_m", "_tz_n_m"}) out.append(who + axis);
+  }
+  for (const char* name : {"depth_m", "contacts", "contact_age_s", "delivered_j", "surplus_j", "guard_alpha_per_s",
+                           "guard_scale", "sample", "device", "fault"}) {
+    out.append(name);
+  }
+  return out;
+}
+
+motion_kind kind_of(const std::string& name) {
+  constexpr std::pair<const char*, motion_kind> all[] = {{"press", motion_kind::press},
+                                                         {"scrub", motion_kind::scrub},
+                                                         {"twist", motion_kind::twist},
+                                                         {"tap", motion_kind::tap},
+                                                         {"free", motion_kind::free}};
+  for (const auto& [word, kind] : all) {
+    if (name == word) return kind;
+  }
+  throw py::value_error("motion is '" + name + "': give press, scrub, twist, tap or free");
+}
+
+hand_settings hand_of(const std::string& name) {
+  if (name == "usual") return {};
+  if (name == "soft") return soft_hand();
+  if (name == "firm") return firm_hand();
+  throw py::value_error("hand is '" + name + "': give usual, soft or firm");
+}
+
+constexpr std::pair<const char*, device_fault> all_faults[] = {{"nan_pose", device_fault::nan_pose},
+                                                               {"infinite_pose", device_fault::infinite_pose},
+                                                               {"bad_rotation", device_fault::bad_rotation},
+                                                               {"stale", device_fault::stale},
+                                                               {"drop", device_fault::drop},
+                                                               {"jump", device_fault::jump},
+                                                               {"refuse_write", device_fault::refuse_write},
+                                                               {"depart", device_fault::depart},
+                                                               {"stuck_encoder", device_fault::stuck_encoder},
+                                                               {"slow_reply", device_fault::slow_reply},
+                                                               {"loss", device_fault::loss},
+                                                               {"overheat", device_fault::overheat}};
+
+device_fault fault_of(const std::string& name) {
+  std::string names;
+  for (const auto& [word, fault] : all_faults) {
+    if (name == word) return fault;
+    names += (names.empty() ? "" : ", ") + std::string(word);
+  }
+  throw py::value_error("there is no fault '" + name + "': there are " + names);
+}
+
+std::int64_t to_ns(double s, const char* name) {
+  if (!(s >= 0.0 && s <= 1e6)) throw py::value_error(std::string(name) + " has to be from 0 to 1e6 s");
+  return std::llround(1e9 * s);
+}
+
+device_wish made_device(std::uint64_t seed, const std::string& motion, double press_m,
+                        std::optional<double> amplitude_m, double frequency_hz, const std::string& hand,
+                        const std::vector<std::tuple<std::string, double, double>>& faults, double delay_s,
+                        double jitter_s, double loss) {
+  device_wish out;
+  out.press_m = press_m;
+  out.amplitude_m = amplitude_m;
+  out.settings.seed = seed;
+  out.settings.motion.kind = kind_of(motion);
+  out.settings.motion.frequency_hz = frequency_hz;
+  out.settings.hand = hand_of(hand);
+  out.settings.measurement.delay_ns = to_ns(delay_s, "delay_s");
+  out.settings.measurement.jitter_ns = to_ns(jitter_s, "jitter_s");
+  out.settings.measurement.loss = loss;
+  if (!std::isfinite(press_m) || !(std::fabs(press_m) <= 1.0)) throw py::value_error("press_m has to be within 1 m");
+  if (!(frequency_hz > 0.0 && frequency_hz <= 1000.0))
+    throw py::value_error("frequency_hz has to be above 0, at most 1000");
+  if (!(loss >= 0.0 && loss <= 1.0)) throw py::value_error("loss is a probability: give 0 to 1");
+  if (!(delay_s + jitter_s <= 0.02)) throw py::value_error("delay_s and jitter_s may come to 0.02 s together");
+  for (const auto& [kind, from_s, until_s] : faults) {
+    out.settings.faults.push_back(
+        {fault_of(kind), to_ns(from_s, "a fault's from_s"), to_ns(until_s, "a fault's until_s")});
+  }
+  return out;
+}
+
+struct keep_last {
+  session_record* last;
+  void operator()(const session_record& record) const noexcept { *last = record; }
+};
+
+/// Rows of a recording as they come.
+struct recorded_rows {
+  std::vector<double> numbers;
+  std::vector<std::uint8_t> sample, device, fault;
+
+  void add(const session_record& r) {
+    const auto put = [&](std::initializer_list<double> list) { numbers.insert(numbers.end(), list); };
+    put({static_cast<double>(r.time_ns) / 1e9});
+    for (const pose& T : {r.T_dh, r.T_wa}) {
+      const auto q = to_xyzw(T.rotation);
+      put({T.position.x, T.position.y, T.position.z, q[0], q[1], q[2], q[3]});
+    }
+    for (const wrench& w : {r.on_probe_w, r.on_hand_d})
+      put({w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z});
+    put({r.max_depth_m, static_cast<double>(r.contacts), static_cast<double>(r.contact_age_ns) / 1e9, r.delivered_j,
+         r.surplus_j, r.guard_alpha_per_s, r.guard_scale});
+    sample.push_back(static_cast<std::uint8_t>(r.sample));
+    device.push_back(static_cast<std::uint8_t>(r.device));
+    fault.push_back(static_cast<std::uint8_t>(r.fault));
+  }
+};
+
+py::array words_of(const std::vector<std::uint8_t>& codes, auto&& word) {
+  py::list out;
+  for (const std::uint8_t c : codes) out.append(word(c));
+  return py::module_::import("numpy").attr("array")(out, py::arg("dtype") = "U32");
+}
+
+py::tuple to_python(const recorded_rows& rows) {
+  const auto n = static_cast<py::ssize_t>(rows.sample.size());
+  py::array_t<double> numbers({n, static_cast<py::ssize_t>(number_columns)});
+  std::copy(rows.numbers.begin(), rows.numbers.end(), numbers.mutable_data());
+  return py::make_tuple(numbers,
+                        words_of(rows.sample, [](std::uint8_t c) { return to_string(static_cast<sample_verdict>(c)); }),
+                        words_of(rows.device, [](std::uint8_t c) { return to_string(static_cast<device_state>(c)); }),
+                        words_of(rows.fault, [](std::uint8_t c) { return to_string(static_cast<gate_fault>(c)); }));
+}
+
+struct session_parts {
+  any_renderer feel;
+  scene_placement placement;
+  simulated_settings device;
+  control_settings control;
+  virtual_schedule schedule;
+};
+
+class session_handle {
+ public:
+  explicit session_handle(session_parts parts)
+      : device_(std::move(parts.device)),
+        period_ns_(parts.schedule.device_period_ns),
+        session_(std::move(parts.feel), parts.placement, device_, parts.control, parts.schedule, keep_last{&last_}) {}
+
+  result<void> begin() {
+    if (const result<void> opened = device_.open(); !opened) return opened;
+    return device_.arm();
+  }
+
+  /// Device ticks of that time, fewer where the gate shuts.
+  recorded_rows run(double seconds, const std::function<bool()>& keep_going) {
+    recorded_rows rows;
+    const auto until = session_.device_ticks() +
+                       static_cast<std::uint64_t>(std::llround(seconds * 1e9 / static_cast<double>(period_ns_)));
+    while (session_.device_ticks() < until && fault() == gate_fault::none && keep_going()) step(rows);
+    return rows;
+  }
+
+  /// Tells the gate to stop, lets the wrench go to zero and disarms.
+  recorded_rows stop() {
+    recorded_rows rows;
+    if (stopped_) return rows;
+    stopped_ = true;
+    session_.device().stop(gate_fault::stopped);
+    const std::int64_t longest = std::max<std::int64_t>(200, 200'000'000 / period_ns_);
+    for (std::int64_t i = 0; i < longest && !session_.device().gate().at_rest(); ++i) step(rows);
+    static_cast<void>(device_.disarm());
+    return rows;
+  }
+
+  [[nodiscard]] gate_fault fault() noexcept { return session_.device().gate().fault(); }
+  [[nodiscard]] double time_s() const noexcept { return 1e-9 * static_cast<double>(session_.now_ns()); }
+  [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+
+  std::mutex busy;
+
+ private:
+  void step(recorded_rows& rows) {
+    session_.beat();
+    static_cast<void>(session_.step());
+    rows.add(last_);
+  }
+
+  simulated_device device_;
+  std::int64_t period_ns_;
+  session_record last_{};
+  virtual_session<any_renderer, simulated_device, keep_last> session_;
+  bool stopped_ = false;
+};
+
+std::int64_t period_of(double rate_hz, const char* name) {
+  if (!(rate_hz >= 100.0 && rate_hz <= 10'000.0))
+    throw py::value_error(std::string(name) + " has to be from 100 to 10000 Hz");
+  return std::llround(1e9 / rate_hz);
+}
+
+// Where the probe begins: given, or 3 mm above its first touch straight down.
+pose start_of(any_renderer& feel, const std::vector<pose>& T_wb, motion_kind motion) {
+  const command::step_function step = [&](const scene_pose& at, tick& out) { return feel.step(at, out); };
+  pose T_wa = unwrap(command::find_touch(feel.scene(), step, quat(1.0, 0.0, 0.0, 0.0), T_wb));
+  if (motion != motion_kind::free) T_wa.position.z += clearance_m;
+  return T_wa;
+}
+
+// As in the command's sessions: oblique to both horizontal axes, so that ridges along either of them are felt.
+motion_settings motion_of(const device_wish& wish, const scene& bodies, bool start_given, double scale) {
+  const double size = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
+  motion_settings motion = wish.settings.motion;
+  motion.sideways_d = {0.8, 0.6, 0.0};
+  motion.depth_m = wish.press_m + (start_given ? 0.0 : clearance_m / scale);
+  motion.amplitude_m = wish.amplitude_m.value_or(std::min(0.01, 0.1 * size / scale));
+  return motion;
+}
+
+std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const device_wish& device,
+                                             const py::object& start_pose, double device_rate_hz,
+                                             double contact_rate_hz, std::optional<double> coupling_n_per_m,
+                                             std::optional<double> coupling_n_m_per_rad, double scale,
+                                             std::optional<std::pair<double, double>> friction) {
+  if (!(scale > 0.0 && std::isfinite(scale))) throw py::value_error("scale has to be above 0");
+  const loop_periods periods{period_of(device_rate_hz, "device_rate_hz"),
+                             period_of(contact_rate_hz, "contact_rate_hz")};
+  const bool on_planes = renderer.source->wish().formulation == "planes";
+  if (friction && !on_planes)
+    throw py::value_error("friction is of support planes: give Renderer formulation='planes'");
+  any_renderer feel = unwrap(renderer.source->another_for(periods, scale));
+  const scene& bodies = renderer.source->bodies();
+  std::vector<pose> T_wb = renderer.T_wb;
+  const bool start_given = !start_pose.is_none();
+  const pose T_wa = start_given ? pose_of(start_pose, "start_pose") : start_of(feel, T_wb, device.settings.motion.kind);
+
+  simulated_settings simulated = device.settings;
+  simulated.motion = motion_of(device, bodies, start_given, scale);
+  const mass_properties& shape = bodies.probe->mass;
+  control_settings control;
+  control.map = {.T_wd = {quat(1.0, 0.0, 0.0, 0.0), T_wa * shape.centre_of_mass},
+                 .scale = scale,
+                 .T_ha = {T_wa.rotation, -(T_wa.rotation * shape.centre_of_mass)}};
+  control.probe = felt_alike(solid_probe(shape), scale);
+  if (on_planes) {
+    control.coupling = coupling_for(simulated.capabilities, device_rate_hz, scale);
+    control.surfaces = surfaces_of(bodies);
+  }
+  if (coupling_n_per_m) control.coupling.stiffness_n_per_m = *coupling_n_per_m;
+  if (coupling_n_m_per_rad) control.coupling.stiffness_n_m_per_rad = *coupling_n_m_per_rad;
+  if (friction) {
+    control.friction.static_coefficient = friction->first;
+    control.friction.dynamic_coefficient = friction->second;
+    unwrap(check(control.friction));
+    const auto override_friction = [&](surface_pair& pair) {
+      pair.static_friction = friction->first;
+      pair.dynamic_friction = friction->second;
+    };
+    for (std::optional<surface_pair>& pair : control.surfaces) {
+      if (pair) override_friction(*pair);
+    }
+    for (mapped_pair& m : control.surfaces.mapped) override_friction(m.pair);
+  }
+  auto out = std::make_unique<session_handle>(session_parts{.feel = std::move(feel),
+                                                            .placement = {std::move(T_wb), shape.centre_of_mass},
+                                                            .device = std::move(simulated),
+                                                            .control = control,
+                                                            .schedule = {.device_period_ns = periods.device_ns,
+                                                                         .contact_period_ns = periods.contact_ns,
+                                                                         .contact_one_period_late = true}});
+  unwrap(out->begin());
+  return out;
+}
+
+py::tuple run(session_handle& self, double seconds) {
+  if (!(seconds >= 0.0 && seconds <= 1e5)) throw py::value_error("seconds has to be from 0 to 1e5 s");
+  if (self.stopped()) raise("invalid_argument", "the session was stopped: make another one");
+  std::optional<py::error_already_set> raised;
+  auto last_look = std::chrono::steady_clock::now();
+  const auto keep_going = [&] {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_look < std::chrono::milliseconds(50)) return true;
+    last_look = now;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() == 0) return true;
+    raised.emplace();
+    return false;
+  };
+  recorded_rows rows;
+  {
+    const py::gil_scoped_release others_may_run;
+    const std::lock_guard lock(self.busy);
+    rows = self.run(seconds, keep_going);
+  }
+  if (raised) throw *raised;
+  return to_python(rows);
+}
+
+py::tuple stop(session_handle& self) {
+  recorded_rows rows;
+  {
+    const py::gil_scoped_release others_may_run;
+    const std::lock_guard lock(self.busy);
+    rows = self.stop();
+  }
+  return to_python(rows);
+}
+
+}  // namespace
+
+void add_sessions(py::module_& m) {
+  m.attr("recording_columns") = py::tuple(column_names());
+  py::list faults;
+  for (const auto& [word, fault] : all_faults) faults.append(word);
+  m.attr("device_faults") = py::tuple(faults);
+  py::class_<device_wish>(
+      m, "SimulatedDevice",
+      "A device made of numbers, with a hand that holds it: each session makes it anew, and the same "
+      "description gives the same bits.")
+      .def(py::init(&made_device), py::kw_only(), py::arg("seed") = 1, py::arg("motion") = "scrub",
+           py::arg("press_m") = 0.012, py::arg("amplitude_m") = py::none(), py::arg("frequency_hz") = 1.0,
+           py::arg("hand") = "usual", py::arg("faults") = std::vector<std::tuple<std::string, double, double>>{},
+           py::arg("delay_s") = 0.0, py::arg("jitter_s") = 0.0, py::arg("loss") = 0.0,
+           "seed: of tremor, jitter and losses.\n"
+           "motion: press, scrub, twist, tap or free.\n"
+           "press_m: how far the hand means to go on after the touch, m.\n"
+           "amplitude_m: of scrub, tap and free, m; None: a tenth of the smaller body, at most 0.01.\n"
+           "frequency_hz: of the motion.\n"
+           "hand: usual, soft or firm.\n"
+           "faults: (kind, from_s, until_s) each; the kinds are in device_faults.\n"
+           "delay_s, jitter_s: age of a measurement, s, 0.02 together at the most. loss: share of measurements lost.")
+      .def_property_readonly(
+          "seed", [](const device_wish& d) { return d.settings.seed; }, "Seed of tremor, jitter and losses.")
+      .def("__repr__",
+           [](const device_wish& d) { return "SimulatedDevice(seed=" + std::to_string(d.settings.seed) + ")"; });
+  py::class_<session_handle>(m, "SessionLoop", "Both loops on the virtual clock; asperity.Session is the way in.")
+      .def(py::init(&made_session), py::arg("renderer"), py::arg("device"), py::kw_only(), py::arg("start_pose"),
+           py::arg("device_rate_hz"), py::arg("contact_rate_hz"), py::arg("coupling_n_per_m"),
+           py::arg("coupling_n_m_per_rad"), py::arg("scale"), py::arg("friction"), "See asperity.Session.")
+      .def("run", &run, py::arg("seconds"), "Numbers (N, 34) and the words of sample, device and fault.")
+      .def("stop", &stop, "The rows in which the wrench goes to zero, as run() gives them.")
+      .def_property_readonly(
+          "fault", [](session_handle& self) { return to_string(self.fault()); }, "What shut the gate, or none.")
+      .def_property_readonly(
+          "time_s", [](const session_handle& self) { return self.time_s(); }, "Time of the next device tick, s.");
+}
+
+}  // namespace asperity::python
