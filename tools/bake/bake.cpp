@@ -21,6 +21,7 @@
 #include "bake/simplify.hpp"
 #include "bake/stage_monitor.hpp"
 #include "bake/stitch.hpp"
+#include "bake/thin_features.hpp"
 #include "bake/triangle_bvh.hpp"
 #include "bake/uv_atlas.hpp"
 #include "bake/winding.hpp"
@@ -37,6 +38,7 @@ constexpr double least_band_texels = 0.5;
 // Wider gaps at coarse edges are worked on; narrower ones are what bilinear lookups leave where the surface is curved.
 constexpr double widest_gap_texels = 0.25;
 constexpr double fit_spacing_in_diagonals = 0.005;
+constexpr double thin_texels = 2.0;
 
 error cancelled() { return {error_code::cancelled, "the bake was cancelled"}; }
 
@@ -158,11 +160,15 @@ result<textured_model> bake(triangle_mesh full_mesh, const bake_settings& settin
   remark(settings, distortion_remark(*charts));
   remark(settings, too_coarse_remark(settings.relief, charts->wide_m, settings.texture_size));
 
+  const auto thin = find_thin_features(full->mesh, full_tree, thin_texels * charts->texel_m, threads, monitor);
+  if (!thin) return cancelled();
+  remark(settings, thin_remark(*thin, thin_texels * charts->texel_m));
+
   if (!monitor.begin("project")) return cancelled();
   const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
-  auto projected =
-      project(coarse->mesh, *charts, crease_normals(coarse->mesh, full_tree, least_band_texels * charts->texel_m),
-              full_tree, range, settings.texture_size, threads, monitor, settings.relief ? &added : nullptr);
+  auto projected = project(
+      coarse->mesh, *charts, crease_normals(coarse->mesh, full_tree, least_band_texels * charts->texel_m), full_tree,
+      range, settings.texture_size, threads, monitor, settings.relief ? &added : nullptr, settings.texels);
   if (!projected) return projected.error();
 
   if (!monitor.begin("pieces")) return cancelled();

@@ -41,6 +41,9 @@ std::vector<owner> assign_texels(const atlas& charts, std::uint32_t size) {
   return owners;
 }
 
+// Points across a texel at which a filter looks: detail finer than a quarter of a texel may slip through.
+constexpr int footprint_points = 4;
+
 // What one block of texels adds to the report.
 struct tally {
   std::size_t texels = 0;
@@ -54,8 +57,8 @@ struct tally {
 class projector {
  public:
   projector(const triangle_mesh& coarse, const crease_normals& directions, const triangle_bvh& full, double range_m,
-            const added_relief* added)
-      : coarse_(coarse), directions_(directions), full_(full), range_m_(range_m), added_(added) {}
+            const added_relief* added, texel_filter filter)
+      : coarse_(coarse), directions_(directions), full_(full), range_m_(range_m), added_(added), filter_(filter) {}
 
   // The plane of coarse triangle t.
   [[nodiscard]] vec3 base(std::uint32_t t, const barycentric& b) const noexcept {
@@ -63,25 +66,65 @@ class projector {
     return b[0] * c[0] + b[1] * c[1] + b[2] * c[2];
   }
 
-  vec3 operator()(std::uint32_t t, const barycentric& b, tally* count) const {
-    const vec3 p = base(t, b);
+  // What the texel around place p of the image keeps, of coarse triangle t.
+  vec3 operator()(std::uint32_t t, const image_triangle& image, const vec2& p, tally* count) const {
+    const barycentric b = image.coordinates(p);
+    const vec3 foot = base(t, b);
     const vec3 d = directions_.at(t, b);
-    const auto crossing = full_.nearest_front_crossing(p, d, range_m_);
-    const auto nearest = crossing ? triangle_bvh::nearest{} : full_.closest(p);
-    vec3 q = crossing ? crossing->point : nearest.point;
-    if (added_ != nullptr) q += rise(crossing ? crossing->triangle : nearest.triangle, q, d) * d;
+    const met at = meet(foot, d);
+    const vec3 q = at.crossed && filter_ != texel_filter::point ? foot + offset_over(t, image, p) * d : at.point;
     if (count != nullptr) {
-      const double offset = glm::dot(q - p, d);
+      const double offset = glm::dot(q - foot, d);
       ++count->texels;
-      if (!crossing) ++count->fallback_texels;
+      if (!at.crossed) ++count->fallback_texels;
       count->highest = std::max(count->highest, offset);
       count->lowest = std::min(count->lowest, offset);
-      count->farthest = std::max(count->farthest, glm::length(q - p));
+      count->farthest = std::max(count->farthest, glm::length(q - foot));
     }
     return q;
   }
 
  private:
+  struct met {
+    vec3 point;    // of the original, with its relief
+    bool crossed;  // on the line along d; otherwise the closest point
+  };
+
+  [[nodiscard]] met meet(const vec3& p, const vec3& d) const {
+    const auto crossing = full_.nearest_front_crossing(p, d, range_m_);
+    const auto nearest = crossing ? triangle_bvh::nearest{} : full_.closest(p);
+    vec3 q = crossing ? crossing->point : nearest.point;
+    if (added_ != nullptr) q += rise(crossing ? crossing->triangle : nearest.triangle, q, d) * d;
+    return {q, crossing.has_value()};
+  }
+
+  // The filtered offset of the footprint around p. What of it is beyond the triangle is asked at the triangle's edge.
+  // The middle has met the original, but with an even number of points it is none of them: it is asked as well where
+  // none of the others has met it.
+  [[nodiscard]] double offset_over(std::uint32_t t, const image_triangle& image, const vec2& p) const {
+    const bool highest = filter_ == texel_filter::highest;
+    double sum = 0.0;
+    double top = -std::numeric_limits<double>::infinity();
+    int count = 0;
+    const auto take = [&](const vec2& at) {
+      const barycentric b = image.coordinates(image.clamp(at));
+      const vec3 foot = base(t, b);
+      const vec3 d = directions_.at(t, b);
+      const met found = meet(foot, d);
+      if (!found.crossed) return;
+      const double offset = glm::dot(found.point - foot, d);
+      sum += offset;
+      top = std::max(top, offset);
+      ++count;
+    };
+    const auto step = [](int i) { return (i + 0.5) / footprint_points - 0.5; };
+    for (int j = 0; j < footprint_points; ++j)
+      for (int i = 0; i < footprint_points; ++i) take(p + vec2{step(i), step(j)});
+    if (count == 0) take(p);
+    if (count == 0) return 0.0;
+    return highest ? top : sum / count;
+  }
+
   // How far to go along d to be at the height of the relief over the plane of triangle t.
   [[nodiscard]] double rise(std::uint32_t t, const vec3& q, const vec3& d) const {
     constexpr double least_cosine = 0.5;  // at an edge sharper than 120 degrees the relief is cut off
@@ -94,15 +137,16 @@ class projector {
   const triangle_bvh& full_;
   double range_m_;
   const added_relief* added_;
+  texel_filter filter_;
 };
 
 }  // namespace
 
 result<projection> project(const triangle_mesh& coarse, const atlas& charts, const crease_normals& directions,
                            const triangle_bvh& full, double range_m, std::uint32_t texture_size, unsigned threads,
-                           stage_monitor& monitor, const added_relief* heights) {
+                           stage_monitor& monitor, const added_relief* heights, texel_filter filter) {
   const std::vector<owner> owners = assign_texels(charts, texture_size);
-  const projector surface(coarse, directions, full, range_m, heights);
+  const projector surface(coarse, directions, full, range_m, heights, filter);
   const glm::vec3 nowhere(std::numeric_limits<float>::quiet_NaN());
   projection out;
   out.texture = {texture_size, texture_size, std::vector<glm::vec3>(owners.size(), nowhere)};
@@ -118,13 +162,12 @@ result<projection> project(const triangle_mesh& coarse, const atlas& charts, con
       vec3 q;
       if (o.distance == 0.0F) {
         out.chart[i] = charts.chart[o.triangle];
-        q = surface(o.triangle, triangle.coordinates(p), &of_block[block]);
+        q = surface(o.triangle, triangle, p, &of_block[block]);
       } else {
         const vec2 edge = triangle.clamp(p);
         const vec2 mirror = triangle.clamp(2.0 * edge - p);
         const auto displacement = [&](const vec2& at) {
-          const barycentric b = triangle.coordinates(at);
-          return surface(o.triangle, b, nullptr) - surface.base(o.triangle, b);
+          return surface(o.triangle, triangle, at, nullptr) - surface.base(o.triangle, triangle.coordinates(at));
         };
         q = surface.base(o.triangle, triangle.coordinates(p)) + 2.0 * displacement(edge) - displacement(mirror);
       }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "asperity/bake/texel_filter.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/haptic_texture.hpp"
 #include "asperity/model/triangle_mesh.hpp"
@@ -32,10 +33,13 @@ struct projection {
 /// 2 d(edge) - d(mirror), so that a bilinear lookup at the edge of a chart gives the edge. All others are NaN.
 /// Where `heights` are given, each point then goes on in its direction until it is that height above the plane of the
 /// triangle that it has met.
+/// A filter other than `point` takes the average or the highest of the offsets, along that direction, over the texel's
+/// footprint; a texel whose own middle has no offset of that kind stays the closest point.
 /// @return cancelled | bad_texture (a height that is not finite)
 [[nodiscard]] result<projection> project(const triangle_mesh& coarse, const atlas& charts,
                                          const crease_normals& directions, const triangle_bvh& full, double range_m,
                                          std::uint32_t texture_size, unsigned threads, stage_monitor& monitor,
-                                         const added_relief* heights = nullptr);
+                                         const added_relief* heights = nullptr,
+                                         texel_filter filter = texel_filter::point);
 
 }  // namespace asperity::bake

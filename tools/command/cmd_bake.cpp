@@ -44,6 +44,7 @@ struct bake_command {
   std::vector<std::string> material_at;
   std::size_t triangles = 600;
   std::uint32_t texture = 1024;
+  std::string texels = "point";
   unsigned threads = 0;
   std::optional<std::size_t> pieces;
   bool keep_uvs = false;
@@ -176,6 +177,9 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   settings.name = options.name.empty() ? fs::path(options.full).stem().string() : options.name;
   settings.triangles = options.triangles;
   settings.texture_size = options.texture;
+  settings.texels = options.texels == "highest" ? bake::texel_filter::highest
+                    : options.texels == "mean"  ? bake::texel_filter::mean
+                                                : bake::texel_filter::point;
   settings.pieces = options.pieces;
   settings.keep_uvs = options.keep_uvs;
   settings.threads = options.threads;
@@ -312,6 +316,11 @@ void add_bake(command_line& line) {
       ->excludes(coarse);
   sub.add_option("--texture", o->texture, "Texels per side of the haptic texture")
       ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  sub.add_option("--texels", o->texels,
+                 "What a texel keeps of the surface under it: the point at its middle, the mean, or the highest, on "
+                 "which a probe wider than a texel rests")
+      ->check(CLI::IsMember({"point", "mean", "highest"}))
       ->capture_default_str();
   sub.add_flag("--keep-uvs", o->keep_uvs,
                "Use the coarse mesh's own texture coordinates; without --coarse, those of a full mesh that is its own");

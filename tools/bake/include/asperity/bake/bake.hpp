@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "asperity/bake/relief.hpp"
+#include "asperity/bake/texel_filter.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/textured_model.hpp"
 #include "asperity/model/triangle_mesh.hpp"
@@ -21,8 +22,9 @@ struct bake_settings {
   /// The coarse mesh's own texture coordinates become the atlas instead of a new one. Without `coarse` the mesh has to
   /// be its own coarse mesh: of no more than `triangles`.
   bool keep_uvs = false;
-  std::uint32_t texture_size = 1024;  ///< texels per side
-  bake::relief relief;                ///< heights to add to the mesh; none by default
+  std::uint32_t texture_size = 1024;          ///< texels per side
+  texel_filter texels = texel_filter::point;  ///< what a texel keeps of the surface under it
+  bake::relief relief;                        ///< heights to add to the mesh; none by default
   /// Convex pieces to aim for, by smaller pieces or looser tolerances than usual; what that costs is in the report.
   std::optional<std::size_t> pieces;
   unsigned threads = 0;  ///< 0: as many as the machine has; the result does not depend on it
