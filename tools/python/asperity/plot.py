@@ -40,7 +40,7 @@ def trace(recording: Recording, what: str = "hand_wrench", axes: Optional[Any] =
             values = getattr(recording, what)[:, i] * (1000.0 if is_pose else 1.0)
             to.plot(recording.time_s, values, linewidth=1.0, label=name)
         to.set_ylabel("position (mm)" if is_pose else "force (N)")
-        to.legend(loc="upper left", ncols=3, frameon=False)
+        to.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), borderaxespad=0.0, ncols=3, frameon=False)
     to.set_xlabel("time (s)")
     to.margins(x=0.0)
     to.grid(alpha=0.3)
