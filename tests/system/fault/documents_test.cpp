@@ -343,6 +343,60 @@ TEST_F(documents, examples_of_the_reference_page_work) {
   EXPECT_GE(examples, 10);
 }
 
+// Whether this build has the live page, which needs a library of its own.
+bool has_page() { return run({"view", "--help"}).exit_status == 0; }
+
+TEST_F(documents, view_of_a_model_and_of_a_recording) {
+  if (!has_page()) GTEST_SKIP() << "this build has no live page (Debian: libcivetweb-dev)";
+  const json model = expect_document({"view", pin(), "--export", path("pin.html")}, "asperity.view/1");
+  expect_keys(model, {"schema", "file", "ticks", "export"});
+  EXPECT_EQ(model["file"], pin());
+  EXPECT_EQ(model["ticks"], 0);
+  expect_keys(model["export"], {"file", "bytes"});
+  EXPECT_EQ(model["export"]["file"], path("pin.html"));
+  EXPECT_EQ(model["export"]["bytes"], read("pin.html").size());
+
+  ASSERT_EQ(
+      run({"run", "--probe", pin(), "--fixed", pin(), "--seconds", "0.05", "--record", path("felt.csv")}).exit_status,
+      0);
+  const json session = expect_document(
+      {"view", path("felt.csv"), "--probe", pin(), "--fixed", pin(), "--export", path("felt.html")}, "asperity.view/1");
+  EXPECT_EQ(session["ticks"], 51) << "at 1 kHz, the first and the last among them";
+  EXPECT_EQ(session["export"]["bytes"], read("felt.html").size());
+  const std::set<std::string> made{"pin.html", "felt.csv", "felt.html"};
+  EXPECT_EQ(files(), made);
+
+  expect_failure({"view", path("felt.csv"), "--export", path("no.html")}, 1, "invalid_argument");
+  expect_failure({"view", pin(), "--probe", pin(), "--export", path("no.html")}, 1, "invalid_argument");
+  expect_failure({"view", path("nothing.glb"), "--export", path("no.html")}, 1, "io_failed");
+  expect_failure({"view", pin(), "--port", "65536"}, 1, "invalid_argument");
+}
+
+TEST_F(documents, a_served_page_ends_with_a_document) {
+  if (!has_page()) GTEST_SKIP() << "this build has no live page (Debian: libcivetweb-dev)";
+  process_options ended;
+  ended.interrupt_after_s = 1.0;
+  const outcome shown = run({"view", pin(), "--port", "0", "--json"}, ended);
+  EXPECT_NE(shown.err.find("note: the page is at http://127.0.0.1:"), std::string::npos) << shown.err;
+  const json d = json::parse(shown.out, nullptr, false);
+  expect_keys(d, {"schema", "file", "ticks"});
+
+  // A session tells the same of itself, whether it is looked at or not.
+  const std::vector<std::string> run_briefly{"run", "--probe", pin(), "--fixed", pin(), "--seconds", "0.05", "--json"};
+  std::vector<std::string> looked_at = run_briefly;
+  looked_at.insert(looked_at.end(), {"--view", "0"});
+  const outcome alone = run(run_briefly), with_page = run(looked_at);
+  EXPECT_EQ(with_page.exit_status, 0) << with_page.err;
+  EXPECT_NE(with_page.err.find("http://127.0.0.1:"), std::string::npos) << with_page.err;
+  const json one = json::parse(alone.out), other = json::parse(with_page.out);
+  for (const auto& [key, value] : one.items()) EXPECT_TRUE(other.contains(key)) << key;
+  EXPECT_EQ(one.size(), other.size());
+  for (const char* key : {"surfaces", "contacts", "hand_force", "hand_torque", "energy"}) {
+    EXPECT_TRUE(one.contains(key)) << key;
+    EXPECT_EQ(one[key], other[key]) << key;
+  }
+}
+
 TEST_F(documents, quiet_says_nothing) {
   const outcome done = run({"inspect", block(), "--quiet"});
   EXPECT_EQ(done.exit_status, 0);

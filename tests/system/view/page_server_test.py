@@ -105,6 +105,22 @@ class PageServer(unittest.TestCase):
         for a, b in zip(all_times, all_times[1:]):
             self.assertAlmostEqual(b - a, 1e-3, places=9)
 
+    def test_a_page_that_was_away_is_told_what_it_missed(self):
+        own = ["X-Asperity: 1"]
+        self.assertEqual(self.session.ask("/do?speed=10", "POST", own)[0], 204)
+        after, missed, times, until = 0, 0, (), time.monotonic() + 60
+        while missed == 0 and time.monotonic() < until:
+            time.sleep(0.2)
+            after, missed, times = rows_of(self.session.ask("/frame?after=1")[2])
+        self.session.ask("/do?speed=1", "POST", own)
+        self.assertGreater(missed, 0)
+        self.assertEqual(1 + missed + len(times), after)
+        begin = rows_of(self.session.ask(f"/frame?after={after}")[2])
+        self.assertEqual(begin[1], 0)
+        # Rows are a millisecond apart: the first that came is as far from the one after the last as their numbers are.
+        if begin[2]:
+            self.assertAlmostEqual(begin[2][0] - times[0], 1e-3 * (after - 1 - missed), places=9)
+
     def test_every_answer_forbids_foreign_content(self):
         for path in ("/", "/page.js", "/scene.json", "/nothing"):
             _, head, _ = self.session.ask(path)
@@ -124,7 +140,7 @@ class PageServer(unittest.TestCase):
 
     def test_no_file_of_the_machine_is_reached(self):
         for path in ("/../../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/..%2f..%2fetc/passwd", "//etc/passwd",
-                     "/mesh/../../etc/passwd", "/mesh/-1", "/mesh/99999999999999999999", "/mesh/1e0", "/page.js/../../x",
+                     "/mesh/../../etc/passwd", "/mesh/-1", "/mesh/2", "/mesh/1000000", "/mesh/99999999999999999999", "/mesh/1e0", "/page.js/../../x",
                      "/%00", "/mesh/0%00", "/\xff\xfe", "/frame?after=-1", "/frame?after=1;x", "/frame"):
             code, _, body = self.session.ask(path)
             self.assertIn(code, (0, 400, 404), path)
@@ -246,7 +262,8 @@ class Ports(unittest.TestCase):
         self.assertEqual(ask("/")[0], 200)
         for path in ("/scene.json", "/mesh/0", "/rows", "/frame?after=0"):
             self.assertEqual(ask(path)[0], 403, path)
-            for wrong in ("", "0" * 32, open_session.token[:-1], open_session.token + "0"):
+            other = [t[:at] + ("1" if t[at] == "0" else "0") + t[at + 1:] for t in [open_session.token] for at in (0, 16, 31)]
+            for wrong in ("", "0" * 32, open_session.token[:-1], open_session.token + "0", *other):
                 self.assertEqual(ask(path, headers=[f"X-Asperity-Token: {wrong}"])[0], 403)
             self.assertEqual(ask(path, headers=[f"X-Asperity-Token: {open_session.token}"])[0], 200, path)
         self.assertEqual(ask("/do?pause", "POST", ["X-Asperity: 1"])[0], 403)
