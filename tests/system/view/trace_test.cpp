@@ -27,11 +27,11 @@ struct reading {
   void from(const trace_ring& ring, std::size_t most) {
     std::vector<trace_row> rows;
     const std::uint64_t first = ring.read(next, most, rows);
-    faults += first < next ? 1 : 0;
+    faults += first < next ? 1U : 0U;
     missed += first - next;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const trace_row expected = row_of(first + i);
-      faults += rows[i].time_s != expected.time_s || rows[i].values != expected.values ? 1 : 0;
+      faults += rows[i].time_s != expected.time_s || rows[i].values != expected.values ? 1U : 0U;
     }
     given += rows.size();
     next = first + rows.size();
