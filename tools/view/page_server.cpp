@@ -305,12 +305,12 @@ result<page_server> page_server::start(const server_settings& settings, page_con
   const std::string host = six ? '[' + settings.address + ']' : settings.address;
   const std::string listen = host + ':' + std::to_string(settings.port);
   const std::string threads = std::to_string(most_pages + 8);
-  const std::array<const char*, 21> options{"listening_ports", listen.c_str(), "num_threads", threads.c_str(),
-                                            // What a client may take to say what it wants, and to read the answer.
-                                            "request_timeout_ms", "2000", "keep_alive_timeout_ms", "1000",
-                                            "enable_keep_alive", "yes", "max_request_size", "4096", "tcp_nodelay", "1",
-                                            "enable_directory_listing", "no", "linger_timeout_ms", "0", "decode_url",
-                                            "no", nullptr};
+  std::array<const char*, 21> options{"listening_ports", listen.c_str(), "num_threads", threads.c_str(),
+                                      // What a client may take to say what it wants, and to read the answer.
+                                      "request_timeout_ms", "2000", "keep_alive_timeout_ms", "1000",
+                                      "enable_keep_alive", "yes", "max_request_size", "4096", "tcp_nodelay", "1",
+                                      "enable_directory_listing", "no", "linger_timeout_ms", "0", "decode_url", "no",
+                                      nullptr};
   mg_callbacks callbacks{};
   // Every request ends here: nothing of the server's own, which would read files, is reached.
   callbacks.begin_request = [](mg_connection* to) {
@@ -321,8 +321,7 @@ result<page_server> page_server::start(const server_settings& settings, page_con
   std::array<char, 256> why{};
   unsigned code = 0;
   mg_error_data failed{&code, why.data(), why.size()};
-  const char** const as_wanted = const_cast<const char**>(options.data());
-  mg_init_data init{&callbacks, self.get(), as_wanted};
+  mg_init_data init{&callbacks, self.get(), options.data()};
   {
     const small_stacks small;
     self->context = mg_start2(&init, &failed);
