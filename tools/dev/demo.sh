@@ -12,8 +12,9 @@ fresh() {
   return 0
 }
 
-# out/demo/file.glb and out/demo/cad_part.glb, made and baked where they are not fresh.
-bake_demo_models() {
+run_demo() {
+  setup
+  configure_and_build release bin/asperity
   local asperity=build/release/bin/asperity models=out/models out=out/demo model
   mkdir -p "$models" "$out"
 
@@ -29,13 +30,7 @@ bake_demo_models() {
       "$asperity" bake "$models/$model.ply" --triangles "${triangles[$model]}" -o "$out/$model.glb"
     fi
   done
-}
 
-run_demo() {
-  setup
-  configure_and_build release bin/asperity
-  bake_demo_models
-  local asperity=build/release/bin/asperity out=out/demo
   step "feel the CAD part with the file: 3 s at 1 kHz, simulated device"
   "$asperity" run --probe "$out/file.glb" --fixed "$out/cad_part.glb" --device simulated --seconds 3 \
     --record "$out/recording.csv" --plot "$out/plot.png"

@@ -17,7 +17,7 @@ import browser  # noqa: E402
 
 MOST_BYTES = 3_000_000
 SIZE, FACTOR = (1200, 660), 0.75  # of the page, and of the picture beside it
-FRAMES, FRAME_MS, TICKS_BETWEEN = 36, 120, 50
+FRAMES, FRAME_MS, TICKS_BETWEEN = 24, 150, 60
 COLOURS = 96
 
 
