@@ -26,14 +26,14 @@ class Names(unittest.TestCase):
                 missing += [n for n, v in [(name, value), *parts] if not (v.__doc__ or "").strip()]
         self.assertEqual(missing, [])
 
-    def test_types_hold_and_the_stub_has_every_name(self):
+    def test_types_hold_and_every_name_is_declared(self):
         with tempfile.TemporaryDirectory() as folder:
             done = subprocess.run([sys.executable, "-m", "mypy", "--strict", os.path.join(SOURCE, "tools/python/asperity")],
                                   cwd=folder, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        with open(os.path.join(SOURCE, "tools/python/asperity/_asperity.pyi")) as stub:
+        with open(os.path.join(SOURCE, "tools/python/asperity/_asperity.pyi")) as declarations:
             told = {}
-            for node in ast.parse(stub.read()).body:
+            for node in ast.parse(declarations.read()).body:
                 if isinstance(node, ast.ClassDef):
                     told[node.name] = {n.name for n in node.body if not n.name.startswith("_")}
                 elif isinstance(node, ast.FunctionDef):
