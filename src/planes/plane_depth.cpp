@@ -124,6 +124,7 @@ plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t m
       asked_at_(std::make_unique<vec6>()) {
   reserve(most);
   take(first);
+  probe_half_m_ = first.probe.half_m;
   // What is there from the beginning does not stand back.
   for (way& w : ways_) w.comes = false;
   come_ = false;
@@ -151,7 +152,10 @@ void plane_depth::take(const plane_scene& next) noexcept {
     if (!(next.since[b] > before)) continue;
     way& w = ways_[b];
     const double share = placed_ != nullptr ? share_of_push(placed_->surfaces[b], next.surfaces[b]) : 0.0;
-    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m), .comes = true, .was_m = share * w.deepest_m};
+    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m),
+         .comes = true,
+         .was_m = share * w.deepest_m,
+         .half_m = next.of[b].half_m};
     come_ = true;
     watch_->forget(b, next.of[b]);
     known_->forget(b);
@@ -193,7 +197,9 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
     const near_patch& patch = found.patches()[i];
     read(patch, found.leaves_of(patch), reader_of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
   }
-  if (come_) stand_back(found, out);
+  if (come_) stand_back(found, way_ahead(at.T_wa), out);
+  before_wa_ = at.T_wa;
+  went_ = true;
   if (materials_->any()) materials_->hold_back(found, out);
   for (const near_plane& p : out) {
     if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
@@ -230,33 +236,53 @@ void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) no
   }
 }
 
-void plane_depth::stand_back(const near_samples& found, std::span<near_plane> out) noexcept {
-  for (way& w : ways_) w.deepest_m = w.bound_m = -std::numeric_limits<double>::infinity();
-  for (const near_patch& patch : found.patches()) {
-    way& w = ways_[patch.body];
-    for (const near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
-      w.deepest_m = std::max(w.deepest_m, p.plane.depth_m);
-    }
+vec6 plane_depth::way_ahead(const pose& T_wa) const noexcept {
+  // Rendered where the probe is, in use a period later and for a period: so it is asked for the end of that.
+  constexpr double periods = 2.0;
+  if (!went_) return {};
+  const vec3 slid_w = T_wa * centre_of_mass_a_ - before_wa_ * centre_of_mass_a_;
+  return periods * vec6{slid_w, log_rotation(T_wa.rotation * glm::conjugate(before_wa_.rotation))};
+}
+
+void plane_depth::stand_back(const near_samples& found, const vec6& ahead, std::span<near_plane> out) noexcept {
+  // Half way through there are several ways out, and the probe goes on until it is read again.
+  constexpr double answered = 0.7;
+  constexpr double none = -std::numeric_limits<double>::infinity();
+  for (way& w : ways_) {
+    w.deepest_m = w.bound_m = w.ahead_m = none;
+    w.too_deep = false;
   }
-  // Where a probe has left it so fast that nothing of it was read, a bound will do.
   for (const near_patch& patch : found.patches()) {
     way& w = ways_[patch.body];
+    // Where a probe has left it so fast that nothing of it was read, a bound will do.
     w.bound_m = std::max(w.bound_m, patch.in_other.most_m);
+    // Not of planes: half way through, samples have none.
+    w.too_deep = w.too_deep || patch.in_other.smooth_m > answered * (patch.of_probe ? w.half_m : probe_half_m_);
+    for (const near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
+      if (!(p.plane.depth_m > none)) continue;
+      const double grows_m = std::min(told_m_, dot(p.plane.gradient, ahead));
+      w.deepest_m = std::max(w.deepest_m, p.plane.depth_m);
+      w.ahead_m = std::max(w.ahead_m, p.plane.depth_m + std::max(0.0, grows_m));
+    }
   }
   come_ = false;
   for (way& w : ways_) {
-    if (std::exchange(w.comes, false)) {
-      w.back_m = w.deepest_m - w.was_m > let_in_m ? w.deepest_m - w.was_m : 0.0;
-    } else {
+    if (const bool comes = std::exchange(w.comes, false); comes || w.away) {
+      const double deeper_m = w.ahead_m - (comes ? w.was_m : 0.0);
+      w.away = w.too_deep && (!comes || deeper_m > let_in_m);
+      w.back_m = !w.away && deeper_m > let_in_m ? deeper_m : 0.0;
+    } else if (w.back_m > 0.0) {
       const bool was_read = w.deepest_m > w.back_m - 1.25 * told_m_;
       w.back_m = std::max(0.0, std::min(w.back_m, (was_read ? w.deepest_m : w.bound_m) + told_m_));
     }
-    come_ = come_ || w.back_m > 0.0;
+    come_ = come_ || w.away || w.back_m > 0.0;
   }
   if (!come_) return;
   for (const near_patch& patch : found.patches()) {
-    const double back_m = ways_[patch.body].back_m;
-    for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) p.plane.depth_m -= back_m;
+    const way& w = ways_[patch.body];
+    for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
+      p.plane.depth_m = w.away ? none : p.plane.depth_m - w.back_m;
+    }
   }
 }
 
@@ -348,6 +374,7 @@ status plane_depth::planes_at(const scene_pose& at, const near_samples& found, s
         static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
     const near_patch& patch = found.patches()[p];
     const way& of = ways_[patch.body];
+    if (of.away) continue;
     const double deeper_m = above_m + of.back_m;
     if (!(static_cast<double>(asked.most_m + asked.since_m) > deeper_m)) continue;
     const leaf_reader& reader = reading.of(patch, of.sinking_m);

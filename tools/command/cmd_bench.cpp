@@ -61,6 +61,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
   const time_summary central_tick = summarise(m.central_tick_s);
   const time_summary planes_tick = summarise(m.planes_tick_s);
   const time_summary every_sample = summarise(m.every_sample_s);
+  const time_summary probe = summarise(m.probe_s);
+  const time_summary rubbing_probe = summarise(m.rubbing_probe_s);
   const time_summary planes_far_tick = summarise(m.planes_far_tick_s);
   const time_summary soft_far_tick = summarise(m.soft_far_tick_s);
   const auto mean_of = [&](std::uint32_t depth_work::*part) {
@@ -68,6 +70,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
     for (const depth_work& w : m.planes_work) sum += static_cast<double>(w.*part);
     return sum / static_cast<double>(m.planes_work.size());
   };
+  double planes_held = 0.0;
+  for (const double n : m.planes_held) planes_held += n / static_cast<double>(m.planes_held.size());
   double contacts = 0.0;
   for (const double n : m.contacts) contacts += n / static_cast<double>(m.contacts.size());
   const double most = *std::max_element(m.contacts.begin(), m.contacts.end());
@@ -81,6 +85,7 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                   {"poses", options.motion.poses},
                   {"seed", options.motion.seed},
                   {"contacts", {{"mean", contacts}, {"max", most}}},
+                  {"planes_held", {{"mean", planes_held}}},
                   {"samples",
                    {{"balls_looked_at", mean_of(&depth_work::looked_at)},
                     {"near", mean_of(&depth_work::listed)},
@@ -94,6 +99,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                     {"contact_central", to_json(central)},
                     {"tick_planes", to_json(planes_tick)},
                     {"every_sample", to_json(every_sample)},
+                    {"probe_on_planes", to_json(probe)},
+                    {"probe_rubbing_on_planes", to_json(rubbing_probe)},
                     {"tick_least_motion", to_json(least_motion_tick)},
                     {"tick_soft", to_json(soft_tick)},
                     {"tick_central", to_json(central_tick)}}},
@@ -133,6 +140,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                                               brief(mean_of(&depth_work::quick)) + " read quickly, " +
                                               brief(mean_of(&depth_work::exact)) + " exactly; " +
                                               brief(mean_of(&depth_work::bounded)) + " leaves bounded");
+  out.text += row("device tick: probe",
+                  to_text(probe) + " on " + brief(planes_held) + " planes; with friction " + to_text(rubbing_probe));
   out.text +=
       row("tick, one potential", to_text(least_motion_tick) + "  (" + brief(1.0 / least_motion_tick.p50_s) + " Hz, " +
                                      ratio_text(least_motion_tick.p50_s / soft_tick.p50_s) + " soft)");

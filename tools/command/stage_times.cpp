@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "approach.hpp"
+#include "asperity/control/linearise.hpp"
+#include "asperity/control/probe_motion.hpp"
 #include "asperity/field/field_body.hpp"
 #include "asperity/least_motion/least_motion_renderer.hpp"
 #include "asperity/planes/plane_renderer.hpp"
@@ -72,6 +74,41 @@ double sum_of_all(plane_renderer& feel, const scene_pose& at) {
   return sum;
 }
 
+/// A probe that follows the path as a device thread moves it, on contacts of the path's surface.
+class led_probe {
+ public:
+  led_probe(const textured_model& probe, double friction)
+      : T_ac_{quat(1.0, 0.0, 0.0, 0.0), probe.mass.centre_of_mass},
+        motion_(solid_probe(probe.mass), {}, contact_laws{}, control_settings{}.substeps, rubs(friction)) {}
+
+  /// What a contact thread makes of a tick.
+  void take(const tick& found, const scene_pose& at) noexcept {
+    if (!placed_) motion_.place(at.T_wa * T_ac_);
+    placed_ = true;
+    const pose then_T_wc = at.T_wa * T_ac_;
+    coupling_pull pull = motion_.coupling().pull(motion_.target(), then_T_wc);
+    pull.on_probe_w += motion_.rubbing().on_probe_w();
+    linearise(found, status::ok, {.T_wc = then_T_wc, .pull = pull, .bodies = {}}, selection_for(1'000'000), rest_,
+              contact_);
+  }
+  /// A device tick of a millisecond towards a pose of the hand.
+  status follow(const pose& T_wa) noexcept { return motion_.move(1e-3, T_wa * T_ac_, 1.0, contact_); }
+  [[nodiscard]] const linear_contact& contact() const noexcept { return contact_; }
+
+ private:
+  [[nodiscard]] static friction_settings rubs(double coefficient) noexcept {
+    friction_settings out;
+    out.static_coefficient = out.dynamic_coefficient = coefficient;
+    return out;
+  }
+
+  pose T_ac_;
+  probe_motion motion_;
+  rest_prediction rest_;
+  linear_contact contact_{};
+  bool placed_ = false;
+};
+
 /// The same scene with many more of its first fixed body, all out of reach.
 struct crowd {
   scene bodies;
@@ -130,6 +167,7 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
   contact_set contacts(soft_settings.limits);
   std::vector<penetration> depths(soft_settings.limits.contacts);
   const std::vector<pose> path = scrubbing_path(*touch, motion, size_m);
+  led_probe smooth(*bodies.probe, 0.0), rubbing(*bodies.probe, 0.4);
   const auto time = [](std::vector<double>& into, double share, auto&& call) {
     const double begin = cpu_seconds();
     static_cast<void>(call());
@@ -151,6 +189,11 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
     tick found;
     time(out.planes_tick_s, 1.0, [&] { return planes->step(at_surface, found); });
     out.planes_work.push_back(found.work);
+    smooth.take(found, at_surface);
+    rubbing.take(found, at_surface);
+    out.planes_held.push_back(static_cast<double>(rubbing.contact().planes.size()));
+    time(out.probe_s, 1.0, [&] { return smooth.follow(at.T_wa); });
+    time(out.rubbing_probe_s, 1.0, [&] { return rubbing.follow(at.T_wa); });
     time(out.every_sample_s, 1.0, [&] {
       out.sum_of_samples += sum_of_all(*planes, at_surface);
       return status::ok;

@@ -345,19 +345,59 @@ TEST(ChangingScene, LetsABodyStandBackThatComesWhereTheProbeIs) {
   EXPECT_FALSE(stands_back());
   EXPECT_NEAR(told_at(-0.0019), 0.0001, 1e-5);
   EXPECT_FALSE(stands_back());
-  // A body that comes around the probe pushes not at all, and holds what goes further in.
+  // A body that comes around the probe is not felt, neither here nor at poses near by, until the probe has come out: then it
+  // stands back from there.
   const pose above{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, 0.03)};
   const body_handle cube = editor.add(of.cube, of.field_of(of.cube), above).value();
   static_cast<void>(feel.take(editor.prepare()));
   const double inside_m = -0.03 + table_half.z + tool_half.z - 0.003;  // 3 mm above the cube's middle
-  EXPECT_NEAR(told_at(inside_m), 0.0, near_m);
-  EXPECT_TRUE(stands_back());
-  EXPECT_EQ(t.force.on_probe_w.force, vec3(0.0));
+  for (const double deeper_m : {0.0, 5e-4, -5e-4}) {
+    EXPECT_EQ(told_at(inside_m + deeper_m), -1.0);
+    EXPECT_TRUE(stands_back());
+    EXPECT_FALSE(has(t.flags, tick_flag::beyond_field) || has(t.flags, tick_flag::passed));
+    ASSERT_NE(t.planes_near({vec3(0.0, 0.0, -1e-4), vec3(0.0)}, -1e-3, near), status::not_ready);
+    EXPECT_TRUE(near.empty());
+  }
+  const double at_face_m = inside_m - 0.009 - tool_half.z;  // the tool's lower face on the cube's upper one
+  double first_felt_m = 1.0, most_told_m = -1.0;
+  for (double deep_m = 0.009 + tool_half.z; deep_m > -1e-4; deep_m -= 5e-5) {
+    const double told_m = told_at(at_face_m + deep_m);
+    if (told_m > -1.0 && first_felt_m == 1.0) first_felt_m = deep_m;
+    most_told_m = std::max(most_told_m, told_m);
+  }
+  EXPECT_NEAR(first_felt_m, 0.7 * cube_half.z, 1e-4);
+  EXPECT_LT(most_told_m, 1e-5);
+  static_cast<void>(told_at(inside_m));
   // One that is gone stands back no more.
   ASSERT_TRUE(editor.remove(cube));
   static_cast<void>(feel.take(editor.prepare()));
   static_cast<void>(told_at(inside_m));
   EXPECT_FALSE(stands_back());
+}
+
+// A contact is in use until two periods after its pose: so a body that comes upon a probe on its way is judged where the
+// probe will be by then.
+TEST(ChangingScene, LooksAheadOfAProbeThatMoves) {
+  const box_set& of = boxes();
+  for (const double step_m : {2e-4, 5e-5, 0.0, -2e-4}) {
+    scene_editor editor = editor_of(1);
+    plane_renderer feel = make_plane_renderer(editor, {.reach_m = reach_m}).value();
+    tick t;
+    const auto told_at = [&](double depth_m) {
+      const pose T_wa{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, table_half.z + tool_half.z - depth_m)};
+      EXPECT_EQ(feel.step({T_wa, feel.placed()->T_wb, 1.0, feel.placed()->version}, t), status::ok);
+      double most_m = -1.0;
+      for (const support_plane& p : t.planes) most_m = std::max(most_m, p.depth_m);
+      return most_m;
+    };
+    constexpr double deep_m = 5e-4;
+    static_cast<void>(told_at(deep_m - step_m));
+    ASSERT_TRUE(editor.add(of.table, of.field_of(of.table), pose{}));
+    static_cast<void>(feel.take(editor.prepare()));
+    EXPECT_NEAR(told_at(deep_m), std::min(0.0, -2.0 * step_m), 1e-6);
+    EXPECT_NEAR(told_at(deep_m + step_m), std::min(step_m, -step_m), 1e-6);
+    EXPECT_LT(told_at(deep_m + 2.0 * step_m), 1e-6);
+  }
 }
 
 TEST(ChangingScene, LetsAStifferBodyStandBack) {
