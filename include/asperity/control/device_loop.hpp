@@ -11,12 +11,13 @@
 
 #include "asperity/control/control_settings.hpp"
 #include "asperity/control/exchange.hpp"
+#include "asperity/control/followed_handle.hpp"
+#include "asperity/control/loop_time.hpp"
 #include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/passivity_guard.hpp"
 #include "asperity/control/probe_motion.hpp"
 #include "asperity/control/rate_monitor.hpp"
 #include "asperity/control/session_record.hpp"
-#include "asperity/control/workspace_map.hpp"
 #include "asperity/device/device.hpp"
 #include "asperity/device/output_gate.hpp"
 #include "asperity/device/sample_check.hpp"
@@ -68,13 +69,11 @@ class device_loop {
               Observer observer = {})
       : device_(&dev),
         settings_(settings),
-        T_hc_(settings.map.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}),
         T_ca_(inverse(pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a})),
         shared_(&shared),
         observer_(std::move(observer)),
         check_(settings.samples),
-        clutch_(settings.map, settings.clutch),
-        speed_(settings.velocity, dev.capabilities().position_resolution_m, dev.capabilities().rotation_resolution_rad),
+        handle_(settings, dev.capabilities(), settings.map.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}),
         motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
         transient_(settings.transient, dev.capabilities().moving_mass_kg),
         guard_(guard_for(settings.guard, dev.capabilities())),
@@ -99,14 +98,14 @@ class device_loop {
   ///         gate_shut (see gate().fault())
   /// @rt as safe as the device: no allocation, lock, throw, print or clock here
   [[nodiscard]] status tick(std::int64_t clock_ns) noexcept {
-    const std::int64_t gap_ns = advance_clock(clock_ns);
+    const std::int64_t gap_ns = clock_.advance(clock_ns);
     const double dt_s = static_cast<double>(std::min(gap_ns, settings_.longest_step_ns)) * 1e-9;
-    const std::int64_t now_ns = now_ns_;
+    const std::int64_t now_ns = clock_.now_ns();
     const bool expired = now_ns > valid_until_ns_;
     const wrench held = expired && goes_silent_ ? wrench{} : gate_.last();
-    device_sample seen = last_seen_;
+    device_sample seen = handle_.last();
     const sample_verdict verdict = check_.judge(now_ns, device_->read(now_ns, seen), seen);
-    if (verdict == sample_verdict::accepted) last_seen_ = seen;
+    if (verdict == sample_verdict::accepted) handle_.take(seen);
     unobserved_s_ += static_cast<double>(gap_ns) * 1e-9;
 
     const bool accepted = verdict == sample_verdict::accepted;
@@ -119,8 +118,8 @@ class device_loop {
     if (placed_) {
       if (accepted) {
         const double given_j = std::exchange(unobserved_bodies_j_, 0.0);
-        const double raised_j = weight_.observe(last_seen_.T_dh, held, wanted_);
-        guard_.observe(last_seen_.T_dh, held, std::exchange(unobserved_s_, 0.0), given_j, raised_j);
+        const double raised_j = weight_.observe(handle_.last().T_dh, held, wanted_);
+        guard_.observe(handle_.last().T_dh, held, std::exchange(unobserved_s_, 0.0), given_j, raised_j);
         raised_j_ += raised_j;
       }
       const std::uint64_t version = shared_->contacts.front().version;
@@ -128,7 +127,7 @@ class device_loop {
       take_scene(version, now_ns);
       rates = rates_.judge(gap_ns, expired, contact_age_ns(now_ns), motion_.caught_up(), surprised);
       probe_status = move_probe(dt_s, accepted, rates);
-      if (accepted) transient_.observe(last_seen_.T_dh.position);
+      if (accepted) transient_.observe(handle_.last().T_dh.position);
       ring(dt_s, probe_status == status::ok && accepted && may_put_out(device_->state()));
       // Without a measured pose, or with a probe that is lost, nothing is put out, the guard's damping included.
       if (accepted && probe_status == status::ok) {
@@ -139,7 +138,8 @@ class device_loop {
     }
     if (rates.fault != gate_fault::none && may_put_out(device_->state())) gate_.trip(rates.fault, now_ns);
     if (guard_.exhausted()) gate_.trip(gate_fault::energy, now_ns);
-    if (is_application_silent()) gate_.trip(gate_fault::watchdog, now_ns);
+    const std::uint64_t beats = shared_->application.beats();
+    if (application_.is_silent(beats, now_ns, settings_.watchdog_ns)) gate_.trip(gate_fault::watchdog, now_ns);
     if (!may_put_out(device_->state())) {
       gate_.rest();
       guarded.on_hand = {};
@@ -181,27 +181,27 @@ class device_loop {
   [[nodiscard]] const body_follower& bodies() const noexcept { return bodies_; }
   [[nodiscard]] const sample_check& samples() const noexcept { return check_; }
   /// Where the handle is in the world, and how much of it the probe has.
-  [[nodiscard]] const clutched_map& clutch() const noexcept { return clutch_; }
+  [[nodiscard]] const clutched_map& clutch() const noexcept { return handle_.clutch(); }
   /// How fast the handle moves, and who says so.
-  [[nodiscard]] const velocity_estimator& speed() const noexcept { return speed_; }
+  [[nodiscard]] const velocity_estimator& speed() const noexcept { return handle_.speed(); }
   [[nodiscard]] const rate_monitor& rates() const noexcept { return rates_; }
   [[nodiscard]] Observer& observer() noexcept { return observer_; }
   [[nodiscard]] Device& device() noexcept { return *device_; }
 
   /// Shuts the gate: the wrench goes to zero at the slew rate and the device is disarmed.
-  void stop(gate_fault cause = gate_fault::stopped) noexcept { gate_.trip(cause, now_ns_); }
+  void stop(gate_fault cause = gate_fault::stopped) noexcept { gate_.trip(cause, clock_.now_ns()); }
 
   /// After a person has seen the fault: opens the gate and starts anew from the device's next pose. Arms nothing.
   /// @return false while the wrench is not zero yet
   [[nodiscard]] bool clear_fault() noexcept {
     if (!gate_.clear()) return false;
     check_.restart();
-    speed_.restart();
+    handle_.restart();
     guard_.reset();
     rates_.restart();
     placed_ = false;
     motion_.forget_contact();
-    beat_ns_ = now_ns_;
+    application_.restart(clock_.now_ns());
     return true;
   }
 
@@ -221,28 +221,6 @@ class device_loop {
     const bool gone = written == status::not_ready &&
                       (s == device_state::absent || s == device_state::present || s == device_state::fault);
     gate_.trip(gone ? gate_fault::device_departed : gate_fault::device_failed);
-  }
-
-  // The first tick counts as a beat, because the application has just started the session. A beat carries no time: one
-  // that is found after a long gap may have come at the end of it, so the whole gap counts as silence.
-  [[nodiscard]] bool is_application_silent() noexcept {
-    const std::uint64_t beats = shared_->application.beats();
-    if (!heard_) beat_ns_ = now_ns_;
-    const bool silent = settings_.watchdog_ns > 0 && now_ns_ - beat_ns_ > settings_.watchdog_ns;
-    if (beats != beats_) beat_ns_ = now_ns_;
-    beats_ = beats;
-    heard_ = true;
-    return silent;
-  }
-
-  // The loop's time follows the clock forward only. @return how far it went, ns
-  [[nodiscard]] std::int64_t advance_clock(std::int64_t clock_ns) noexcept {
-    if (!started_) now_ns_ = last_clock_ns_ = clock_ns;
-    const std::int64_t step = std::max<std::int64_t>(0, clock_ns - last_clock_ns_);
-    started_ = true;
-    last_clock_ns_ = clock_ns;
-    now_ns_ += step;
-    return step;
   }
 
   [[nodiscard]] std::int64_t contact_age_ns(std::int64_t now_ns) const noexcept {
@@ -280,53 +258,39 @@ class device_loop {
     shared_->scene.publish();
   }
 
-  [[nodiscard]] pose pose_of_sample() const noexcept { return clutch_.T_wh() * T_hc_; }
-
   // After the guard, which would take a weight from the motors and give it to the hand.
   [[nodiscard]] wrench hold_weight(double dt_s, double scale) noexcept {
     const bool may = may_put_out(device_->state()) && gate_.fault() == gate_fault::none;
-    return weight_.hold(last_seen_.T_dh, may, dt_s, scale);
+    return weight_.hold(handle_.last().T_dh, may, dt_s, scale);
   }
 
   // A handle that has let go of the probe, or takes it up again, does so where the probe is and without a pull.
   void follow_handle(double dt_s) noexcept {
-    speed_.observe(last_seen_);
-    if (has_all(last_seen_.valid, sample_field::buttons)) buttons_ = last_seen_.buttons;
-    const clutch_settings& c = settings_.clutch;
-    const bool asked = c.by_application && shared_->let_go.load(std::memory_order_relaxed);
-    if (clutch_.follow(last_seen_.T_dh, asked || (buttons_ & c.buttons) != 0, dt_s) && placed_) {
-      clutch_.put(motion_.probe().state().T_wc * inverse(T_hc_));
-      motion_.put_target(pose_of_sample());
+    if (handle_.follow(shared_->let_go.load(std::memory_order_relaxed), dt_s) && placed_) {
+      handle_.put(motion_.probe().state().T_wc);
+      motion_.put_target(handle_.T_wc());
     }
   }
 
-  // Of the target at c_A; nothing where its way is to tell.
-  [[nodiscard]] std::optional<twist> velocity_of_sample(const pose& wanted_T_wc) const noexcept {
-    if (speed_.used() == velocity_source::poses) return std::nullopt;
-    twist v = clutch_.to_world(speed_.velocity_d());
-    v.linear += glm::cross(v.angular, wanted_T_wc.position - clutch_.T_wh().position);
-    return v;
-  }
-
   void place() noexcept {
-    placed_ns_ = now_ns_;
-    clutch_.take_up(last_seen_.T_dh);
-    motion_.place(pose_of_sample());
+    placed_ns_ = clock_.now_ns();
+    handle_.take_up();
+    motion_.place(handle_.T_wc());
     guard_.reset();
     weight_.reset();
     transient_.reset();
-    raised_j_ = 0.0;
+    raised_j_ = unobserved_bodies_j_ = 0.0;
     placed_ = true;
   }
 
   // Moves the probe towards the hand. After a lapse the target returns to the hand no faster than contacts can follow;
   // without contacts it stays.
   [[nodiscard]] status move_probe(double dt_s, bool accepted, const rate_verdict& rates) noexcept {
-    const pose wanted_T_wc = accepted ? pose_of_sample() : motion_.target();
-    const double part = part_allowed(motion_.way_to(wanted_T_wc), dt_s, rates);
+    const pose wanted_T_wc = accepted ? handle_.T_wc() : motion_.target();
+    const double part = rates_.part_allowed(rates, motion_.way_to(wanted_T_wc), dt_s);
     const double before_j = motion_.probe().energy().from_bodies_j;
     const status s = motion_.move(dt_s, wanted_T_wc, part, shared_->contacts.front(), bodies_.ways(),
-                                  accepted ? velocity_of_sample(wanted_T_wc) : std::nullopt);
+                                  accepted ? handle_.velocity_of(wanted_T_wc) : std::nullopt);
     unobserved_bodies_j_ += motion_.probe().energy().from_bodies_j - before_j;
     return s;
   }
@@ -338,7 +302,7 @@ class device_loop {
     const double scale = settings_.map.scale;
     const vec3 push_d = r_dw * (scale * motion_.touched().on_probe_w.force);
     const vec3 velocity_d = r_dw * ((1.0 / scale) * motion_.probe().state().velocity_w.linear);
-    ringing_d_ = transient_.play(push_d, velocity_d, dt_s, felt ? clutch_.ratio() : 0.0);
+    ringing_d_ = transient_.play(push_d, velocity_d, dt_s, felt ? handle_.clutch().ratio() : 0.0);
   }
 
   void follow_bodies(std::int64_t now_ns) noexcept {
@@ -346,18 +310,8 @@ class device_loop {
     bodies_.advance(now_ns);
   }
 
-  [[nodiscard]] double part_allowed(const vec6& way, double dt_s, const rate_verdict& rates) const noexcept {
-    if (!rates.settling) return 1.0;
-    if (rates.blind) return 0.0;
-    const double far_m = glm::length(way.linear);
-    const double far_rad = glm::length(way.angular);
-    const double most_m = rates_.limits().catch_up_m_per_s * dt_s;
-    const double most_rad = rates_.limits().catch_up_rad_per_s * dt_s;
-    return std::min(far_m > most_m ? most_m / far_m : 1.0, far_rad > most_rad ? most_rad / far_rad : 1.0);
-  }
-
   [[nodiscard]] wrench wrench_on_hand() const noexcept {
-    wrench out = clutch_.to_device(motion_.on_hand_w(), motion_.target().position);
+    wrench out = handle_.clutch().to_device(motion_.on_hand_w(), motion_.target().position);
     if (transient_.used()) out.force += ringing_d_;
     return out;
   }
@@ -367,7 +321,7 @@ class device_loop {
     const linear_contact& contact = shared_->contacts.front();
     session_record r;
     r.time_ns = now_ns;
-    r.T_dh = last_seen_.T_dh;
+    handle_.tell(r);
     r.T_wa_target = motion_.target() * T_ca_;
     r.T_wa = motion_.probe().state().T_wc * T_ca_;
     r.on_hand_d = sent;
@@ -377,7 +331,8 @@ class device_loop {
     r.planes = static_cast<std::uint32_t>(contact.planes.size());
     r.unbalanced_n = motion_.pressed().residual_n;
     r.overlap_m = motion_.pressed().deepest_m;
-    r.flags = contact.flags | flags_of(motion_, !contact.planes.empty() && probe_status == status::not_finite);
+    const bool failed = !contact.planes.empty() && probe_status == status::not_finite;
+    r.flags = contact.flags | motion_.flags(failed);
     if (bodies_.is_lost() || bodies_.refused() || bodies_.gone()) r.flags |= tick_flag::body_lost;
     r.contact_age_ns = std::max<std::int64_t>(0, contact_age_ns(now_ns));
     r.delivered_j = guard_.delivered_j();
@@ -391,30 +346,12 @@ class device_loop {
     r.guard_scale = guarded.scale;
     r.rate_scale = rates.scale;
     r.pulling = motion_.touched().pulling;
-    r.buttons = buttons_;
-    r.buttons_told = has_all(last_seen_.valid, sample_field::buttons);
-    r.gripper_told = has_all(last_seen_.valid, sample_field::gripper) && std::isfinite(last_seen_.gripper_m);
-    if (r.gripper_told) gripper_m_ = last_seen_.gripper_m;
-    r.gripper_m = gripper_m_;
-    r.clutch_ratio = clutch_.ratio();
-    r.velocity = speed_.used();
-    r.velocity_refused = speed_.refused();
     r.sample = verdict;
     r.contact_status = contact.answer;
     r.probe_status = probe_status;
     r.device = device_->state();
     r.fault = gate_.fault();
     observer_(r);
-  }
-
-  // The flags that the probe's last substep gives.
-  [[nodiscard]] static tick_flag flags_of(const probe_motion& moved, bool failed) noexcept {
-    const contact_solution& s = moved.pressed();
-    tick_flag out = tick_flag::none;
-    if (s.deepest_m > deepest_held_m) out |= tick_flag::not_held;
-    if (failed || s.residual_n > most_unbalanced_n) out |= tick_flag::unbalanced;
-    if (moved.rubbing().leaves_out()) out |= tick_flag::friction_left_out;
-    return out;
   }
 
   [[nodiscard]] status answer(sample_verdict verdict, status probe_status) const noexcept {
@@ -425,13 +362,13 @@ class device_loop {
 
   Device* device_;
   control_settings settings_;
-  pose T_hc_;
   pose T_ca_;
   exchange* shared_;
   Observer observer_;
   sample_check check_;
-  clutched_map clutch_;
-  velocity_estimator speed_;
+  loop_clock clock_;
+  heartbeat_watch application_;
+  followed_handle handle_;
   probe_motion motion_;
   body_follower bodies_;
   contact_transient transient_;
@@ -442,23 +379,14 @@ class device_loop {
   output_gate gate_;
   bool goes_silent_;  // the device puts out nothing once a command has expired
 
-  device_sample last_seen_{};
-  double gripper_m_ = 0.0;
-  std::uint32_t buttons_ = 0;  // as last told
-  bool started_ = false;
   bool placed_ = false;
   std::int64_t placed_ns_ = 0;
-  std::int64_t last_clock_ns_ = 0;
-  std::int64_t now_ns_ = 0;           // the loop's time: the clock's steps forward, summed up
-  double unobserved_s_ = 0.0;         // time since the guard saw a pose ...
-  wrench wanted_{};                   // what went into the gate last
-  double raised_j_ = 0.0;             // work of the handle's weight
-  double unobserved_bodies_j_ = 0.0;  // ... and what bodies gave in it
+  double unobserved_s_ = 0.0;                                               // time since the guard saw a pose ...
+  wrench wanted_{};                                                         // what went into the gate last
+  double raised_j_ = 0.0;                                                   // work of the handle's weight
+  double unobserved_bodies_j_ = 0.0;                                        // ... and what bodies gave in it
   std::int64_t valid_until_ns_ = std::numeric_limits<std::int64_t>::max();  // of the last command
   std::uint64_t sequence_ = 0;
-  std::uint64_t beats_ = 0;   // of the application, as last seen ...
-  std::int64_t beat_ns_ = 0;  // ... to change at this time
-  bool heard_ = false;
 };
 
 }  // namespace asperity

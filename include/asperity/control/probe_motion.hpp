@@ -19,6 +19,7 @@
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
+#include "asperity/render/tick_flag.hpp"
 
 namespace asperity {
 
@@ -158,6 +159,14 @@ class probe_motion {
   [[nodiscard]] const contact_solution& pressed() const noexcept { return pressed_; }
   /// What rubs, and its energy.
   [[nodiscard]] const friction& rubbing() const noexcept { return friction_; }
+  /// What the planes did not answer in the last substep. @param failed it found no solution on planes
+  [[nodiscard]] tick_flag flags(bool failed) const noexcept {
+    tick_flag out = tick_flag::none;
+    if (pressed_.deepest_m > deepest_held_m) out |= tick_flag::not_held;
+    if (failed || pressed_.residual_n > most_unbalanced_n) out |= tick_flag::unbalanced;
+    if (friction_.leaves_out()) out |= tick_flag::friction_left_out;
+    return out;
+  }
   /// What bodies felt in the last period, where the contact had planes; the time is the caller's.
   [[nodiscard]] const felt_bodies& felt() const noexcept { return felt_; }
   /// Of what the contact knows, the largest share that a body had used up by its own motion at the period's end.

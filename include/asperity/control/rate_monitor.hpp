@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "asperity/control/linear_contact.hpp"
+#include "asperity/core/spatial.hpp"
 #include "asperity/device/output_gate.hpp"
 
 namespace asperity {
@@ -116,6 +117,19 @@ class rate_monitor {
     out.blind = expired || contact_lapsed;
     out.fault = fault(gap_ns, contact_age_ns);
     return out;
+  }
+
+  /// The part of its way to the hand that the probe's target may go in dt_s seconds: all of it, unless ticks were late.
+  /// Then it stays while nothing is known of the hand or the contact, and returns no faster than contacts can follow.
+  /// @param now the answer of judge()   @param way translation, m, and rotation vector, rad
+  [[nodiscard]] double part_allowed(const rate_verdict& now, const vec6& way, double dt_s) const noexcept {
+    if (!now.settling) return 1.0;
+    if (now.blind) return 0.0;
+    const double far_m = glm::length(way.linear);
+    const double far_rad = glm::length(way.angular);
+    const double most_m = limits_.catch_up_m_per_s * dt_s;
+    const double most_rad = limits_.catch_up_rad_per_s * dt_s;
+    return std::min(far_m > most_m ? most_m / far_m : 1.0, far_rad > most_rad ? most_rad / far_rad : 1.0);
   }
 
   /// Begins anew after a person has cleared a fault. The report goes on.

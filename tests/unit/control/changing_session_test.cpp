@@ -263,12 +263,10 @@ TEST(changing_session, makes_no_energy) {
       "  %llu changes, the hand in touch at %llu; most surplus %.1f uJ; %d session(s) with surplus, %d that rose\n",
       static_cast<unsigned long long>(changes), static_cast<unsigned long long>(touched), 1e6 * worst_j, giving,
       rising);
-  // A body that comes upon a moving probe is judged where the probe was when the version was made (docs/how-to/
-  // change-the-scene.md): few sessions see it, and of them the energy and the overlap are bounded.
-  EXPECT_LE(giving, sessions / 20);
-  EXPECT_LE(worst_j, 1e-2);
-  EXPECT_LE(rising, sessions / 5);
-  EXPECT_LE(worst_rise_m, 1e-3);
+  EXPECT_EQ(giving, 0);
+  // What comes upon a moving probe is judged where the probe will be if it goes on as it does; a hand may do otherwise.
+  EXPECT_LE(rising, sessions / 20);
+  EXPECT_LE(worst_rise_m, 3e-4);
   EXPECT_GT(touched, changes / 10);
 }
 

@@ -61,6 +61,29 @@ class work_monitor {
   bool ended_ = false;
 };
 
+/// For work on the calling thread, without the GIL: asks Python every 50 ms whether a signal has come, such as Ctrl-C.
+class signal_watch {
+ public:
+  /// @return whether to go on   @pre the GIL is not held
+  [[nodiscard]] bool operator()() {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_look_ < std::chrono::milliseconds(50)) return true;
+    last_look_ = now;
+    const py::gil_scoped_acquire gil;
+    if (PyErr_CheckSignals() == 0) return true;
+    raised_.emplace();
+    return false;
+  }
+  /// Raises what ended the work, if anything did. @pre the GIL is held
+  void rethrow() const {
+    if (raised_) throw *raised_;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_look_ = std::chrono::steady_clock::now();
+  std::optional<py::error_already_set> raised_;
+};
+
 /// Tells `progress` the news; has Python act on signals. @return what was raised, if anything
 /// @pre the GIL is held
 std::optional<py::error_already_set> look_after(work_monitor& monitor, const py::object& progress);

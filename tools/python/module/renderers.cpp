@@ -1,5 +1,5 @@
 // From poses to wrenches.
-#include <chrono>
+#include <functional>
 #include <thread>
 
 #include "arrays.hpp"
@@ -132,28 +132,18 @@ py::array_t<double> step_batch(renderer_handle& self, const py::object& given, u
   const std::span<double> rows(out.mutable_data(), static_cast<std::size_t>(out.size()));
   std::size_t used = threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
   if (self.source->remembers()) used = 1;
-  std::optional<py::error_already_set> raised;
-  auto last_look = std::chrono::steady_clock::now();
-  const auto keep_going = [&] {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_look < std::chrono::milliseconds(50)) return true;
-    last_look = now;
-    const py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() == 0) return true;
-    raised.emplace();
-    return false;
-  };
+  signal_watch keep_going;
   batch_outcome outcome;
   result<void> ready;
   {
     const py::gil_scoped_release others_may_run;
     const std::lock_guard lock(self.busy);
     ready = have_renderers(self, used);
-    if (ready) outcome = step_all(std::span(self.feel).first(used), T_wa, self.T_wb, rows, keep_going);
+    if (ready) outcome = step_all(std::span(self.feel).first(used), T_wa, self.T_wb, rows, std::ref(keep_going));
     self.incomplete += outcome.incomplete;
   }
   unwrap(ready);
-  if (raised) throw *raised;
+  keep_going.rethrow();
   if (outcome.failed != status::ok) refuse(outcome.failed, "row " + std::to_string(outcome.failed_at) + " of poses");
   return out;
 }

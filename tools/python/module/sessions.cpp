@@ -1,5 +1,5 @@
 // Sessions of the two-rate loop with a simulated device, on the virtual clock.
-#include <chrono>
+#include <functional>
 #include <utility>
 
 #include "approach.hpp"
@@ -7,6 +7,7 @@
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
 #include "errors.hpp"
+#include "long_work.hpp"
 #include "parts.hpp"
 #include "renderer_handle.hpp"
 #include "simulated.hpp"
@@ -292,24 +293,14 @@ std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const de
 py::tuple run(session_handle& self, double seconds) {
   if (!(seconds >= 0.0 && seconds <= 1e5)) throw py::value_error("seconds has to be from 0 to 1e5 s");
   if (self.stopped()) raise("invalid_argument", "the session was stopped: make another one");
-  std::optional<py::error_already_set> raised;
-  auto last_look = std::chrono::steady_clock::now();
-  const auto keep_going = [&] {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_look < std::chrono::milliseconds(50)) return true;
-    last_look = now;
-    const py::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() == 0) return true;
-    raised.emplace();
-    return false;
-  };
+  signal_watch keep_going;
   recorded_rows rows;
   {
     const py::gil_scoped_release others_may_run;
     const std::lock_guard lock(self.busy);
-    rows = self.run(seconds, keep_going);
+    rows = self.run(seconds, std::ref(keep_going));
   }
-  if (raised) throw *raised;
+  keep_going.rethrow();
   return to_python(rows);
 }
 
