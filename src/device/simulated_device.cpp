@@ -13,6 +13,7 @@ namespace asperity {
 simulated_device::simulated_device(simulated_settings settings)
     : settings_(std::move(settings)),
       motion_(settings_.motion, settings_.seed),
+      led_(motion_.at(0.0).T_dh),
       bits_(settings_.seed ^ 0x9e3779b97f4a7c15ULL),
       luck_(settings_.seed ^ 0x6c6f7373ULL),
       actuator_(settings_.actuator) {
@@ -164,10 +165,15 @@ void simulated_device::advance(std::int64_t now_ns) noexcept {
   while (plant_ns_ + plant_step_ns <= now_ns) step();
 }
 
+const hand_target& simulated_device::led(double h_s) noexcept {
+  const pose* const goal = settings_.lead->newest();
+  return led_.follow(goal != nullptr ? *goal : motion_.at(0.0).T_dh, h_s);
+}
+
 void simulated_device::step() noexcept {
   const double h = static_cast<double>(plant_step_ns) * 1e-9;
   const double t = static_cast<double>(plant_ns_ - origin_ns_) * 1e-9;
-  const hand_target hand = motion_.at(t);
+  const hand_target hand = settings_.lead ? led(h) : motion_.at(t);
   const hand_settings& g = settings_.hand;
   const plant_settings& p = settings_.plant;
   const wrench put_out = put_out_ =

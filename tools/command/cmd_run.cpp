@@ -41,6 +41,13 @@ result<void> check_options(const run_command& options) {
   if (!options.view && options.view_address != run_command().view_address) {
     return error{error_code::invalid_argument, "--view-address is of the live page: add --view"};
   }
+  if (is_led(options) && !options.view) {
+    return error{error_code::invalid_argument, "--motion mouse leads the hand from the live page: add --view"};
+  }
+  if (is_led(options) && !is_simulated(options)) {
+    return error{error_code::invalid_argument,
+                 "--motion mouse leads the simulated hand: leave it out, or use --device simulated"};
+  }
   if (const result<void> ok = check(options.render); !ok) return ok;
   if (is_replay(options) && replayed_file(options).empty()) {
     return error{error_code::invalid_argument, "--device replay: names no file: use --device replay:FILE"};
@@ -88,6 +95,7 @@ struct felt_device {
   std::unique_ptr<known_devices> known;
   std::optional<device_replay> replay;
   std::optional<any_device> device;
+  std::shared_ptr<hand_lead> lead;  // that a page leads the simulated hand by
 
   explicit felt_device(driver_watch& calls) : watch(calls) {}
   felt_device(const felt_device&) = delete;
@@ -109,6 +117,7 @@ std::vector<scripted_press> presses_of(const run_command& options) {
 }
 
 result<void> open_device(const run_command& options, const scene& bodies, felt_device& felt) {
+  if (is_led(options)) felt.lead = std::make_shared<hand_lead>();
   if (felt.replay) {
     felt.device.emplace(felt.replay->device());
   } else if (is_simulated(options)) {
@@ -118,8 +127,11 @@ result<void> open_device(const run_command& options, const scene& bodies, felt_d
       plant.gravity_d = w->mass_kg / plant.mass_kg * w->gravity_d;
       plant.centre_h = w->centre_h;
     }
-    felt.device.emplace(simulated_device(
-        {.seed = options.seed, .motion = motion_of(options, bodies), .plant = plant, .presses = presses_of(options)}));
+    felt.device.emplace(simulated_device({.seed = options.seed,
+                                          .motion = motion_of(options, bodies),
+                                          .plant = plant,
+                                          .presses = presses_of(options),
+                                          .lead = felt.lead}));
     return felt.device->open();
   } else {
     {
@@ -293,8 +305,8 @@ result<answer> run_session(const run_command& options, const common_options& com
   if (const result<void> wanted = still_wanted(); !wanted) return wanted.error();
   std::optional<run_view> page;
   if (options.view) {
-    result<run_view> opened =
-        run_view::open(options, feel->scene(), poses->T_wb, *poses->T_wa, control.map, device.capabilities());
+    result<run_view> opened = run_view::open(options, feel->scene(), poses->T_wb, *poses->T_wa, control.map,
+                                             device.capabilities(), felt.lead);
     if (!opened) return opened.error();
     page.emplace(std::move(opened).value());
     complain("note: the page is at " + page->url());
@@ -363,8 +375,8 @@ void add_run(command_line& line) {
                  "Length of the session, 3 by default; a replay lasts as long as its recording")
       ->check(positive_number_error, "NUMBER > 0")
       ->check(CLI::Range(1e-3, 86400.0));
-  sub.add_option("--motion", o->motion, "What the simulated hand does")
-      ->check(CLI::IsMember({"press", "scrub", "twist", "free"}))
+  sub.add_option("--motion", o->motion, "What the simulated hand does; mouse: what a person does on the page of --view")
+      ->check(CLI::IsMember({"press", "scrub", "twist", "free", "mouse"}))
       ->capture_default_str();
   sub.add_option("--seed", o->seed, "Seed of the simulated hand")
       ->check(whole_number_error, "WHOLE NUMBER")

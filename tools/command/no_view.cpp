@@ -8,7 +8,7 @@ struct run_view::inside {
 };
 
 result<run_view> run_view::open(const run_command&, const scene&, const std::vector<pose>&, const pose&,
-                                const workspace_map&, const device_capabilities&) {
+                                const workspace_map&, const device_capabilities&, std::shared_ptr<hand_lead>) {
   return error{error_code::unsupported,
                "--view: this build has no live page, which needs libcivetweb-dev; build with it, or leave --view out"};
 }

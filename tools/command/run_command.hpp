@@ -54,6 +54,8 @@ inline constexpr std::string_view replay_prefix = "replay:";
 [[nodiscard]] inline bool is_replay(const run_command& options) {
   return std::string_view(options.device).starts_with(replay_prefix);
 }
+/// Whether a person leads the simulated hand from the page.
+[[nodiscard]] inline bool is_led(const run_command& options) { return options.motion == "mouse"; }
 /// Length of a session that is no replay.
 [[nodiscard]] inline double seconds_of(const run_command& options) {
   return options.seconds.value_or(options.view ? usual_viewed_seconds : usual_seconds);

@@ -19,7 +19,8 @@ struct run_view::inside {
 };
 
 result<run_view> run_view::open(const run_command& options, const scene& bodies, const std::vector<pose>& T_wb,
-                                const pose& T_wa, const workspace_map& map, const device_capabilities& device) {
+                                const pose& T_wa, const workspace_map& map, const device_capabilities& device,
+                                std::shared_ptr<hand_lead> lead) {
   view::page_scene shown;
   shown.title = file_stem(options.probe) + " on " + file_stem(options.fixed.front());
   shown.bodies.push_back({file_stem(options.probe), bodies.probe, T_wa});
@@ -27,6 +28,7 @@ result<run_view> run_view::open(const run_command& options, const scene& bodies,
     shown.bodies.push_back({file_stem(options.fixed[b]), bodies.fixed[b], T_wb[b]});
   }
   shown.map = map;
+  shown.leads = lead != nullptr;
   shown.virtual_clock = clock_of(options) == "virtual";
   shown.device_period_s = 1e-9 * static_cast<double>(periods_of(options).device_ns);
   shown.most_force_n = device.peak_force_n;
@@ -39,6 +41,7 @@ result<run_view> run_view::open(const run_command& options, const scene& bodies,
     settings.token = std::move(token).value();
   }
   auto self = std::make_unique<inside>();
+  if (lead) self->feed->take_lead(std::move(lead), map);
   result<view::page_server> server =
       view::page_server::start(settings, view::make_content(shown, {}, view::live_points), self->feed.get());
   if (!server) return server.error();

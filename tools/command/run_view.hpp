@@ -10,6 +10,7 @@
 
 #include "asperity/control/workspace_map.hpp"
 #include "asperity/device/capabilities.hpp"
+#include "asperity/device/simulated/hand_lead.hpp"
 #include "asperity/render/any_renderer.hpp"
 #include "run_command.hpp"
 #include "session.hpp"
@@ -30,11 +31,11 @@ inline constexpr std::uint16_t usual_view_port = 8765;
 /// A page that shows a session, and the way to it. Pages see the newest of it and hold nothing up.
 class run_view {
  public:
-  /// Draws the bodies and begins to listen.
+  /// Draws the bodies and begins to listen. @param lead that pages lead the hand by; null: they do not
   /// @return unsupported where this build has no page | invalid_argument | io_failed
   [[nodiscard]] static result<run_view> open(const run_command& options, const scene& bodies,
                                              const std::vector<pose>& T_wb, const pose& T_wa, const workspace_map& map,
-                                             const device_capabilities& device);
+                                             const device_capabilities& device, std::shared_ptr<hand_lead> lead);
 
   run_view(run_view&&) noexcept;
   run_view& operator=(run_view&&) = delete;

@@ -5,11 +5,14 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <utility>
 
+#include "asperity/control/workspace_map.hpp"
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/triple_buffer.hpp"
+#include "asperity/device/simulated/hand_lead.hpp"
 #include "asperity/render/any_renderer.hpp"
 #include "view/trace.hpp"
 
@@ -89,6 +92,18 @@ class feed {
     while (left > 0 && !steps_.compare_exchange_weak(left, left - 1, std::memory_order_relaxed)) continue;
     return left > 0;
   }
+  /// Pages lead the simulated hand from now on. Before the session begins.
+  void take_lead(std::shared_ptr<hand_lead> lead, const workspace_map& map) noexcept {
+    lead_ = std::move(lead);
+    map_ = map;
+  }
+  [[nodiscard]] bool leads() const noexcept { return lead_ != nullptr; }
+  /// A page wants the probe's body frame there. Any thread of a page; pages wait for each other here, a session never does.
+  /// @pre leads(), is_valid(T_wa)
+  void lead_to(const pose& T_wa) {
+    const std::lock_guard lock(leading_);
+    lead_->lead_to(map_.to_device(T_wa * inverse(map_.T_ha)));
+  }
   void forget_steps() noexcept { steps_.store(0, std::memory_order_relaxed); }
   /// Seconds of the session for one of the wall.
   void set_speed(double speed) noexcept { speed_.store(speed, std::memory_order_relaxed); }
@@ -98,6 +113,9 @@ class feed {
   trace_ring rows_;
   triple_buffer<contact_snapshot> contacts_;
   std::mutex reading_;  // of contacts_, among pages
+  std::shared_ptr<hand_lead> lead_;
+  workspace_map map_;
+  std::mutex leading_;  // among pages
   std::uint64_t contact_ticks_ = 0;
   std::atomic<bool> ended_{false};
   std::atomic<bool> paused_{false};

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <chrono>
 #include <civetweb.h>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <optional>
@@ -90,6 +91,25 @@ std::optional<Number> number_of(std::string_view query, std::string_view name) {
   const auto [end, failed] = std::from_chars(query.data(), query.data() + query.size(), value);
   if (failed != std::errc() || end != query.data() + query.size()) return std::nullopt;
   return value;
+}
+
+// Seven numbers: a place within ten metres and a quaternion, x y z w, whose length is nearly one.
+std::optional<pose> pose_of(std::string_view text) {
+  std::array<double, 7> n{};
+  for (std::size_t i = 0; i < n.size(); ++i) {
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), n[i]);
+    if (failed != std::errc()) return std::nullopt;
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    const bool last = i + 1 == n.size();
+    if (last ? !text.empty() : !text.starts_with(',')) return std::nullopt;
+    if (!last) text.remove_prefix(1);
+  }
+  constexpr double farthest_m = 10.0, apart = 1e-3;
+  const vec3 place(n[0], n[1], n[2]);
+  const quat turn(n[6], n[3], n[4], n[5]);
+  const double length = glm::length(turn);
+  if (!(glm::length(place) <= farthest_m) || !(std::fabs(length - 1.0) <= apart)) return std::nullopt;
+  return pose{glm::normalize(turn), place};
 }
 
 template <class T>
@@ -258,8 +278,13 @@ struct page_server::inside {
       live->allow_steps(*ticks);
     } else if (const auto speed = number_of<double>(query, "speed="); speed && *speed >= 0.001 && *speed <= 10.0) {
       live->set_speed(*speed);
+    } else if (query.starts_with("hand=")) {
+      if (!live->leads()) return refuse(to, 404, "the hand of this session is led by nobody: --motion mouse");
+      const std::optional<pose> T_wa = pose_of(query.substr(5));
+      if (!T_wa) return refuse(to, 400, "hand=x,y,z,qx,qy,qz,qw: metres, within 10 m, and a rotation");
+      live->lead_to(*T_wa);
     } else {
-      return refuse(to, 400, "pause, resume, step=1..10000 or speed=0.001..10");
+      return refuse(to, 400, "pause, resume, step=1..10000, speed=0.001..10 or hand=POSE");
     }
     return answer(to, 204, {}, {});
   }

@@ -28,6 +28,7 @@ struct page_scene {
   std::vector<shown_body> bodies;
   workspace_map map{};
   bool virtual_clock = false;     ///< pages may pause a live session
+  bool leads = false;             ///< pages lead the simulated hand
   double device_period_s = 1e-3;  ///< a tick that takes longer is late
   double most_force_n = 0.0;      ///< of the device; 0: not known
 };

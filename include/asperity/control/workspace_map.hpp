@@ -24,6 +24,12 @@ struct workspace_map {
     return {T_wd.rotation * T_dh.rotation, T_wd * (scale * T_dh.position)};
   }
 
+  /// The handle's pose in the device's base frame, where it has this one in the world.
+  /// @rt safe
+  [[nodiscard]] pose to_device(const pose& T_wh) const noexcept {
+    return {glm::conjugate(T_wd.rotation) * T_wh.rotation, (1.0 / scale) * (inverse(T_wd) * T_wh.position)};
+  }
+
   /// Velocity of the handle's origin in the world.
   /// @rt safe
   [[nodiscard]] twist to_world(const twist& velocity_d) const noexcept {

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The live page's server, asked by clients that behave and by clients that do not. ASPERITY PROBE FIXED."""
 import json
+import math
 import os
 import random
 import re
@@ -73,6 +74,16 @@ def rows_of(frame):
     following, missed = struct.unpack_from("<dd", frame, 32)
     times = struct.unpack_from(f"<{rows}d", frame, 56)
     return int(following), int(missed), times
+
+
+def newest(session, columns, name, count):
+    """Some values of the newest row."""
+    while True:
+        frame = session.ask("/frame?after=0")[2]
+        rows = struct.unpack_from("<I", frame, 4)[0]
+        if rows > 0:
+            at = 56 + 8 * rows + 4 * (len(columns) * (rows - 1) + columns.index(name))
+            return struct.unpack_from(f"<{count}f", frame, at)
 
 
 class PageServer(unittest.TestCase):
@@ -168,6 +179,32 @@ class PageServer(unittest.TestCase):
         self.assertEqual(self.session.ask("/do?resume", "POST", own)[0], 204)
         time.sleep(0.3)
         self.assertGreater(rows_of(self.session.ask(f"/frame?after={stepped}")[2])[0], stepped)
+
+    def test_a_hand_is_led_where_it_was_asked_for(self):
+        asks = ["X-Asperity: 1"]
+        self.assertEqual(self.session.ask("/do?hand=0,0,0.1,0,0,0,1", "POST", asks)[0], 404)
+        led = Session("--motion", "mouse")
+        try:
+            scene = json.loads(led.ask("/scene.json")[2])
+            self.assertTrue(scene["leads"])
+            x, y, z = newest(led, scene["columns"], "target_x", 3)
+            for bad in ("", "1,2,3", "0,0,0.1,0,0,0,1,", "0,0,0.1,0,0,0,1,2", "0,0,0.1,0,0,0,2", "0,0,0.1,0,0,0,0",
+                        "nan,0,0,0,0,0,1", "0,0,inf,0,0,0,1", "0,0,11,0,0,0,1", "0,0,0.1,0,0,0,1x", "a,b,c,d,e,f,g", "0,,0,0,0,0,1"):
+                self.assertEqual(led.ask(f"/do?hand={bad}", "POST", asks)[0], 400, bad)
+            self.assertEqual(led.ask("/do?hand=0,0,0.1,0,0,0,1", "POST")[0], 404, "without the page's own header")
+            time.sleep(0.3)
+            self.assertLess(math.dist(newest(led, scene["columns"], "target_x", 3), (x, y, z)), 3e-4, "nobody has led it")
+            wanted = (x + 0.004, y - 0.003, z + 0.02)
+            asked = ",".join(str(n) for n in (*wanted, 0, 0, 0.6, 0.8))
+            self.assertEqual(led.ask(f"/do?hand={asked}", "POST", asks)[0], 204)
+            until = time.monotonic() + 60
+            while math.dist(newest(led, scene["columns"], "target_x", 3), wanted) > 3e-4:
+                self.assertLess(time.monotonic(), until, "the hand did not come")
+                time.sleep(0.05)
+            turned = newest(led, scene["columns"], "target_qx", 4)
+            self.assertLess(math.dist(turned, (0, 0, 0.6, 0.8)), 0.01)
+        finally:
+            led.end()
 
     def test_pages_that_stall_leave_or_dawdle_hold_nobody_up(self):
         stalled = []

@@ -115,6 +115,62 @@ class Page(unittest.TestCase):
             b.open("about:blank")  # so that it does not complain about the server's end
             served.end()
 
+    def test_a_mouse_leads_the_hand(self):
+        b = self.browser
+        served = Served("run", *models("--view", "0", "--motion", "mouse", "--seconds", "600"))
+        try:
+            b.open(served.url)
+            b.wait("asperity.page.ready && asperity.page.state && asperity.page.history.size > 100", 90)
+            self.assertFalse(b.value("document.getElementById('hint').hidden"))
+            b.value("document.querySelector('[data-from=front]').click()")
+            b.wait("!asperity.page.changed")
+
+            def probe():
+                """Where the probe is on the page, metres for a pixel there, and the numbers of the newest row."""
+                return json.loads(b.value("""(() => {
+                  const p = asperity.page, at = p.scene.onCanvas(p.state.probe.centre), r = p.scene.canvas.getBoundingClientRect();
+                  return JSON.stringify({x: r.x + at.x, y: r.y + at.y, pixel: at.pixel, p: p.state.target.p, q: p.state.target.q,
+                                         hand: p.state.hand.force, contacts: p.history.value(p.state.row, p.history.column.contacts)});
+                })()"""))
+
+            def drag(from_, x, y, **more):
+                b.mouse("mousePressed", from_["x"], from_["y"], button="left", buttons=1, clickCount=1, **more)
+                for i in range(1, 11):
+                    b.mouse("mouseMoved", from_["x"] + x * i / 10, from_["y"] + y * i / 10, button="left", buttons=1, **more)
+                b.mouse("mouseReleased", from_["x"] + x, from_["y"] + y, button="left", **more)
+
+            begin, yaw = probe(), b.value("asperity.page.scene.camera.yaw")
+            self.assertEqual(begin["contacts"], 0)
+            drag(begin, 40, -30)
+            wanted = [begin["p"][0] + 40 * begin["pixel"], begin["p"][1], begin["p"][2] + 30 * begin["pixel"]]
+            at = f"asperity.page.state.target.p.every((x, i) => Math.abs(x - {wanted}[i]) < 4e-4)"
+            b.wait(at)
+            self.assertEqual(b.value("asperity.page.scene.camera.yaw"), yaw)
+            # Away from the probe the mouse turns the view, and the hand stays.
+            drag({"x": begin["x"] + 40, "y": begin["y"] + 200}, 30, 0)
+            self.assertNotEqual(b.value("asperity.page.scene.camera.yaw"), yaw)
+            self.assertTrue(b.value(at))
+            b.value("document.querySelector('[data-from=front]').click()")
+            # Pressed against the body it is held up, and less than a hand's spring away from where it is wanted.
+            now = probe()
+            drag(now, 0, 0.03 / now["pixel"])
+            b.wait("asperity.page.history.value(asperity.page.state.row, asperity.page.history.column.contacts) > 0")
+            b.wait("asperity.page.state.hand.force[2] > 0.3")
+            # Keys lead it back; with Alt the mouse turns it.
+            b.value("document.getElementById('scene').focus()")
+            for _ in range(60):
+                b.key("w")
+            b.wait("asperity.page.history.value(asperity.page.state.row, asperity.page.history.column.contacts) === 0")
+            b.wait("Math.hypot(...asperity.page.state.hand.force) < 0.05")
+            before = probe()
+            drag(before, 50, 0, modifiers=1)
+            b.wait("Math.abs(2 * Math.acos(Math.min(1, Math.abs(asperity.page.state.target.q.reduce((s, x, i) => s + x * "
+                   f"{before['q']}[i], 0)))) - 0.4) < 0.03")
+            b.picture(PICTURES / "mouse.png")
+        finally:
+            b.open("about:blank")
+            served.end()
+
     def test_replay_shows_the_row_of_its_time(self):
         b = self.browser
         recording = PICTURES / "recording.csv"

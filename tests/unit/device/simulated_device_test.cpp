@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <memory>
 
 #include <asperity/device/simulated/simulated_device.hpp>
 
@@ -172,6 +173,69 @@ TEST(simulated_device, quantises_and_delays) {
   }
   EXPECT_EQ(s.host_time_ns - s.device_time_ns, 5 * ms);
   EXPECT_LT(s.T_dh.position.x, d.true_T_dh().position.x - 0.0002);
+}
+
+// A person's hand that comes by jumps, as a mouse tells it: smooth, never faster than an arm, and there in the end.
+TEST(simulated_device, is_led_where_it_is_wanted) {
+  simulated_settings c = still_hand();
+  c.motion.T_dh.position = {0.01, 0.0, 0.02};
+  c.lead = std::make_shared<hand_lead>();
+  simulated_device d = armed(c);
+  device_sample s;
+  std::int64_t now = 0;
+  const auto go = [&](std::int64_t time_ns, auto&& look) {
+    for (const std::int64_t until = now + time_ns; now < until; now += ms) {
+      ASSERT_EQ(d.read(now, s), status::ok);
+      look();
+    }
+  };
+  go(200 * ms, [&] { EXPECT_LT(glm::distance(s.T_dh.position, c.motion.T_dh.position), 1e-6) << "nobody has led it"; });
+  const pose first{exp_rotation({0.0, 0.9, 0.0}), {0.06, -0.03, 0.02}};
+  c.lead->lead_to(first);
+  double fastest_m_per_s = 0.0, fastest_rad_per_s = 0.0, furthest_m = 0.0;
+  vec3 last = d.true_T_dh().position;
+  double steepest = 0.0;
+  vec3 last_velocity(0.0);
+  go(800 * ms, [&] {
+    const vec3 velocity = d.true_velocity_d().linear;
+    fastest_m_per_s = std::max(fastest_m_per_s, glm::length(velocity));
+    fastest_rad_per_s = std::max(fastest_rad_per_s, glm::length(d.true_velocity_d().angular));
+    furthest_m = std::max(furthest_m, glm::dot(d.true_T_dh().position - last, glm::normalize(first.position - last)));
+    steepest = std::max(steepest, glm::length(velocity - last_velocity) / 1e-3);
+    last_velocity = velocity;
+  });
+  EXPECT_LT(glm::distance(s.T_dh.position, first.position), 1e-5);
+  EXPECT_LT(glm::length(log_rotation(s.T_dh.rotation * glm::conjugate(first.rotation))), 1e-3);
+  EXPECT_GT(fastest_m_per_s, 0.25);
+  // The handle swings about the place that the hand's spring pulls it to.
+  EXPECT_LT(fastest_m_per_s, 1.4 * led_motion::fastest_m_per_s);
+  EXPECT_LT(fastest_rad_per_s, 1.4 * led_motion::fastest_rad_per_s);
+  EXPECT_LT(furthest_m, 1.2 * glm::distance(first.position, last));
+  EXPECT_LT(steepest, 60.0) << "m/s2: no jump of the target is one of the hand";
+  // The newest counts, and what is told later is where it goes.
+  c.lead->lead_to({quat(1, 0, 0, 0), {1.0, 0.0, 0.0}});
+  c.lead->lead_to(c.motion.T_dh);
+  go(1000 * ms, [] {});
+  EXPECT_LT(glm::distance(s.T_dh.position, c.motion.T_dh.position), 1e-5);
+}
+
+TEST(simulated_device, is_led_without_overshoot_and_no_faster_than_an_arm) {
+  for (const double h_s : {5e-5, 1e-3, 0.02}) {
+    for (const double way_m : {1e-4, 0.01, 0.5}) {
+      led_motion led(pose{});
+      const pose goal{exp_rotation({0.0, 0.0, 2.0 * way_m}), {way_m, 0.0, 0.0}};
+      double furthest_m = 0.0;
+      for (double t_s = 0.0; t_s < 2.0; t_s += h_s) {
+        const hand_target& now = led.follow(goal, h_s);
+        EXPECT_LE(glm::length(now.velocity_d.linear), led_motion::fastest_m_per_s * (1.0 + 1e-12));
+        EXPECT_LE(glm::length(now.velocity_d.angular), led_motion::fastest_rad_per_s * (1.0 + 1e-12));
+        furthest_m = std::max(furthest_m, now.T_dh.position.x);
+      }
+      EXPECT_NEAR(led.now().T_dh.position.x, way_m, 1e-6) << h_s;
+      EXPECT_NEAR(log_rotation(led.now().T_dh.rotation).z, 2.0 * way_m, 1e-6) << h_s;
+      EXPECT_LT(furthest_m, way_m + led_motion::fastest_m_per_s * std::max(h_s, 0.5 * led_motion::follows_s)) << h_s;
+    }
+  }
 }
 
 TEST(simulated_device, repeats_itself_to_the_bit) {

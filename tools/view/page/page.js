@@ -351,6 +351,11 @@
     } catch (why) {
       trouble(why.message);
     }
+    if (description.leads && page.scene !== null) {
+      page.scene.lead = new asperity.Lead(page.scene, () => page.state ?? null);
+      element("hint").hidden = false;
+      element("scene").setAttribute("aria-label", element("scene").getAttribute("aria-label") + " " + element("hint").textContent);
+    }
     listen();
     setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
     if (description.mode === "model") {

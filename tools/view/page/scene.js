@@ -216,8 +216,13 @@
     listen() {
       const held = new Map();
       const c = this.canvas;
-      c.addEventListener("pointerdown", (e) => { c.setPointerCapture(e.pointerId); held.set(e.pointerId, [e.clientX, e.clientY]); });
-      const release = (e) => held.delete(e.pointerId);
+      let led = null;  // the pointer that leads the hand
+      c.addEventListener("pointerdown", (e) => {
+        c.setPointerCapture(e.pointerId);
+        held.set(e.pointerId, [e.clientX, e.clientY]);
+        if (held.size === 1 && this.lead?.takes(e.offsetX, e.offsetY)) led = e.pointerId;
+      });
+      const release = (e) => { held.delete(e.pointerId); if (led === e.pointerId) led = null; };
       c.addEventListener("pointerup", release);
       c.addEventListener("pointercancel", release);
       c.addEventListener("contextmenu", (e) => e.preventDefault());
@@ -225,7 +230,10 @@
         const before = held.get(e.pointerId);
         if (before === undefined) return;
         const moved = [e.clientX - before[0], e.clientY - before[1]];
-        if (held.size === 2) {
+        if (led === e.pointerId && held.size === 1) {
+          const turns = e.buttons === 2 || e.altKey;
+          this.lead.drag(...moved, turns ? "turn" : e.shiftKey ? "deep" : "move");
+        } else if (held.size === 2) {
           const other = [...held.entries()].find(([id]) => id !== e.pointerId)[1];
           const gap = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
           this.zoom(gap(before) / gap([e.clientX, e.clientY]));
@@ -237,7 +245,11 @@
         }
         held.set(e.pointerId, [e.clientX, e.clientY]);
       });
-      c.addEventListener("wheel", (e) => { e.preventDefault(); this.zoom(Math.exp(0.0012 * e.deltaY)); }, { passive: false });
+      c.addEventListener("wheel", (e) => {
+        e.preventDefault();
+        if (led !== null) { this.lead.drag(0, 0.2 * e.deltaY, "deep"); return; }
+        this.zoom(Math.exp(0.0012 * e.deltaY));
+      }, { passive: false });
       c.addEventListener("keydown", (e) => {
         const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
         const way = arrows[e.key];
@@ -245,6 +257,7 @@
         else if (e.key === "+" || e.key === "=") this.zoom(1 / 1.15);
         else if (e.key === "-") this.zoom(1.15);
         else if (e.key === "0") this.lookFrom("corner");
+        else if (this.lead?.key(e.key.toLowerCase(), e.shiftKey)) { /* the hand was led */ }
         else return;
         e.preventDefault();
       });
@@ -269,6 +282,14 @@
     fov() {
       const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
       return aspect >= 1 ? 0.6 : 2 * Math.atan(Math.tan(0.3) / aspect);
+    }
+
+    // Where a place of the world is on the canvas, in pixels, and how many metres one of them is there.
+    onCanvas(place) {
+      const { right, up, back } = this.axes();
+      const from = sub(place, add(this.camera.at, times(this.camera.distance, back)));
+      const pixel = this.metresPerPixel(Math.max(1e-6, -dot(from, back)));
+      return { x: 0.5 * this.canvas.clientWidth + dot(from, right) / pixel, y: 0.5 * this.canvas.clientHeight - dot(from, up) / pixel, pixel };
     }
 
     axes() {

@@ -118,6 +118,9 @@ class ASPERITY_API simulated_device {
 
   void advance(std::int64_t now_ns) noexcept;
 
+  // Where a hand is that somebody leads.
+  [[nodiscard]] const hand_target& led(double h_s) noexcept;
+
   // Semi-implicit Euler: the dampers are taken at the end of the step, so that a firm grip cannot blow up.
   void step() noexcept;
 
@@ -133,6 +136,7 @@ class ASPERITY_API simulated_device {
 
   simulated_settings settings_;
   motion_script motion_;
+  led_motion led_;
   std::mt19937_64 bits_;
   std::mt19937_64 luck_;  // of its own, so that a loss leaves delays and tremor as they are
   simulated_actuator actuator_;

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "asperity/core/export.hpp"
 #include "asperity/device/capabilities.hpp"
 #include "asperity/device/simulated/actuator.hpp"
+#include "asperity/device/simulated/hand_lead.hpp"
 #include "asperity/device/simulated/motion_script.hpp"
 
 namespace asperity {
@@ -90,6 +92,7 @@ struct simulated_settings {
   device_capabilities capabilities = simulated_capabilities();
   std::vector<scripted_fault> faults{};
   std::vector<scripted_press> presses{};  ///< empty: the device has no buttons
+  std::shared_ptr<hand_lead> lead{};      ///< null: the motion leads the hand; otherwise this, from the motion's begin
 };
 
 }  // namespace asperity
