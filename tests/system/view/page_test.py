@@ -219,4 +219,4 @@ if __name__ == "__main__":
         print(f"skipped: {missing}")
         sys.exit(77)
     PICTURES.mkdir(parents=True, exist_ok=True)
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1] + sys.argv[5:])
