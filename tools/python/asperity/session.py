@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Optional, Tuple
+from typing import Any, Callable, Optional, Tuple, Union
 
 import numpy.typing as npt
 
 from . import _asperity
 from .recording import Recording, recording_of
+
+
+# A contact of your own: (probe (7,), bodies (N, 7)) -> wrench (6,), or (wrench, stiffness (6, 6)); or the address of a
+# compiled function. A hand of your own: (time_s, probe (7,)) -> where the probe is wanted (7,).
+Contact = Union[Callable[[Any, Any], Any], int]
+Hand = Callable[[float, Any], Any]
 
 
 class Session:
@@ -29,6 +35,8 @@ class Session:
         coupling_n_m_per_rad: Optional[float] = None,
         scale: float = 1.0,
         friction: Optional[Tuple[float, float]] = None,
+        contact: Optional[Contact] = None,
+        hand: Optional[Hand] = None,
     ) -> None:
         """Arms the device and begins at time 0.
 
@@ -39,6 +47,14 @@ class Session:
         coupling_n_per_m, coupling_n_m_per_rad: of the virtual coupling; None: what device and contacts allow.
         scale: metres of the world for a metre of the device.
         friction: coefficients, static and dynamic, in place of the materials'; planes only.
+        contact: in place of the renderer's, a callable that is given the probe's pose (7,) and the fixed bodies' (N, 7) and
+            returns the wrench on the probe (6,), N and N m about its centre of mass in world axes, or that and its
+            derivative by the probe's motion (6, 6), which a stiff contact needs. It is called once a contact tick. Or the address of a compiled function (numba's `cfunc.address`, cffi, ctypes):
+            void f(const double *probe, const double *bodies, size_t count, double *wrench, double *stiffness), which fills
+            zeros in. What a callable raises ends run() with it.
+        hand: in place of the device's motion, a callable that is given the time, s, and the probe's pose (7,), and returns
+            where the probe is wanted (7,), once a device tick. The hand goes there smoothly, at 0.5 m/s and 5 rad/s at the
+            most, and gives way as a spring does.
 
         Raises Error, or ValueError for a number out of range.
         """
@@ -52,6 +68,8 @@ class Session:
             coupling_n_m_per_rad=coupling_n_m_per_rad,
             scale=scale,
             friction=friction,
+            contact=contact,
+            hand=hand,
         )
 
     def run(self, seconds: float) -> Recording:

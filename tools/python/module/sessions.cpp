@@ -9,6 +9,7 @@
 #include "errors.hpp"
 #include "long_work.hpp"
 #include "parts.hpp"
+#include "policies.hpp"
 #include "renderer_handle.hpp"
 #include "simulated.hpp"
 
@@ -156,6 +157,9 @@ struct session_parts {
   simulated_settings device;
   control_settings control;
   virtual_schedule schedule;
+  pose T_wa{};  // of the probe at the start
+  std::shared_ptr<raised_in_tick> raised;
+  std::function<void(double, const pose&)> lead;  // before each device tick; empty: the hand's own motion
 };
 
 class session_handle {
@@ -163,7 +167,11 @@ class session_handle {
   explicit session_handle(session_parts parts)
       : device_(std::move(parts.device)),
         period_ns_(parts.schedule.device_period_ns),
-        session_(std::move(parts.feel), parts.placement, device_, parts.control, parts.schedule, keep_last{&last_}) {}
+        raised_(std::move(parts.raised)),
+        lead_(std::move(parts.lead)),
+        session_(std::move(parts.feel), parts.placement, device_, parts.control, parts.schedule, keep_last{&last_}) {
+    last_.T_wa = parts.T_wa;
+  }
 
   result<void> begin() {
     if (const result<void> opened = device_.open(); !opened) return opened;
@@ -175,7 +183,7 @@ class session_handle {
     recorded_rows rows;
     const auto until = session_.device_ticks() +
                        static_cast<std::uint64_t>(std::llround(seconds * 1e9 / static_cast<double>(period_ns_)));
-    while (session_.device_ticks() < until && fault() == gate_fault::none && keep_going()) step(rows);
+    while (session_.device_ticks() < until && fault() == gate_fault::none && !raised_->what && keep_going()) step(rows);
     return rows;
   }
 
@@ -194,11 +202,14 @@ class session_handle {
   [[nodiscard]] gate_fault fault() noexcept { return session_.device().gate().fault(); }
   [[nodiscard]] double time_s() const noexcept { return 1e-9 * static_cast<double>(session_.now_ns()); }
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+  /// Raises what a contact or a hand in Python raised. @pre the GIL is held
+  void rethrow() { raised_->rethrow(); }
 
   std::mutex busy;
 
  private:
   void step(recorded_rows& rows) {
+    if (lead_) lead_(time_s(), last_.T_wa);
     session_.beat();
     static_cast<void>(session_.step());
     rows.add(last_);
@@ -207,6 +218,8 @@ class session_handle {
   simulated_device device_;
   std::int64_t period_ns_;
   session_record last_{};
+  std::shared_ptr<raised_in_tick> raised_;
+  std::function<void(double, const pose&)> lead_;
   virtual_session<any_renderer, simulated_device, keep_last> session_;
   bool stopped_ = false;
 };
@@ -239,7 +252,8 @@ std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const de
                                              const py::object& start_pose, double device_rate_hz,
                                              double contact_rate_hz, std::optional<double> coupling_n_per_m,
                                              std::optional<double> coupling_n_m_per_rad, double scale,
-                                             std::optional<std::pair<double, double>> friction) {
+                                             std::optional<std::pair<double, double>> friction,
+                                             const py::object& contact, const py::object& hand) {
   if (!(scale > 0.0 && std::isfinite(scale))) throw py::value_error("scale has to be above 0");
   const loop_periods periods{period_of(device_rate_hz, "device_rate_hz"),
                              period_of(contact_rate_hz, "contact_rate_hz")};
@@ -279,13 +293,25 @@ std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const de
     }
     for (mapped_pair& m : control.surfaces.mapped) override_friction(m.pair);
   }
+  const auto raised = std::make_shared<raised_in_tick>();
+  std::function<void(double, const pose&)> lead;
+  if (!hand.is_none()) {
+    simulated.lead = std::make_shared<hand_lead>();
+    lead = led_by(
+        hand, simulated.lead, [map = control.map](const pose& T) { return map.to_device(T * inverse(map.T_ha)); },
+        raised);
+  }
+  if (!contact.is_none()) feel = with_contact(std::move(feel), contact, raised);
   auto out = std::make_unique<session_handle>(session_parts{.feel = std::move(feel),
                                                             .placement = {std::move(T_wb), shape.centre_of_mass},
                                                             .device = std::move(simulated),
                                                             .control = control,
                                                             .schedule = {.device_period_ns = periods.device_ns,
                                                                          .contact_period_ns = periods.contact_ns,
-                                                                         .contact_one_period_late = true}});
+                                                                         .contact_one_period_late = true},
+                                                            .T_wa = T_wa,
+                                                            .raised = raised,
+                                                            .lead = std::move(lead)});
   unwrap(out->begin());
   return out;
 }
@@ -301,6 +327,7 @@ py::tuple run(session_handle& self, double seconds) {
     rows = self.run(seconds, std::ref(keep_going));
   }
   keep_going.rethrow();
+  self.rethrow();
   return to_python(rows);
 }
 
@@ -344,7 +371,8 @@ void add_sessions(py::module_& m) {
   py::class_<session_handle>(m, "SessionLoop", "Both loops on the virtual clock; asperity.Session is the way in.")
       .def(py::init(&made_session), py::arg("renderer"), py::arg("device"), py::kw_only(), py::arg("start_pose"),
            py::arg("device_rate_hz"), py::arg("contact_rate_hz"), py::arg("coupling_n_per_m"),
-           py::arg("coupling_n_m_per_rad"), py::arg("scale"), py::arg("friction"), "See asperity.Session.")
+           py::arg("coupling_n_m_per_rad"), py::arg("scale"), py::arg("friction"), py::arg("contact") = py::none(),
+           py::arg("hand") = py::none(), "See asperity.Session.")
       .def("run", &run, py::arg("seconds"), "Numbers (N, 34) and the words of sample, device and fault.")
       .def("stop", &stop, "The rows in which the wrench goes to zero, as run() gives them.")
       .def_property_readonly(
