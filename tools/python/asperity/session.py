@@ -49,9 +49,10 @@ class Session:
         friction: coefficients, static and dynamic, in place of the materials'; planes only.
         contact: in place of the renderer's, a callable that is given the probe's pose (7,) and the fixed bodies' (N, 7) and
             returns the wrench on the probe (6,), N and N m about its centre of mass in world axes, or that and its
-            derivative by the probe's motion (6, 6), which a stiff contact needs. It is called once a contact tick. Or the address of a compiled function (numba's `cfunc.address`, cffi, ctypes):
-            void f(const double *probe, const double *bodies, size_t count, double *wrench, double *stiffness), which fills
-            zeros in. What a callable raises ends run() with it.
+            derivative by the probe's motion (6, 6), which a stiff contact needs. It is called once a contact tick. What it
+            raises ends run(). Or the address of a compiled function (numba's `cfunc.address`, cffi, ctypes):
+            void f(const double *probe, const double *bodies, size_t count, double *wrench, double *stiffness).
+            Wrench and stiffness, row by row, are zero before it is called.
         hand: in place of the device's motion, a callable that is given the time, s, and the probe's pose (7,), and returns
             where the probe is wanted (7,), once a device tick. The hand goes there smoothly, at 0.5 m/s and 5 rad/s at the
             most, and gives way as a spring does.
