@@ -102,7 +102,7 @@ class feed {
   /// @pre leads(), is_valid(T_wa)
   void lead_to(const pose& T_wa) {
     const std::lock_guard lock(leading_);
-    lead_->lead_to(map_.to_device(T_wa * inverse(map_.T_ha)));
+    lead_->lead_to(map_.handle_at(T_wa * inverse(map_.T_ha)));
   }
   void forget_steps() noexcept { steps_.store(0, std::memory_order_relaxed); }
   /// Seconds of the session for one of the wall.

@@ -26,7 +26,7 @@ struct workspace_map {
 
   /// The handle's pose in the device's base frame, where it has this one in the world.
   /// @rt safe
-  [[nodiscard]] pose to_device(const pose& T_wh) const noexcept {
+  [[nodiscard]] pose handle_at(const pose& T_wh) const noexcept {
     return {glm::conjugate(T_wd.rotation) * T_wh.rotation, (1.0 / scale) * (inverse(T_wd) * T_wh.position)};
   }
 

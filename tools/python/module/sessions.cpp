@@ -298,7 +298,7 @@ std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const de
   if (!hand.is_none()) {
     simulated.lead = std::make_shared<hand_lead>();
     lead = led_by(
-        hand, simulated.lead, [map = control.map](const pose& T) { return map.to_device(T * inverse(map.T_ha)); },
+        hand, simulated.lead, [map = control.map](const pose& T) { return map.handle_at(T * inverse(map.T_ha)); },
         raised);
   }
   if (!contact.is_none()) feel = with_contact(std::move(feel), contact, raised);
