@@ -56,7 +56,7 @@ ASPERITY_C_API const char* asperity_model_name(const asperity_model* model);
 
 /* The material of that name: steel, wood, rubber or ice. Not for a tick. Answers: INVALID_ARGUMENT, with the names. */
 ASPERITY_C_API int32_t asperity_material_preset(const char* name, asperity_material* out, asperity_error* why);
-/* Name of a preset, from 0 on; NULL after the last one. Safe in a tick; the string lives for ever. */
+/* Name of a preset, from 0 on; NULL after the last one. The string lives for ever. Not for a tick. */
 ASPERITY_C_API const char* asperity_material_preset_name(uint32_t number);
 /* The same model with this material all over, a handle of its own. NULL: without a material. Not for a tick.
  * Answers: INVALID_ARGUMENT for a number out of range. */
