@@ -46,6 +46,7 @@ class two_models {
     const auto saved = [&](const textured_model& box, const char* name) {
       // With its field, as a bake writes it: making one takes seconds.
       textured_model model = io::as_saved(box);
+      model.report.max_displacement_m = 0.0002;
       model.field = std::make_shared<const field_body>(make_field_body(model).value());
       EXPECT_TRUE(io::save_textured_model(model, folder_.file(name)));
       return std::make_shared<const textured_model>(io::load_textured_model(folder_.file(name)).value());

@@ -52,8 +52,8 @@ void expect_same_ticks(const two_models& models, std::uint32_t formulation, Rend
   ASSERT_EQ(asperity_renderer_place_body(c.get(), 0, to_seven(T_wb).data()), ASPERITY_STATUS_OK);
   const std::vector<pose> at{T_wb};
   int touching = 0;
-  const std::uint64_t seed = seed_of(fresh_seed("c_interface.ticks", "150 poses"), "c_interface.ticks", formulation);
-  for (const pose& T_wa : drawn_poses(seed, 150)) {
+  const std::uint64_t seed = seed_of(fresh_seed("c_interface.ticks", "100 poses"), "c_interface.ticks", formulation);
+  for (const pose& T_wa : drawn_poses(seed, 100)) {
     tick found;
     const status s = direct.step({T_wa, at}, found);
     asperity_touch touch = sized<asperity_touch>();
@@ -80,7 +80,7 @@ void expect_same_ticks(const two_models& models, std::uint32_t formulation, Rend
     EXPECT_TRUE(same_bits(to_six(found.on_body.empty() ? wrench{} : found.on_body[0]), on_body));
   }
   EXPECT_GT(touching, 20);
-  EXPECT_LT(touching, 150);
+  EXPECT_LT(touching, 100);
 }
 
 TEST(c_interface, ticks_of_least_motion_have_the_same_bits) {
@@ -153,11 +153,11 @@ void expect_same_tool(double period_s) {
   ASSERT_EQ(asperity_tool_place(c.get(), to_seven(start).data()), ASPERITY_STATUS_OK);
   const std::vector<pose> T_wb(1);
   double largest_n = 0.0, sideways_n = 0.0;
-  const int steps = static_cast<int>(0.5 / period_s);
+  const int steps = static_cast<int>(0.22 / period_s);
   for (int i = 0; i < steps; ++i) {
     const double t = i * period_s;
     const pose hand{exp_rotation({0.0, 0.02 * std::sin(9.0 * t), 0.0}),
-                    {0.01 * std::sin(3.0 * t), 0.0, 0.021 - 0.041 * std::min(1.0, t / 0.4)}};
+                    {0.01 * std::sin(3.0 * t), 0.0, 0.021 - 0.041 * std::min(1.0, t / 0.2)}};
     tick found;
     const status s = direct.step({tool.T_wa(), T_wb}, found);
     const wrench felt = tool.follow(hand, period_s, found, s);
@@ -172,7 +172,7 @@ void expect_same_tool(double period_s) {
   }
   EXPECT_GT(largest_n, 15.0);
   EXPECT_LT(largest_n, 25.0);
-  EXPECT_GT(sideways_n, 0.5);  // friction
+  EXPECT_GT(sideways_n, 0.3);  // friction
 }
 
 TEST(c_interface, a_tool_has_the_same_bits_at_90_hz) { expect_same_tool(1.0 / 90.0); }
