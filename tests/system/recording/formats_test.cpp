@@ -21,7 +21,9 @@ using namespace asperity;
 using namespace asperity::command;
 using test_support::scratch_folder;
 
-bool has_python() { return std::system("python3 -c pass > /dev/null 2>&1") == 0; }
+// The system's, which has the system's numpy; another one may come first in PATH.
+std::string python() { return std::filesystem::exists("/usr/bin/python3") ? "/usr/bin/python3" : "python3"; }
+bool has_python() { return std::system((python() + " -c pass > /dev/null 2>&1").c_str()) == 0; }
 
 /// What the reader says, and whether it was content.
 struct read_back {
@@ -30,10 +32,14 @@ struct read_back {
 };
 read_back read_with_python(const scratch_folder& folder, const std::string& arguments) {
   const std::string out = folder.file("said.txt").string();
-  const int status = std::system(
-      ("cd '" + folder.path().string() + "' && python3 '" ASPERITY_READER "' " + arguments + " > '" + out + "' 2>&1")
-          .c_str());
+  const int status = std::system(("cd '" + folder.path().string() + "' && " + python() + " '" ASPERITY_READER "' " +
+                                  arguments + " > '" + out + "' 2>&1")
+                                     .c_str());
   return {WIFEXITED(status) && WEXITSTATUS(status) == 0, test_support::read_all(out)};
+}
+
+void put_file(const scratch_folder& folder, const char* name, std::string_view bytes) {
+  std::ofstream(folder.file(name), std::ios::binary) << bytes;
 }
 
 /// Rows of numbers of any size, with what is no number among them.
@@ -91,8 +97,8 @@ void write_all(const scratch_folder& folder, const std::vector<session_record>& 
 
 TEST(recording_formats, hold_the_same_bits) {
   if (!has_python()) GTEST_SKIP() << "there is no python3 here";
-  const std::uint64_t seed = test_support::fresh_seed("recording_formats", "recordings of 0, 1, 2, 150 and 2,500 rows");
-  for (const int count : {0, 1, 2, 150, 2500}) {
+  const std::uint64_t seed = test_support::fresh_seed("recording_formats", "recordings of 0, 1, 2, 150 and 1,200 rows");
+  for (const int count : {0, 1, 2, 150, 1200}) {
     SCOPED_TRACE(count);
     const scratch_folder folder;
     drawn_rows draw(test_support::seed_of(seed, "recording_formats", static_cast<std::uint64_t>(count)));
@@ -108,31 +114,35 @@ TEST(recording_formats, hold_the_same_bits) {
 TEST(recording_formats, a_changed_byte_is_seen) {
   if (!has_python()) GTEST_SKIP() << "there is no python3 here";
   const scratch_folder folder;
-  drawn_rows draw(test_support::seed_of(test_support::fresh_seed("recording_formats.byte", "12 bytes"), "byte"));
+  drawn_rows draw(test_support::seed_of(test_support::fresh_seed("recording_formats.byte", "7 bytes"), "byte"));
   std::vector<session_record> rows;
   for (int i = 0; i < 20; ++i) rows.push_back(draw.next());
   write_all(folder, rows);
-  for (const char* const name : {"s.npz", "s.mcap"}) {
-    const std::string whole = test_support::read_all(folder.file(name));
-    for (std::size_t part = 1; part <= 6; ++part) {
-      std::string changed = whole;
-      changed[changed.size() * part / 7] ^= 1;
-      folder.file(name, changed);
-      const read_back told = read_with_python(folder, std::string("s.csv ") + name);
-      // A byte that nobody looks at is none of the data: names and dates of a ZIP's entries.
-      EXPECT_FALSE(told.same) << name << ", part " << part << ": " << told.said;
-    }
-    folder.file(name, whole);
-  }
+  const auto is_seen = [&](const char* name, std::string bytes, std::size_t at) {
+    bytes[at] ^= 1;
+    put_file(folder, name, bytes);
+    const read_back told = read_with_python(folder, std::string("s.csv ") + name);
+    EXPECT_FALSE(told.same) << name << ", byte " << at << ": " << told.said;
+  };
+  const std::string mcap = test_support::read_all(folder.file("s.mcap"));
+  for (std::size_t part = 1; part <= 4; ++part) is_seen("s.mcap", mcap, mcap.size() * part / 5);
+  // In the numbers of a column, in its words, and in a number's header.
+  const std::string npz = test_support::read_all(folder.file("s.npz"));
+  constexpr std::size_t npy_header = 128;
+  std::size_t at = npz.find("NUMPY");
+  is_seen("s.npz", npz, at + 8);
+  is_seen("s.npz", npz, at + npy_header + 40);
+  at = npz.rfind("NUMPY");
+  is_seen("s.npz", npz, at + npy_header + 200);
 }
 
 // What a kill leaves: the beginning, under the name that the file had while it was written.
 TEST(recording_formats, a_cut_recording_keeps_its_whole_chunks) {
   if (!has_python()) GTEST_SKIP() << "there is no python3 here";
   const scratch_folder folder;
-  drawn_rows draw(test_support::seed_of(test_support::fresh_seed("recording_formats.cut", "2,000 rows"), "cut"));
+  drawn_rows draw(test_support::seed_of(test_support::fresh_seed("recording_formats.cut", "1,200 rows"), "cut"));
   std::vector<session_record> rows;
-  for (int i = 0; i < 2000; ++i) rows.push_back(draw.next());
+  for (int i = 0; i < 1200; ++i) rows.push_back(draw.next());
   const auto beginning_of = [&](const char* name) {
     result<recording> to = recording::create(folder.file(name));
     EXPECT_TRUE(to);
@@ -150,18 +160,18 @@ TEST(recording_formats, a_cut_recording_keeps_its_whole_chunks) {
   const std::string table = test_support::read_all(folder.file("s.csv"));
 
   // A fifth of a second at 1 kHz is on its way at the most.
-  folder.file("cut.mcap", mcap);
+  put_file(folder, "cut.mcap", mcap);
   read_back told = read_with_python(folder, "--cut cut.mcap s.csv");
   ASSERT_TRUE(told.same) << told.said;
-  EXPECT_GE(std::stoi(told.said), 1800) << told.said;
-  EXPECT_LE(std::stoi(told.said), 2000) << told.said;
-  folder.file("cut.mcap", mcap.substr(0, mcap.size() / 2));
+  EXPECT_GE(std::stoi(told.said), 1000) << told.said;
+  EXPECT_LE(std::stoi(told.said), 1200) << told.said;
+  put_file(folder, "cut.mcap", mcap.substr(0, mcap.size() / 2));
   told = read_with_python(folder, "--cut cut.mcap s.csv");
   ASSERT_TRUE(told.same) << told.said;
-  EXPECT_GE(std::stoi(told.said), 700) << told.said;
-  EXPECT_LE(std::stoi(told.said), 1000) << told.said;
+  EXPECT_GE(std::stoi(told.said), 350) << told.said;
+  EXPECT_LE(std::stoi(told.said), 600) << told.said;
   // One for numpy is a table until it is closed.
-  ASSERT_GT(npz.size(), table.size() * 9 / 10);
+  ASSERT_GT(npz.size(), table.size() * 4 / 5);
   EXPECT_EQ(npz, table.substr(0, npz.size()));
 }
 
