@@ -34,11 +34,11 @@ static_assert(answer(error_code::busy) == ASPERITY_ERROR_BUSY);
 template <std::uint32_t number>
 struct handle_mark {
   static constexpr std::uint32_t kind = number;
-  std::uint32_t is = number;
+  volatile std::uint32_t is = number;
   handle_mark() noexcept = default;
   handle_mark(const handle_mark&) = delete;
   handle_mark& operator=(const handle_mark&) = delete;
-  ~handle_mark() { *const_cast<volatile std::uint32_t*>(&is) = 0; }
+  ~handle_mark() { is = 0; }
 };
 
 /// The handle, or null where it is none of this kind. @rt safe
