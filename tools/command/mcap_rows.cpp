@@ -148,7 +148,7 @@ class mcap_encoder final : public row_encoder {
     last_ns_ = t;
     ++rows_;
     ++sequence_;
-    if (messages_.size() >= 1000 * chunk_size) put_chunk(out);
+    if (messages_.size() >= chunk_size) put_chunk(out);
     return {};
   }
 
