@@ -46,7 +46,7 @@ template <class Handle>
 [[nodiscard]] Handle* checked(Handle* given) noexcept {
   if (given == nullptr || reinterpret_cast<std::uintptr_t>(given) % alignof(Handle) != 0) return nullptr;
   std::uint32_t is = 0;
-  std::memcpy(&is, given, sizeof is);
+  std::memcpy(&is, static_cast<const void*>(given), sizeof is);
   return is == Handle::kind ? given : nullptr;
 }
 

@@ -334,8 +334,11 @@ TEST(c_interface, a_stopped_session_falls_silent) {
   // Another session takes the same device on from its own time.
   s.reset();
   s = m.session(d.get());
-  ASSERT_EQ(asperity_session_step(s.get(), 100, &t), 0);
+  ASSERT_EQ(asperity_session_step(s.get(), 1, &t), 0);
+  const double before_x_m = t.device_pose[0];
+  ASSERT_EQ(asperity_session_step(s.get(), 99, &t), 0);
   EXPECT_EQ(t.time_ns, 99'000'000);
+  EXPECT_GT(std::fabs(t.device_pose[0] - before_x_m), 1e-4) << "the hand stands still";
 }
 
 TEST(c_interface, the_gate_holds_the_sessions_limit) {

@@ -13,6 +13,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+/* NOLINTBEGIN(modernize-use-using): C */
 
 /* Answers of what may run in a tick: the numbers of asperity::status. Anything but OK and CAPACITY_REACHED leaves a zero
  * wrench behind. */
@@ -53,6 +54,7 @@ ASPERITY_C_API uint32_t asperity_version_number(void);
 /* An answer in a few words. Safe in a tick; the string lives for ever. */
 ASPERITY_C_API const char* asperity_describe(int32_t answer);
 
+/* NOLINTEND(modernize-use-using) */
 #ifdef __cplusplus
 }
 #endif

@@ -7,6 +7,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+/* NOLINTBEGIN(modernize-use-using): C */
 
 typedef struct asperity_haptic_device asperity_haptic_device;
 
@@ -103,6 +104,7 @@ ASPERITY_C_API int32_t asperity_device_get_limits(const asperity_haptic_device* 
  * the device. */
 ASPERITY_C_API uint32_t asperity_device_state(const asperity_haptic_device* device);
 
+/* NOLINTEND(modernize-use-using) */
 #ifdef __cplusplus
 }
 #endif

@@ -7,6 +7,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+/* NOLINTBEGIN(modernize-use-using): C */
 
 /* A textured model. It never changes; renderers, tools and sessions that were made of it keep what they need. */
 typedef struct asperity_model asperity_model;
@@ -63,6 +64,7 @@ ASPERITY_C_API const char* asperity_material_preset_name(uint32_t number);
 ASPERITY_C_API int32_t asperity_model_with_material(const asperity_model* model, const asperity_material* material,
                                                     asperity_model** out, asperity_error* why);
 
+/* NOLINTEND(modernize-use-using) */
 #ifdef __cplusplus
 }
 #endif

@@ -7,6 +7,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+/* NOLINTBEGIN(modernize-use-using): C */
 
 /* A scene of a probe and fixed bodies, and the formulation that feels it. */
 typedef struct asperity_renderer asperity_renderer;
@@ -82,6 +83,7 @@ ASPERITY_C_API int32_t asperity_renderer_contact(asperity_renderer* renderer, ui
 ASPERITY_C_API int32_t asperity_renderer_find_touch(asperity_renderer* renderer, const double rotation[4],
                                                     double pose[7], asperity_error* why);
 
+/* NOLINTEND(modernize-use-using) */
 #ifdef __cplusplus
 }
 #endif

@@ -8,6 +8,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+/* NOLINTBEGIN(modernize-use-using): C */
 
 typedef struct asperity_session asperity_session;
 
@@ -66,6 +67,7 @@ ASPERITY_C_API int32_t asperity_session_step(asperity_session* session, uint32_t
  * answers step() with STATUS_GATE_SHUT. */
 ASPERITY_C_API int32_t asperity_session_stop(asperity_session* session);
 
+/* NOLINTEND(modernize-use-using) */
 #ifdef __cplusplus
 }
 #endif

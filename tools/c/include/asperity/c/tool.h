@@ -8,6 +8,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+/* NOLINTBEGIN(modernize-use-using): C */
 
 /* Probe, virtual coupling, contact and friction behind a hand. Support planes hold the probe at the surface, also where
  * the hand is inside a body. */
@@ -63,6 +64,7 @@ ASPERITY_C_API int32_t asperity_tool_move_body(asperity_tool* tool, uint32_t bod
 ASPERITY_C_API int32_t asperity_tool_follow(asperity_tool* tool, const double hand_pose[7], double dt_s,
                                             asperity_felt* out);
 
+/* NOLINTEND(modernize-use-using) */
 #ifdef __cplusplus
 }
 #endif
