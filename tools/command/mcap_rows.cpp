@@ -152,14 +152,14 @@ class mcap_encoder final : public row_encoder {
     return {};
   }
 
-  result<void> end(std::string& out) override {
+  bool end(std::string& out) override {
     put_chunk(out);
     std::string text, content;
     put_number(content, crc_);
     put_record(text, op::data_end, content);
     emit(out, text);
     put_summary(out);
-    return {};
+    return false;
   }
 
   // As rosbag2 writes it, of its version 5.

@@ -71,27 +71,29 @@ class npz_encoder final : public row_encoder {
 
   bool starts_anew() const noexcept override { return true; }
 
-  result<void> end(std::string& out) override {
-    std::vector<entry> entries;
-    const std::size_t first = out.size();
-    std::string column;
-    for (std::size_t i = 0; i < names_.size(); ++i) {
-      column.clear();
-      if (i < recorded_numbers) {
-        put_number_column(column, i);
-      } else {
-        put_word_column(column, i - recorded_numbers);
-      }
-      entry e{names_[i] + ".npy", crc32(column), static_cast<std::uint32_t>(column.size()),
-              static_cast<std::uint32_t>(out.size() - first)};
-      out += std::string_view("PK\x03\x04", 4);
-      put_fields(out, e);
-      out += e.name;
-      out += column;
-      entries.push_back(std::move(e));
+  // A column at a time, so that no more than one stands in memory twice.
+  bool end(std::string& out) override {
+    const std::size_t before = out.size();
+    const std::size_t i = entries_.size();
+    if (i == names_.size()) {
+      put_directory(out, entries_, at_);
+      return false;
     }
-    put_directory(out, entries, out.size() - first);
-    return {};
+    std::string column;
+    if (i < recorded_numbers) {
+      put_number_column(column, i);
+    } else {
+      put_word_column(column, i - recorded_numbers);
+    }
+    entry e{names_[i] + ".npy", crc32(column), static_cast<std::uint32_t>(column.size()),
+            static_cast<std::uint32_t>(at_)};
+    out += std::string_view("PK\x03\x04", 4);
+    put_fields(out, e);
+    out += e.name;
+    out += column;
+    entries_.push_back(std::move(e));
+    at_ += out.size() - before;
+    return true;
   }
 
  private:
@@ -138,6 +140,8 @@ class npz_encoder final : public row_encoder {
   std::vector<std::string> names_;
   std::vector<double> numbers_;  // row by row
   std::vector<std::array<const char*, recorded_words>> words_;
+  std::vector<entry> entries_;  // that are written
+  std::size_t at_ = 0;          // bytes of them
 };
 
 }  // namespace

@@ -41,7 +41,7 @@ class csv_encoder final : public row_encoder {
     append_row(out, tick);
     return {};
   }
-  result<void> end(std::string&) override { return {}; }
+  bool end(std::string&) override { return false; }
 };
 
 // What a file beside the recording says belongs to it; another recording's description stays.
@@ -140,8 +140,10 @@ result<void> recording::close() {
     pending_.clear();
     if (const result<void> emptied = file_.start_anew(); !emptied) return emptied;
   }
-  if (const result<void> ended = encoder_->end(pending_); !ended) return ended;
-  if (const result<void> written = flush(); !written) return written;
+  for (bool more = true; more;) {
+    more = encoder_->end(pending_);
+    if (const result<void> written = flush(); !written) return written;
+  }
   const row_encoder::companion beside = file_.is_replaceable() ? encoder_->beside(name_) : row_encoder::companion{};
   if (beside.name.empty()) return file_.commit();
   result<output_file> description = output_file::create(name_.parent_path() / beside.name);

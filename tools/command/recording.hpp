@@ -36,7 +36,7 @@ class recording {
 
   /// @return io_failed | limit_exceeded
   [[nodiscard]] result<void> add(const session_record& tick);
-  /// @return io_failed | limit_exceeded
+  /// @return io_failed
   [[nodiscard]] result<void> close();
 
  private:

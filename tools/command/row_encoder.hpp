@@ -23,8 +23,8 @@ class row_encoder {
   virtual void begin(std::string& out) = 0;
   /// @return limit_exceeded where the format holds no more rows
   [[nodiscard]] virtual result<void> add(std::string& out, const session_record& tick) = 0;
-  /// What follows the rows. @return limit_exceeded
-  [[nodiscard]] virtual result<void> end(std::string& out) = 0;
+  /// What follows the rows, a part at a time. @return whether there is more
+  [[nodiscard]] virtual bool end(std::string& out) = 0;
   /// Whether what was written so far only stood in for the file, in case of a kill, and end() writes the file itself.
   [[nodiscard]] virtual bool starts_anew() const noexcept { return false; }
   /// A description that belongs beside the file, and the name of its file; empty where the format has none.
