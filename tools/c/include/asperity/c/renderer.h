@@ -60,7 +60,7 @@ typedef struct asperity_contact {
   double n_ab[3];    /* unit, from the probe to the body */
 } asperity_contact;
 
-/* Makes a renderer. Bodies stand at the world's origin until they are placed. Not for a tick: fractions of a second.
+/* Makes a renderer. Bodies stand at the world's origin until they are placed. Not for a tick: least motion may take seconds.
  * fixed: fixed_count models, 1 to 65535; the array is not kept
  * Answers: INVALID_ARGUMENT, BAD_MESH, BAD_TEXTURE; *out is then NULL. */
 ASPERITY_C_API int32_t asperity_renderer_make(const asperity_model* probe, const asperity_model* const* fixed,
