@@ -1,7 +1,7 @@
 # The package: find_package(asperity [COMPONENTS ...]), pkg-config for the core, the command.
 include(CMakePackageConfigHelpers)
 
-set(ASPERITY_TOOLS_COMPONENTS io bake)
+set(ASPERITY_TOOLS_COMPONENTS io bake c)
 set(ASPERITY_GL_COMPONENTS gl gl_compute gl_occlusion)
 set(ASPERITY_HAL_COMPONENTS transport drivers hid can serial usb urdf plugin)
 set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} ${ASPERITY_HAL_COMPONENTS})
@@ -46,6 +46,10 @@ set(_pkgconfig_dir ${CMAKE_INSTALL_DATADIR}/pkgconfig)
 file(RELATIVE_PATH _pc_prefix ${CMAKE_INSTALL_PREFIX}/${_pkgconfig_dir} ${CMAKE_INSTALL_PREFIX})
 configure_file(${CMAKE_CURRENT_LIST_DIR}/asperity.pc.in ${PROJECT_BINARY_DIR}/asperity.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/asperity.pc DESTINATION ${_pkgconfig_dir})
+if(TARGET asperity_c)
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/asperity_c.pc.in ${PROJECT_BINARY_DIR}/asperity_c.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/asperity_c.pc DESTINATION ${_pkgconfig_dir})
+endif()
 
 if(TARGET asperity_command)
   install(TARGETS asperity_command RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -441,7 +441,8 @@ void add_run(command_line& line) {
          "virtual: reproducible, as fast as it goes, the default of the simulated device and of a replay; real: two "
          "threads in real time")
       ->check(CLI::IsMember({"virtual", "real"}));
-  sub.add_option("--record", o->record, "Recording to write, a CSV table with one row per device tick");
+  sub.add_option("--record", o->record,
+                 "Recording to write, one row per device tick: .csv, .npz for numpy, .mcap for ROS 2's tools");
   sub.add_option("--record-device", o->record_device,
                  "Device recording to write, every call to the device and its answer; --device replay:FILE plays it");
   sub.add_option("--plot", o->plot, "Picture to write: position, force and torque over time (.png, .svg)")

@@ -96,6 +96,12 @@ result<void> output_file::write(std::string_view bytes) {
   return {};
 }
 
+result<void> output_file::start_anew() {
+  if (!is_replaceable()) return {};
+  if (ftruncate(descriptor_, 0) != 0 || lseek(descriptor_, 0, SEEK_SET) != 0) return cannot_write(destination_, errno);
+  return {};
+}
+
 result<void> output_file::commit() {
   // Some file systems report a failed write only here.
   if (close(std::exchange(descriptor_, -1)) != 0) return cannot_write(destination_, errno);

@@ -26,6 +26,12 @@ class output_file {
   /// @return io_failed, for example where the disk is full | cancelled
   [[nodiscard]] result<void> write(std::string_view bytes);
 
+  /// Whether it is a regular file, which appears with commit().
+  [[nodiscard]] bool is_replaceable() const noexcept { return !temporary_.empty(); }
+
+  /// Forgets what was written; a pipe keeps what it was given. @return io_failed
+  [[nodiscard]] result<void> start_anew();
+
   /// Makes the file appear under its name. @return io_failed
   [[nodiscard]] result<void> commit();
 

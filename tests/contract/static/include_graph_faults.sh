@@ -9,7 +9,7 @@ plant() {
   rm -rf "$work"
   mkdir -p "$work/docs/explanation" "$work/tools"
   cp -r "$root/include" "$root/src" "$root/hal" "$root/backends" "$work"
-  cp -r "$root"/tools/{io,bake,picture,text,view} "$work/tools"
+  cp -r "$root"/tools/{io,bake,picture,text,view,c} "$work/tools"
   sed "${5:-}" "$root/docs/explanation/architecture.md" > "$work/docs/explanation/architecture.md"
   [[ -z $4 ]] || echo "$4" >> "$work/$3"
   if said=$("$here/include_graph.sh" "$work"); then

@@ -20,6 +20,14 @@ class Sessions(unittest.TestCase):
             subprocess.run([COMMAND, "--quiet", "run", "--probe", file_of("block"), "--fixed", file_of("gear"),
                             "--seconds", "1", "--seed", str(seed), "--record", out], check=True, capture_output=True)
             told = asperity.load_recording(out)
+            packed = os.path.join(folder, "session.npz")
+            subprocess.run([COMMAND, "--quiet", "run", "--probe", file_of("block"), "--fixed", file_of("gear"),
+                            "--seconds", "1", "--seed", str(seed), "--record", packed], check=True, capture_output=True)
+            same = asperity.load_recording(packed)
+        self.assertEqual(list(same), list(told))
+        for name in told:
+            np.testing.assert_array_equal(same[name], told[name], name)
+            self.assertEqual(same[name].dtype, told[name].dtype)
         session = asperity.Session(renderer("planes"), asperity.SimulatedDevice(seed=seed))
         ours = asperity.Recording.join([session.run(0.4), session.run(0.6), session.stop()])
         self.assertEqual(list(ours), list(told))

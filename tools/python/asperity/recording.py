@@ -134,7 +134,7 @@ def recording_of(loop_rows: Tuple[Floats, Any, Any, Any]) -> Recording:
 
 
 def load_recording(file: PathLike) -> Recording:
-    """The Recording in a .csv of `asperity run --record`, or in a .csv or .npz of Recording.save().
+    """The Recording in a .csv or .npz of `asperity run --record` or of Recording.save().
 
     Numbers come back as they were, to the last digit. Raises Error: io_failed, bad_format or unsupported.
     """
