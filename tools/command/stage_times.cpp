@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "approach.hpp"
+#include "asperity/control/control_settings.hpp"
 #include "asperity/control/linearise.hpp"
 #include "asperity/control/probe_motion.hpp"
 #include "asperity/field/field_body.hpp"
