@@ -34,12 +34,15 @@ struct two_free_bodies {
            text({draw.log_between(0.02, 2.0)}) + "' diaginertia='1e-4 1.2e-4 .9e-4'/></body>";
   }
   [[nodiscard]] textured_pair pair() const {
-    return {.probe = {ridged_box(block_half), "block", object_kind::body, T_block},
-            .fixed = {ridged_box(plate_half), "plate", object_kind::body, T_plate},
-            .damping_s = 0.0};
+    static const model_ptr block = ridged_box(block_half), plate = ridged_box(plate_half);
+    return {.probe = {block, "block", object_kind::body, T_block},
+            .fixed = {plate, "plate", object_kind::body, T_plate},
+            .damping_s = 0.0,
+            .make_renderer = least_motion_of()};
   }
   // Puts the plate anywhere and the block on one of its sides, so deep.
   void place(drawn& draw, double depth_m) {
+    std::fill_n(s.d().qvel, s.m().nv, 0.0);
     const pose T_w_plate{drawn_rotation(draw), draw.inside(0.5)};
     const pose T_plate_block{
         exp_rotation(draw.inside(0.02)),
@@ -77,7 +80,7 @@ TEST(mujoco_contacts, act_at_both_centres_of_mass_as_the_renderer_says) {
     two_free_bodies w(draw);
     const textured_pair pair = w.pair();
     textured_contacts contacts = made(w.s, {pair});
-    auto direct = make_renderer({pair.probe.model, {pair.fixed.model}}).value();
+    any_renderer direct = least_motion_of()({pair.probe.model, {pair.fixed.model}}).value();
     for (int i = 0; i < 20; ++i) {
       w.place(draw, draw.log_between(2e-5, 2e-3));
       mj_step1(&w.s.m(), &w.s.d());
@@ -126,17 +129,19 @@ TEST(mujoco_contacts, give_what_they_take) {
   };
   mj_forward(&w.s.m(), &w.s.d());
   const auto [linear, angular] = momentum();
-  double felt_n = 0.0;
+  double exchanged_n_s = 0.0;
   for (int i = 0; i < 200; ++i) {
     ASSERT_EQ(contacts.step(w.s.m(), w.s.d()), status::ok);
-    felt_n = std::max(felt_n, glm::length(contacts.report(0).on_probe_w.force));
+    const mujoco::pair_report& r = contacts.report(0);
+    exchanged_n_s += w.s.m().opt.timestep * glm::length(r.on_probe_w.force);
+    EXPECT_EQ(r.on_probe_w.force, -r.on_fixed_w.force);
   }
   mj_forward(&w.s.m(), &w.s.d());
   const auto [linear_after, angular_after] = momentum();
-  EXPECT_GT(felt_n, 0.05);
-  EXPECT_LT(glm::length(linear_after - linear), 1e-13);
-  // MuJoCo's own step keeps the angular momentum of tumbling bodies to its first order in time.
-  EXPECT_LT(glm::length(angular_after - angular), 1e-4 * (glm::length(angular) + 1e-3));
+  EXPECT_GT(exchanged_n_s, 1e-4);
+  // To the first order of MuJoCo's own step: bodies that tumble about a point beside their frames.
+  EXPECT_LT(glm::length(linear_after - linear), 2e-3 * exchanged_n_s);
+  EXPECT_LT(glm::length(angular_after - angular), 2e-3 * exchanged_n_s);
 }
 
 // A block on a vertical slide above a plate that stands.
@@ -149,38 +154,45 @@ std::string slide_scene(double mass_kg, double timestep_s, const std::string& mo
          text({mass_kg}) + "' contype='0' conaffinity='0'/></body></worldbody>";
 }
 
+// Where a weight comes to rest on a wall, by the depth that its weight takes there.
+double rest_by(const textured_pair& pair, double mass_kg, double stiffness_n_per_m, double period_s) {
+  const simulation s(slide_scene(mass_kg, period_s));
+  textured_contacts contacts = made(s, {pair});
+  const double w_per_s = std::sqrt(stiffness_n_per_m / mass_kg);
+  const double until_s = 24.0 / (0.5 * pair.damping_s * w_per_s * w_per_s);
+  while (s.d().time < until_s) EXPECT_EQ(contacts.step(s.m(), s.d()), status::ok);
+  const mujoco::pair_report& r = contacts.report(0);
+  EXPECT_EQ(r.force_share, 1.0);
+  EXPECT_NEAR(r.mass_kg, mass_kg, 1e-9 * mass_kg);
+  EXPECT_NEAR(r.stiffness_n_per_m, stiffness_n_per_m, 0.02 * stiffness_n_per_m);
+  EXPECT_NEAR(r.on_probe_w.force.z, 9.81 * mass_kg, 1e-3 * 9.81 * mass_kg);
+  const double depth_m = -1e-4 - s.d().qpos[0];
+  EXPECT_NEAR(r.deepest_m, depth_m, 1e-2 * depth_m);
+  return depth_m * stiffness_n_per_m / (9.81 * mass_kg);
+}
+
 TEST(mujoco_contacts, a_weight_comes_to_rest_at_its_weight_over_the_stiffness) {
   drawn draw(seed_of(fresh_seed("mujoco_contacts.press", "8 presses"), "mujoco_press"));
   const model_ptr block = flat_box({0.03, 0.02, 0.03}), plate = flat_box({0.05, 0.03, 0.03});
   for (int i = 0; i < 8; ++i) {
     const double stiffness = draw.log_between(500.0, 50e3), depth = draw.log_between(2e-4, 0.012);
-    const double mass_kg = stiffness * depth / 9.81, period_s = draw.log_between(1e-4, 2e-3);
-    const simulation s(slide_scene(mass_kg, period_s));
-    textured_pair pair{.probe = {block, "block"}, .fixed = {plate, "plate"}, .stiffness_n_per_m = stiffness};
-    // Soft over a ten-thousandth of the depth, so that the spring is one of the wanted stiffness all along.
-    pair.make_renderer = [&](scene bodies) -> result<any_renderer> {
-      least_motion_renderer_settings settings;
-      settings.force.stiffness_n_per_m = stiffness;
-      settings.force.softness_m = 1e-4 * depth;
-      return any_renderer(make_renderer(std::move(bodies), settings).value());
-    };
-    const double turns_per_s = std::sqrt(stiffness / mass_kg);
-    pair.damping_s = std::min(1.0 / turns_per_s, 0.4 * period_s / (period_s * turns_per_s * period_s * turns_per_s));
-    textured_contacts contacts = made(s, {pair});
-    const double until_s = 20.0 / (0.5 * pair.damping_s * turns_per_s * turns_per_s);
-    while (s.d().time < until_s) ASSERT_EQ(contacts.step(s.m(), s.d()), status::ok);
-    const double rest_m = -1e-4 - s.d().qpos[0];
-    EXPECT_NEAR(rest_m / depth, 1.0, 1e-3) << mass_kg << " kg on " << stiffness << " N/m at " << period_s << " s";
-    EXPECT_EQ(contacts.report(0).force_share, 1.0);
-    EXPECT_NEAR(contacts.report(0).mass_kg, mass_kg, 1e-9 * mass_kg);
-    EXPECT_NEAR(contacts.report(0).stiffness_n_per_m, stiffness, 1e-3 * stiffness);
-    EXPECT_NEAR(contacts.report(0).deepest_m, depth, 1e-3 * depth);
+    const double mass_kg = stiffness * depth / 9.81, period_s = draw.log_between(2e-4, 2e-3);
+    const double w_per_s = std::sqrt(stiffness / mass_kg);
+    textured_pair pair{.probe = {block, "block"},
+                       .fixed = {plate, "plate"},
+                       .damping_s = std::min(1.0 / w_per_s, 0.4 / (period_s * w_per_s * w_per_s)),
+                       .make_renderer = walls_of(stiffness)};
+    EXPECT_NEAR(rest_by(pair, mass_kg, stiffness, period_s), 1.0, 1e-3) << mass_kg << " kg, " << stiffness << " N/m";
+    if (i > 1 || depth < 1e-3) continue;
+    // The default's contacts have their stiffness within a hundredth, from half of their softness on.
+    pair.make_renderer = least_motion_of(stiffness, period_s);
+    EXPECT_NEAR(rest_by(pair, mass_kg, stiffness, period_s), 1.0, 0.02) << mass_kg << " kg, " << stiffness << " N/m";
   }
 }
 
 // A renderer that answers one tick late, which is not a function of the pose any more.
 struct late_renderer {
-  least_motion_renderer inside;
+  any_renderer inside;
   wrench before{};
   mat6 stiffness_before{};
 
@@ -198,11 +210,12 @@ struct late_renderer {
 // the plate's ridges.
 double energy_gained(double damping_s, bool late, double seconds = 10.0) {
   const simulation s(slide_scene(0.3, 1e-3, "<joint type='slide' axis='1 0 0' stiffness='40'/>"));
-  const model_ptr block = ridged_box({0.03, 0.02, 0.03}), plate = ridged_box({0.05, 0.03, 0.03});
-  textured_pair pair{.probe = {block, "block"}, .fixed = {plate, "plate"}, .damping_s = damping_s};
+  static const model_ptr block = ridged_box({0.012, 0.009, 0.03}), plate = ridged_box({0.05, 0.012, 0.03});
+  textured_pair pair{
+      .probe = {block, "block"}, .fixed = {plate, "plate"}, .damping_s = damping_s, .make_renderer = least_motion_of()};
   if (late) {
     pair.make_renderer = [](scene bodies) -> result<any_renderer> {
-      return any_renderer(late_renderer{make_renderer(std::move(bodies)).value()});
+      return any_renderer(late_renderer{least_motion_of()(std::move(bodies)).value()});
     };
   }
   textured_contacts contacts = made(s, {pair});
@@ -274,7 +287,7 @@ TEST(mujoco_contacts, leave_what_others_apply_as_it_was) {
     contacts.take_back(w.s.d());  // a second time takes nothing
     expect_bits(theirs);
   }
-  EXPECT_GT(naive_differs, 100);  // the control: adding and subtracting does not come back to the bits
+  EXPECT_GT(naive_differs, 30);  // the control: adding and subtracting does not come back to the bits
 }
 
 TEST(mujoco_contacts, change_nothing_where_nothing_touches) {
@@ -306,14 +319,14 @@ TEST(mujoco_contacts, scale_down_what_the_time_step_does_not_bear) {
     const auto pressed = [&](const simulation& s) {
       textured_pair pair{.probe = {block, "block"},
                          .fixed = {plate, "plate"},
-                         .stiffness_n_per_m = stiffness,
-                         .damping_s = 0.1 * period_s};
+                         .damping_s = 0.1 * period_s,
+                         .make_renderer = walls_of(stiffness)};
       return made(s, {pair});
     };
     const simulation s(slide_scene(mass_kg, period_s));
     textured_contacts contacts = pressed(s);
     double highest_m = -1.0;
-    for (int k = 0; k < 4000; ++k) {
+    for (int k = 0; k < 1500; ++k) {
       ASSERT_EQ(contacts.step(s.m(), s.d()), status::ok);
       highest_m = std::max(highest_m, s.d().qpos[0]);
     }
@@ -330,7 +343,7 @@ TEST(mujoco_contacts, scale_down_what_the_time_step_does_not_bear) {
     const simulation t(slide_scene(mass_kg, period_s));
     textured_contacts raw = pressed(t);
     double thrown_m = -1.0;
-    for (int k = 0; k < 4000 && thrown_m < 0.01; ++k) {
+    for (int k = 0; k < 1500 && thrown_m < 0.01; ++k) {
       mj_step1(&t.m(), &t.d());
       ASSERT_EQ(raw.apply(t.m(), t.d()), status::ok);
       const double up_n = raw.report(0).on_probe_w.force.z / raw.report(0).force_share;
@@ -356,14 +369,15 @@ TEST(mujoco_contacts, know_the_mass_that_is_against_them) {
       "'><joint type='hinge' axis='0 1 0'/><inertial pos='0 0 0' mass='1' diaginertia='.01 .01 .01'/>"
       "</body></worldbody>");
   const model_ptr box = flat_box(vec3(0.01));
-  textured_contacts contacts = made(
-      s,
-      {{.probe = {box, "high"}, .fixed = {box, "low"}},
-       {.probe = {box, "post", object_kind::body, {quat(1, 0, 0, 0), {arm_m, 0.0, 0.0195}}}, .fixed = {box, "low"}}});
+  textured_contacts contacts =
+      made(s, {{.probe = {box, "high"}, .fixed = {box, "low"}, .make_renderer = least_motion_of()},
+               {.probe = {box, "post", object_kind::body, {quat(1, 0, 0, 0), {arm_m, 0.0, 0.0195}}},
+                .fixed = {box, "low"},
+                .make_renderer = least_motion_of()}});
   mj_step1(&s.m(), &s.d());
   ASSERT_EQ(contacts.apply(s.m(), s.d()), status::ok);
   EXPECT_NEAR(contacts.report(0).mass_kg, a_kg * b_kg / (a_kg + b_kg), 1e-9);
-  EXPECT_NEAR(1.0 / contacts.report(1).mass_kg, 1.0 / a_kg + arm_m * arm_m / 0.01, 1e-6 / a_kg);
+  EXPECT_NEAR(1.0 / contacts.report(1).mass_kg, 1.0 / a_kg + arm_m * arm_m / 0.01, 1e-4 / contacts.report(1).mass_kg);
   // Both pairs push the same body: what the step bears is asked of both together.
   EXPECT_EQ(contacts.report(0).step_load, contacts.report(1).step_load);
 }

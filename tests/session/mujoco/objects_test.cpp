@@ -23,7 +23,7 @@ const model_ptr& cube() {
   return made;
 }
 textured_pair named(const char* probe, const char* fixed, object_kind kind = object_kind::body) {
-  return {.probe = {cube(), probe, kind}, .fixed = {cube(), fixed, kind}};
+  return {.probe = {cube(), probe, kind}, .fixed = {cube(), fixed, kind}, .make_renderer = numb()};
 }
 
 TEST(mujoco_objects, a_geoms_model_is_where_mujoco_has_the_geom) {
@@ -224,6 +224,7 @@ TEST(mujoco_objects, what_cannot_be_is_refused_with_the_mend) {
   pair.damping_s = std::nan("");
   EXPECT_TRUE(has(refusal(s, {pair}), "damping_s"));
   pair = named("a", "b");
+  pair.make_renderer = nullptr;
   pair.stiffness_n_per_m = 0.0;
   EXPECT_TRUE(has(refusal(s, {pair}), "MuJoCo pair 0: least motion: stiffness_n_per_m"));
   pair = named("a", "b");

@@ -11,7 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "asperity/field/field_scene.hpp"
 #include "asperity/mujoco/textured_contacts.hpp"
+#include "asperity/planes/plane_renderer.hpp"
+#include "support/kept_bodies.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/drawn.hpp"
 
@@ -63,11 +66,48 @@ inline std::string text(std::initializer_list<double> numbers) {
 inline std::string text(const vec3& v) { return text({v.x, v.y, v.z}); }
 inline std::string text(const quat& q) { return text({q.w, q.x, q.y, q.z}); }
 
+using textured_pair_renderer = std::function<result<any_renderer>(scene)>;
+
 inline model_ptr flat_box(const vec3& half_m) {
   return std::make_shared<const textured_model>(make_flat_box(half_m, 48));
 }
 inline model_ptr ridged_box(const vec3& half_m, double amplitude_m = 50e-6, double wavelength_m = 2e-3) {
   return std::make_shared<const textured_model>(make_textured_box(half_m, 96, ridges(amplitude_m, wavelength_m)));
+}
+
+/// The default renderer on few samples, whose bodies are kept for the next one.
+inline textured_pair_renderer least_motion_of(double stiffness_n_per_m = 2000.0, double period_s = 1e-3) {
+  return [=](scene bodies) -> result<any_renderer> {
+    least_motion_renderer_settings settings;
+    settings.bodies.sample_pitch_m = 5e-4;
+    settings.force.stiffness_n_per_m = stiffness_n_per_m;
+    settings.force.period_s = period_s;
+    return any_renderer(build_renderer(std::move(bodies), settings).value());
+  };
+}
+
+/// Penalty walls: a spring for each direction on the depth itself.
+inline textured_pair_renderer walls_of(double stiffness_n_per_m) {
+  return [=](scene bodies) -> result<any_renderer> {
+    plane_renderer_settings settings;
+    settings.bodies.sample_pitch_m = 2e-3;
+    settings.springs.stiffness_n_per_m = stiffness_n_per_m;
+    return any_renderer(make_plane_renderer(std::move(bodies), settings).value());
+  };
+}
+
+/// Feels nothing, and takes no time to be made.
+struct numb_renderer {
+  asperity::scene bodies;
+  status step(const scene_pose&, tick& out) noexcept {
+    out = {};
+    return status::ok;
+  }
+  [[nodiscard]] const asperity::scene& scene() const noexcept { return bodies; }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept { return sizeof *this; }
+};
+inline textured_pair_renderer numb() {
+  return [](scene bodies) -> result<any_renderer> { return any_renderer(numb_renderer{std::move(bodies)}); };
 }
 
 inline quat drawn_rotation(drawn& draw) { return exp_rotation(draw.between(0.0, 3.0) * draw.direction()); }
