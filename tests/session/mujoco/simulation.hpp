@@ -92,7 +92,13 @@ inline textured_pair_renderer walls_of(double stiffness_n_per_m) {
     plane_renderer_settings settings;
     settings.bodies.sample_pitch_m = 2e-3;
     settings.springs.stiffness_n_per_m = stiffness_n_per_m;
-    return any_renderer(make_plane_renderer(std::move(bodies), settings).value());
+    static scene kept;
+    static std::shared_ptr<const field_scene> fields;
+    if (kept.probe != bodies.probe || kept.fixed != bodies.fixed) {
+      kept = bodies;
+      fields = std::make_shared<const field_scene>(make_field_scene(bodies, settings.bodies).value());
+    }
+    return any_renderer(make_plane_renderer(std::move(bodies), fields, settings).value());
   };
 }
 
