@@ -60,7 +60,7 @@ bool bodies_are_filtered(const mjModel& m, int a, int b) {
 
 colliding_geoms find_colliding(const mjModel& m, const masks& of, const found_object& probe,
                                const found_object& fixed) {
-  if ((m.opt.disableflags & mjDSBL_CONTACT) != 0) return {};
+  if ((m.opt.disableflags & (mjDSBL_CONSTRAINT | mjDSBL_CONTACT)) != 0) return {};
   const bool filtered = bodies_are_filtered(m, probe.body, fixed.body);
   for (const int a : geoms_of(m, probe)) {
     for (const int b : geoms_of(m, fixed)) {

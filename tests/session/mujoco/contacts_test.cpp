@@ -210,7 +210,7 @@ struct late_renderer {
 // the plate's ridges.
 double energy_gained(double damping_s, bool late, double seconds = 10.0) {
   const simulation s(slide_scene(0.3, 1e-3, "<joint type='slide' axis='1 0 0' stiffness='40'/>"));
-  static const model_ptr block = ridged_box({0.006, 0.005, 0.03}), plate = ridged_box({0.05, 0.012, 0.03});
+  static const model_ptr block = flat_box({0.005, 0.004, 0.03}), plate = ridged_box({0.05, 0.012, 0.03});
   textured_pair pair{
       .probe = {block, "block"}, .fixed = {plate, "plate"}, .damping_s = damping_s, .make_renderer = least_motion_of()};
   if (late) {

@@ -121,7 +121,7 @@ TEST(mujoco_objects, a_mesh_geoms_model_is_where_the_mesh_is_though_mujoco_moves
 
 // Pairs of geoms that MuJoCo makes contacts of, all being in one place.
 std::set<std::pair<int, int>> contacts_of(const simulation& s) {
-  mj_forward(&s.m(), &s.d());
+  mj_fwdPosition(&s.m(), &s.d());
   std::set<std::pair<int, int>> out;
   for (int i = 0; i < s.d().ncon; ++i) {
     out.insert(std::minmax(s.d().contact[i].geom1, s.d().contact[i].geom2));
@@ -139,7 +139,7 @@ TEST(mujoco_objects, contacts_of_the_geoms_are_refused_and_switched_off_and_no_o
     };
     const auto ball = [&](const std::string& name) { return "<geom name='" + name + "' size='.01'" + masks() + "/>"; };
     const bool excluded = i % 10 == 0;
-    const std::string xml = std::string("<size njmax='2000' nconmax='200'/>") +
+    const std::string xml = std::string("<size njmax='400' nconmax='60'/><option iterations='1' solver='PGS'/>") +
                             (excluded ? "<contact><exclude body1='a' body2='b'/></contact>" : "") + "<worldbody>" +
                             ball("w") + "<body name='a'><freejoint/>" + ball("a1") + ball("a2") +
                             "</body><body name='b' pos='.001 0 0'><freejoint/>" + ball("b1") + ball("b2") + ball("b3") +
