@@ -25,8 +25,14 @@ import numpy.typing as npt
 
 from . import Model
 from ._errors import Error
-from ._mujoco import Contacts, Simulation, mujoco_version
-from ._mujoco import switch_off_own_contacts as _switch_off_own_contacts
+
+try:
+    from ._mujoco import Contacts, Simulation, mujoco_version
+    from ._mujoco import switch_off_own_contacts as _switch_off_own_contacts
+except ImportError as why:
+    raise ImportError(
+        "asperity was built without MuJoCo, or libmujoco is not there: install libmujoco-dev and build asperity again"
+    ) from why
 
 __all__ = [
     "Contacts",
