@@ -1,6 +1,6 @@
 // A six-joint arm scrubs a textured workpiece with a textured tool, and the table shows what its wrist feels, second by second.
-// The second two files are the same bodies without texture; --csv FILE writes the forces for plot_arm_scrub.py. With --potential
-// the contact is the default renderer's.
+// The second two files are the same bodies without texture; --csv FILE writes the forces for plot_arm_scrub.py. With --planes
+// the contact is made of support planes, which is several times quicker.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -18,8 +18,8 @@ namespace {
 // Ten times as stiff as what a hand is given: the tool lies in the relief by a tenth of a millimetre.
 constexpr double seconds = 4.0, period_s = 1e-3, stiffness_n_per_m = 20e3;
 
-// Support planes with a spring for each direction: several times quicker than the default, and no potential; what the torque's
-// steps make, the arm's joints damp. Gaps need not be told, so that few samples are looked at.
+// A spring for each direction on the deepest of its support planes. It is no potential: its force jumps from sample to sample,
+// which an arm's joints have to damp. Gaps need not be told, so that few samples are looked at.
 asperity::result<asperity::any_renderer> walls(asperity::scene bodies) {
   asperity::plane_renderer_settings settings;
   settings.springs.stiffness_n_per_m = stiffness_n_per_m;
@@ -35,7 +35,7 @@ struct scrub {
   std::uint64_t scaled = 0;
 };
 
-bool run(const asperity::model_ptr& tool, const asperity::model_ptr& piece, bool potential, scrub& out) {
+bool run(const asperity::model_ptr& tool, const asperity::model_ptr& piece, bool planes, scrub& out) {
   const asperity::vec3 piece_at(0.45, 0.0, 0.15);
   const mujoco_model m = model_of(arm_mjcf(piece_at));
   if (!m) return false;
@@ -43,7 +43,7 @@ bool run(const asperity::model_ptr& tool, const asperity::model_ptr& piece, bool
   arm robot(*m, *d);
   asperity::mujoco::textured_pair pair{
       .probe = {tool, "tool"}, .fixed = {piece, "workpiece"}, .stiffness_n_per_m = stiffness_n_per_m};
-  if (!potential) pair.make_renderer = walls;
+  if (planes) pair.make_renderer = walls;
   auto contacts = asperity::mujoco::textured_contacts::make(*m, {pair});
   if (!contacts) return std::puts(contacts.error().message.c_str()), false;
 
@@ -111,17 +111,16 @@ int main(int argc, char** argv) {
     csv = argv[argc - 1];
     argc -= 2;
   }
-  const bool potential = argc > 1 && std::strcmp(argv[argc - 1], "--potential") == 0;
-  if (potential) --argc;
+  const bool planes = argc > 1 && std::strcmp(argv[argc - 1], "--planes") == 0;
+  if (planes) --argc;
   if (argc != 3 && argc != 5) {
-    return std::puts(
-               "usage: arm_scrub TOOL.glb PIECE.glb [SMOOTH_TOOL.glb SMOOTH_PIECE.glb] [--potential] [--csv FILE]"),
+    return std::puts("usage: arm_scrub TOOL.glb PIECE.glb [SMOOTH_TOOL.glb SMOOTH_PIECE.glb] [--planes] [--csv FILE]"),
            2;
   }
   std::vector<scrub> all;
   for (int i = 1; i + 1 < argc; i += 2) {
     const asperity::model_ptr tool = load(argv[i]), piece = load(argv[i + 1]);
-    if (!tool || !piece || !run(tool, piece, potential, all.emplace_back())) return 1;
+    if (!tool || !piece || !run(tool, piece, planes, all.emplace_back())) return 1;
     print(i == 1 ? "with texture" : "without texture", all.back());
   }
   return csv != nullptr && !write(csv, all) ? 1 : 0;
