@@ -68,8 +68,8 @@ class arm {
     }
   }
   /// Sets the motors' torques: the arm's own weight and Coriolis forces, and a spring and damper from the tool to the pose.
-  /// Call it between mj_step1() and mj_step2().
-  void pull_to(const asperity::pose& T_wt) {
+  /// Call it between mj_step1() and mj_step2(). @return force and torque of spring and damper on the tool, world axes
+  asperity::wrench pull_to(const asperity::pose& T_wt) {
     constexpr double spring_n_per_m = 1500.0, damper_n_s_per_m = 60.0, spring_n_m = 40.0, damper_n_m_s = 1.0;
     const jacobian j = tool_jacobian();
     const asperity::vec6 way = asperity::pose_difference(T_wt, tool());
@@ -83,6 +83,7 @@ class arm {
       d_.qfrc_applied[k] = d_.qfrc_bias[k];
       for (std::size_t r = 0; r < 6; ++r) d_.qfrc_applied[k] += j[6 * r + k] * pull[r];
     }
+    return {{pull[0], pull[1], pull[2]}, {pull[3], pull[4], pull[5]}};
   }
 
  private:

@@ -60,7 +60,7 @@ bool run(const asperity::model_ptr& tool, const asperity::model_ptr& piece, bool
   const std::clock_t began = std::clock();
   while (d->time < seconds) {
     mj_step1(m.get(), d.get());
-    robot.pull_to(wanted(d->time));
+    static_cast<void>(robot.pull_to(wanted(d->time)));
     const asperity::status status = contacts->apply(*m, *d);
     mj_step2(m.get(), d.get());
     contacts->take_back(*d);
