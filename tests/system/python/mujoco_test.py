@@ -10,9 +10,9 @@ import asperity
 import asperity.mujoco as am
 from support import fresh_random, model, poses
 
-SCENE = """<mujoco><option gravity="0 0 0"/><worldbody>
+SCENE = """<mujoco><option timestep=".001" gravity="0 0 0"/><worldbody>
   <body name="gear"/>
-  <body name="block"><freejoint/><inertial pos=".01 .02 -.03" mass=".1" diaginertia="2e-5 2e-5 2e-5"/></body>
+  <body name="block"><freejoint/><inertial pos=".01 .02 -.03" mass=".1" diaginertia="2e-3 2e-3 2e-3"/></body>
   <body name="other"><freejoint/><geom size=".01"/></body>
 </worldbody></mujoco>"""
 
@@ -43,7 +43,8 @@ class Wrenches(unittest.TestCase):
             wanted = np.array(touch.wrench)
             wanted[3:] += np.cross(touch.centre_of_mass - simulation.xipos[row], wanted[:3])
             scale = max(1.0, float(np.linalg.norm(wanted)))
-            np.testing.assert_allclose(simulation.xfrc_applied[row], wanted, atol=1e-12 * scale)
+            self.assertEqual(contacts.report()["force_share"], 1.0)
+            np.testing.assert_allclose(simulation.xfrc_applied[row], wanted, rtol=0.0, atol=1e-12 * scale)
             np.testing.assert_array_equal(contacts.report(0)["on_probe"], simulation.xfrc_applied[row])
             felt += bool(np.any(wanted))
             contacts.take_back()
