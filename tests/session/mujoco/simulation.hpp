@@ -11,9 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "asperity/field/field_scene.hpp"
 #include "asperity/mujoco/textured_contacts.hpp"
-#include "asperity/planes/plane_renderer.hpp"
 #include "support/kept_bodies.hpp"
 #include "support/small_models.hpp"
 #include "unit/control/drawn.hpp"
@@ -86,19 +84,28 @@ inline textured_pair_renderer least_motion_of(double stiffness_n_per_m = 2000.0,
   };
 }
 
-/// Penalty walls: a spring for each direction on the depth itself.
+/// A penalty wall: the top of the fixed box, which stands upright, pushes the lowest face of an upright probe up with k times its
+/// depth.
+struct wall_renderer {
+  asperity::scene bodies;
+  double stiffness_n_per_m;
+  status step(const scene_pose& at, tick& out) noexcept {
+    out = {};
+    const double depth_m =
+        at.T_wb[0].position.z + bodies.fixed[0]->box.high.z - at.T_wa.position.z - bodies.probe->box.low.z;
+    out.centre_of_mass_w = at.T_wa * bodies.probe->mass.centre_of_mass;
+    if (depth_m > 0.0) {
+      out.force.on_probe_w.force.z = stiffness_n_per_m * depth_m;
+      out.force.stiffness(2, 2) = -stiffness_n_per_m;
+    }
+    return status::ok;
+  }
+  [[nodiscard]] const asperity::scene& scene() const noexcept { return bodies; }
+  [[nodiscard]] std::size_t memory_bytes() const noexcept { return sizeof *this; }
+};
 inline textured_pair_renderer walls_of(double stiffness_n_per_m) {
   return [=](scene bodies) -> result<any_renderer> {
-    plane_renderer_settings settings;
-    settings.bodies.sample_pitch_m = 2e-3;
-    settings.springs.stiffness_n_per_m = stiffness_n_per_m;
-    static scene kept;
-    static std::shared_ptr<const field_scene> fields;
-    if (kept.probe != bodies.probe || kept.fixed != bodies.fixed) {
-      kept = bodies;
-      fields = std::make_shared<const field_scene>(make_field_scene(bodies, settings.bodies).value());
-    }
-    return any_renderer(make_plane_renderer(std::move(bodies), fields, settings).value());
+    return any_renderer(wall_renderer{std::move(bodies), stiffness_n_per_m});
   };
 }
 
