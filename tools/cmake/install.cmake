@@ -3,8 +3,10 @@ include(CMakePackageConfigHelpers)
 
 set(ASPERITY_TOOLS_COMPONENTS io bake c)
 set(ASPERITY_GL_COMPONENTS gl gl_compute gl_occlusion)
+set(ASPERITY_MUJOCO_COMPONENTS mujoco)
 set(ASPERITY_HAL_COMPONENTS transport drivers hid can serial usb urdf plugin)
-set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} ${ASPERITY_HAL_COMPONENTS})
+set(ASPERITY_COMPONENTS ${ASPERITY_TOOLS_COMPONENTS} ${ASPERITY_GL_COMPONENTS} ${ASPERITY_MUJOCO_COMPONENTS}
+    ${ASPERITY_HAL_COMPONENTS})
 set(_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/asperity)
 
 # Core. Each component below has an export file of its own, so that find_package(asperity) asks for GLM and nothing else.
@@ -26,7 +28,7 @@ foreach(_component ${ASPERITY_COMPONENTS})
 endforeach()
 
 # For a message to people.
-foreach(_kind TOOLS GL HAL)
+foreach(_kind TOOLS GL MUJOCO HAL)
   list(JOIN ASPERITY_${_kind}_COMPONENTS ", " ASPERITY_${_kind}_COMPONENTS)
 endforeach()
 

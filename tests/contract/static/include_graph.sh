@@ -21,7 +21,8 @@ all_edges() {
   for folder in hal/{transport,drivers,can,serial,usb,hid,urdf,plugin} tools/{io,bake}; do
     edges "$folder/include" "$(basename "$folder")"
   done
-  for folder in backends/*/include; do edges "$folder" gl; done
+  for folder in backends/gl_*/include; do edges "$folder" gl; done
+  edges backends/mujoco/include mujoco
   for folder in tools/{picture,text,view,c}; do edges "$folder" "$(basename "$folder")"; done
 }
 
