@@ -19,8 +19,8 @@ int main(int argc, char** argv) {
   const double upright[4] = {0, 0, 0, 1};
   double hand[7];
   double largest_n = 0.0;
-  const asperity_model* fixed;
-  int frame, part;
+  const asperity_model* fixed = NULL;
+  int frame = 0, part = 0;
 
   if (argc != 3) return puts("usage: 07_c_interface PROBE.glb FIXED.glb"), 2;
   if (asperity_model_load(argv[1], &probe, &why) != 0 || asperity_model_load(argv[2], &body, &why) != 0)

@@ -44,8 +44,8 @@ class arm {
     mj_forward(&m, &d);
   }
   [[nodiscard]] asperity::pose tool() const {
-    return asperity::mujoco::pose_from_mujoco(std::span<const double, 3>(d_.xpos + 3 * tool_, 3),
-                                              std::span<const double, 4>(d_.xquat + 4 * tool_, 4));
+    return asperity::mujoco::pose_from_mujoco(std::span<const double, 3>(d_.xpos + std::ptrdiff_t{3} * tool_, 3),
+                                              std::span<const double, 4>(d_.xquat + std::ptrdiff_t{4} * tool_, 4));
   }
   /// Bends the arm, at rest, until the tool is there.
   void place(const asperity::pose& T_wt) {
@@ -90,7 +90,7 @@ class arm {
   using jacobian = std::array<double, 36>;  // rows: translation, rotation
   [[nodiscard]] jacobian tool_jacobian() const {
     jacobian out{};
-    mj_jac(&m_, &d_, out.data(), out.data() + 18, d_.xpos + 3 * tool_, tool_);
+    mj_jac(&m_, &d_, out.data(), out.data() + 18, d_.xpos + std::ptrdiff_t{3} * tool_, tool_);
     return out;
   }
 

@@ -33,8 +33,9 @@ std::string names_of(const mjModel& m, object_kind kind) {
 // Extents of a mesh geom's vertices in a frame of the body.
 bounds box_of_mesh(const mjModel& m, int geom, const pose& T_bm) {
   const auto mesh = static_cast<std::size_t>(m.geom_dataid[geom]);
-  const pose T_mg = inverse(T_bm) * pose_from_mujoco(std::span<const double, 3>(m.geom_pos + 3 * geom, 3),
-                                                     std::span<const double, 4>(m.geom_quat + 4 * geom, 4));
+  const pose T_mg =
+      inverse(T_bm) * pose_from_mujoco(std::span<const double, 3>(m.geom_pos + std::ptrdiff_t{3} * geom, 3),
+                                       std::span<const double, 4>(m.geom_quat + std::ptrdiff_t{4} * geom, 4));
   std::vector<vec3> corners;
   const auto first = static_cast<std::size_t>(m.mesh_vertadr[mesh]);
   for (std::size_t i = first; i < first + static_cast<std::size_t>(m.mesh_vertnum[mesh]); ++i) {
@@ -100,8 +101,8 @@ result<found_object> find_object(const mjModel& m, const textured_object& object
     if (const result<void> fits = check_fits_mesh(m, id, object, where); !fits) return fits.error();
     return found_object{body, id, object.T_om};
   }
-  const pose T_bg = pose_from_mujoco(std::span<const double, 3>(m.geom_pos + 3 * id, 3),
-                                     std::span<const double, 4>(m.geom_quat + 4 * id, 4));
+  const pose T_bg = pose_from_mujoco(std::span<const double, 3>(m.geom_pos + std::ptrdiff_t{3} * id, 3),
+                                     std::span<const double, 4>(m.geom_quat + std::ptrdiff_t{4} * id, 4));
   return found_object{body, id, T_bg * object.T_om};
 }
 

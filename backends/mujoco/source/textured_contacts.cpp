@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -22,11 +23,11 @@ namespace {
 bool moves(const mjModel& m, int body) { return m.body_weldid[body] != 0; }
 
 pose T_w_body(const mjData& d, int body) noexcept {
-  return pose_from_mujoco(std::span<const double, 3>(d.xpos + 3 * body, 3),
-                          std::span<const double, 4>(d.xquat + 4 * body, 4));
+  return pose_from_mujoco(std::span<const double, 3>(d.xpos + std::ptrdiff_t{3} * body, 3),
+                          std::span<const double, 4>(d.xquat + std::ptrdiff_t{4} * body, 4));
 }
 vec3 centre_of_mass_w(const mjData& d, int body) noexcept {
-  return vector_from_mujoco(std::span<const double, 3>(d.xipos + 3 * body, 3));
+  return vector_from_mujoco(std::span<const double, 3>(d.xipos + std::ptrdiff_t{3} * body, 3));
 }
 
 bool same_bits(double a, double b) noexcept {
@@ -85,8 +86,7 @@ struct textured_contacts::parts {
   std::vector<double> jacobian, other_jacobian, moved;  // 6 x nv
   std::uint64_t scaled = 0;
 
-  void find_motion(const mjModel& m, const mjData& d, const placed_pair& p, mat6& inverse_inertia,
-                   vec6& velocity) noexcept;
+  void find_motion(const mjModel& m, mjData& d, const placed_pair& p, mat6& inverse_inertia, vec6& velocity) noexcept;
   void feel(const mjModel& m, mjData& d, placed_pair& p) noexcept;
   void bear(placed_pair& p) noexcept;
   [[nodiscard]] status apply(const mjModel& m, mjData& d) noexcept;
@@ -95,14 +95,14 @@ struct textured_contacts::parts {
 };
 
 // Of the probe's motion against the fixed body, about c_A: the inverse of the inertia that both have, and the velocity.
-void textured_contacts::parts::find_motion(const mjModel& m, const mjData& d, const placed_pair& p,
-                                           mat6& inverse_inertia, vec6& velocity) noexcept {
+void textured_contacts::parts::find_motion(const mjModel& m, mjData& d, const placed_pair& p, mat6& inverse_inertia,
+                                           vec6& velocity) noexcept {
   const auto n = static_cast<std::size_t>(nv);
   const std::array<double, 3> point{p.c_a_w.x, p.c_a_w.y, p.c_a_w.z};
   mj_jac(&m, &d, jacobian.data(), jacobian.data() + 3 * n, point.data(), p.probe.body);
   mj_jac(&m, &d, other_jacobian.data(), other_jacobian.data() + 3 * n, point.data(), p.fixed.body);
   for (std::size_t i = 0; i < 6 * n; ++i) jacobian[i] -= other_jacobian[i];
-  mj_solveM(&m, const_cast<mjData*>(&d), moved.data(), jacobian.data(), 6);
+  mj_solveM(&m, &d, moved.data(), jacobian.data(), 6);
   for (std::size_t i = 0; i < 6; ++i) {
     double v = 0.0;
     for (std::size_t k = 0; k < n; ++k) v += jacobian[i * n + k] * d.qvel[k];
@@ -165,7 +165,7 @@ void textured_contacts::parts::bear(placed_pair& p) noexcept {
 
 // To a body that nothing moves nothing is added.
 void textured_contacts::parts::push(mjData& d, int body, const wrench& w) noexcept {
-  double* const row = d.xfrc_applied + 6 * body;
+  double* const row = d.xfrc_applied + std::ptrdiff_t{6} * body;
   for (written_row& r : rows) {
     if (r.body != body) continue;
     const vec6 added = to_vec6(w);
@@ -178,7 +178,7 @@ void textured_contacts::parts::push(mjData& d, int body, const wrench& w) noexce
 
 void textured_contacts::parts::take_back(mjData& d) noexcept {
   for (written_row& r : rows) {
-    double* const row = d.xfrc_applied + 6 * r.body;
+    double* const row = d.xfrc_applied + std::ptrdiff_t{6} * r.body;
     for (std::size_t i = 0; i < 6; ++i) {
       if (same_bits(row[i], r.after[i])) row[i] = r.before[i];
       // From here on nothing of ours is in the array.
@@ -191,7 +191,7 @@ status textured_contacts::parts::apply(const mjModel& m, mjData& d) noexcept {
   if (m.nbody != nbody || m.nv != nv) return status::not_ready;
   take_back(d);
   for (written_row& r : rows) {
-    std::copy_n(d.xfrc_applied + 6 * r.body, 6, r.before.begin());
+    std::copy_n(d.xfrc_applied + std::ptrdiff_t{6} * r.body, 6, r.before.begin());
     r.after = r.before;
   }
   status answer = status::ok;

@@ -11,13 +11,12 @@
 
 #include "asperity/control/control_settings.hpp"
 #include "asperity/control/exchange.hpp"
-#include "asperity/control/followed_handle.hpp"
-#include "asperity/control/loop_time.hpp"
 #include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/passivity_guard.hpp"
 #include "asperity/control/probe_motion.hpp"
 #include "asperity/control/rate_monitor.hpp"
 #include "asperity/control/session_record.hpp"
+#include "asperity/control/workspace_map.hpp"
 #include "asperity/device/device.hpp"
 #include "asperity/device/output_gate.hpp"
 #include "asperity/device/sample_check.hpp"
@@ -73,7 +72,8 @@ class device_loop {
         shared_(&shared),
         observer_(std::move(observer)),
         check_(settings.samples),
-        handle_(settings, dev.capabilities(), settings.map.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}),
+        handle_(settings.map, settings.clutch, settings.velocity, dev.capabilities(),
+                settings.map.T_ha * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a}),
         motion_(settings.probe, settings.coupling, laws_of(settings), settings.substeps, settings.friction),
         transient_(settings.transient, dev.capabilities().moving_mass_kg),
         guard_(guard_for(settings.guard, dev.capabilities())),
