@@ -1,4 +1,4 @@
-// The time of the loops: whether they keep it, what becomes of the output where they do not, and whether the application beats.
+// The time of the loops: whether they keep it, what becomes of the output where not, and whether a program beats.
 #pragma once
 
 #include <algorithm>
