@@ -1,20 +1,10 @@
 /* Where every field of driver_abi.h lies in version 1.0, on a machine with 64-bit pointers. A driver that was built
  * years ago believes these numbers: a line of this file changes with a new major version only. A minor version adds
  * lines, and changes the sizes of the structs that it appends to. */
-#include <stddef.h>
-
 #include "asperity/device/driver_abi.h"
 
-#ifdef __cplusplus
-#define HOLDS(name, condition) static_assert(condition, #name)
-#else /* C99 has no static_assert */
-#define HOLDS(name, condition) typedef char name[(condition) ? 1 : -1]
-#endif
-#define AT(type, field, offset, size) \
-  HOLDS(type##_##field##_has_moved,   \
-        offsetof(struct type, field) == (offset) && sizeof(((struct type*)NULL)->field) == (size))
-#define SIZE(type, size) HOLDS(type##_has_another_size, sizeof(struct type) == (size))
-#define IS(constant, value) HOLDS(constant##_has_another_value, (constant) == (value))
+#define LAYOUT_OF(type) struct type
+#include "layout_claims.h"
 
 /* clang-format off */
 AT(asperity_capabilities, struct_size, 0, 4);

@@ -1,19 +1,10 @@
 /* Where every field of the C interface's structs lies, and what its constants are, on a machine with 64-bit pointers. A
  * program that was built years ago, and a binding in another language, believe these numbers: a line of this file never
  * changes. A version that appends fields adds lines, and changes the SIZE of those structs. */
-#include <stddef.h>
-
 #include "asperity/c/asperity.h"
 
-#ifdef __cplusplus
-#define HOLDS(name, condition) static_assert(condition, #name)
-#else /* C99 has no static_assert */
-#define HOLDS(name, condition) typedef char name[(condition) ? 1 : -1]
-#endif
-#define AT(type, field, offset, size) \
-  HOLDS(type##_##field##_has_moved, offsetof(type, field) == (offset) && sizeof(((type*)NULL)->field) == (size))
-#define SIZE(type, size) HOLDS(type##_has_another_size, sizeof(type) == (size))
-#define IS(constant, value) HOLDS(constant##_has_another_value, (constant) == (value))
+#define LAYOUT_OF(type) type
+#include "../abi/layout_claims.h"
 
 /* clang-format off */
 AT(asperity_error, size, 0, 4);

@@ -1,52 +1,13 @@
 #!/usr/bin/env bash
-# layout.sh COMPILER INCLUDE WORK: compiles layout.h as strict C99 and as C++20, then plants changes in copies of the
-# headers of the C interface, each of which has to break both.
+# layout.sh COMPILER INCLUDE WORK: the layout of the C interface's headers, each of which stands alone; see planted_layout.sh.
 set -euo pipefail
-compiler=$1 include=$2 work=$3/planted
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-as_c=(-x c -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only)
-as_cxx=(-x c++ -std=c++20 -Wall -Wextra -Wpedantic -Werror -fsyntax-only)
-
-compile() { # FOLDER OPTIONS...
-  local folder=$1
-  shift
-  "$compiler" "$@" -I"$folder" -include "$here/layout.h" /dev/null
-}
-
-for options in as_c as_cxx; do
-  declare -n flags=$options
-  compile "$include" "${flags[@]}"
-done
-# Every header stands alone.
-for header in "$include"/asperity/c/*.h; do
+compiler=$1 include=$2 folder=asperity/c claims=$here/layout.h work=$3/planted
+source "$here/../abi/planted_layout.sh"
+for header in "$include/$folder"/*.h; do
   "$compiler" "${as_c[@]}" -I"$include" "$header"
 done
-
-planted=0
-# plant HEADER SED-SCRIPT: changes a copy, and expects neither language to take it.
-plant() {
-  rm -rf "$work"
-  mkdir -p "$work/asperity"
-  cp -r "$include/asperity/c" "$work/asperity/c"
-  sed -i -E "$2" "$work/asperity/c/$1"
-  if cmp -s "$include/asperity/c/$1" "$work/asperity/c/$1"; then
-    echo "the change '$2' changes nothing" >&2
-    exit 1
-  fi
-  for options in as_c as_cxx; do
-    declare -n flags=$options
-    if compile "$work" "${flags[@]}" 2> "$work/errors"; then
-      echo "the change '$2' was not seen" >&2
-      exit 1
-    fi
-    grep -qE '_has_moved|_has_another' "$work/errors" || {
-      echo "the change '$2' broke something else:" >&2
-      cat "$work/errors" >&2
-      exit 1
-    }
-  done
-  planted=$((planted + 1))
-}
+holds
 
 # A field more at the end of every struct and one less, another width, two that change places, other values.
 plant answer.h 's/char message\[504\];/char message[496];/'

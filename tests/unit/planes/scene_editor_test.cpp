@@ -284,20 +284,22 @@ TEST(ChangingScene, FeelsAsASceneThatNeverChanged) {
   EXPECT_GT(left_out, looked);
 }
 
+// How deep the deepest plane is where the probe is this deep in a table at the origin; -1: there is none.
+double deepest_told(plane_renderer& feel, double depth_m, tick& t) {
+  const pose T_wa{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, table_half.z + tool_half.z - depth_m)};
+  EXPECT_EQ(feel.step({T_wa, feel.placed()->T_wb, 1.0, feel.placed()->version}, t), status::ok);
+  double most_m = -1.0;
+  for (const support_plane& p : t.planes) most_m = std::max(most_m, p.depth_m);
+  return most_m;
+}
+
 TEST(ChangingScene, LetsABodyStandBackThatComesWhereTheProbeIs) {
   const box_set& of = boxes();
   scene_editor editor = editor_of(2);
   const body_handle table = editor.add(of.table, of.field_of(of.table), pose{}).value();
   plane_renderer feel = make_plane_renderer(editor, {.reach_m = reach_m}).value();
   tick t;
-  // How deep the planes are where the probe is this deep in the table's first place.
-  const auto told_at = [&](double depth_m) {
-    const pose T_wa{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, table_half.z + tool_half.z - depth_m)};
-    EXPECT_EQ(feel.step({T_wa, feel.placed()->T_wb, 1.0, feel.placed()->version}, t), status::ok);
-    double most_m = -1.0;
-    for (const support_plane& p : t.planes) most_m = std::max(most_m, p.depth_m);
-    return most_m;
-  };
+  const auto told_at = [&](double depth_m) { return deepest_told(feel, depth_m, t); };
   const auto stands_back = [&] { return has(t.flags, tick_flag::stands_back); };
   const auto lift = [&](double by_m) {
     ASSERT_TRUE(editor.place(table, {quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, by_m)}));
@@ -383,13 +385,7 @@ TEST(ChangingScene, LooksAheadOfAProbeThatMoves) {
     scene_editor editor = editor_of(1);
     plane_renderer feel = make_plane_renderer(editor, {.reach_m = reach_m}).value();
     tick t;
-    const auto told_at = [&](double depth_m) {
-      const pose T_wa{quat(1.0, 0.0, 0.0, 0.0), vec3(0.0, 0.0, table_half.z + tool_half.z - depth_m)};
-      EXPECT_EQ(feel.step({T_wa, feel.placed()->T_wb, 1.0, feel.placed()->version}, t), status::ok);
-      double most_m = -1.0;
-      for (const support_plane& p : t.planes) most_m = std::max(most_m, p.depth_m);
-      return most_m;
-    };
+    const auto told_at = [&](double depth_m) { return deepest_told(feel, depth_m, t); };
     constexpr double deep_m = 5e-4;
     static_cast<void>(told_at(deep_m - step_m));
     ASSERT_TRUE(editor.add(of.table, of.field_of(of.table), pose{}));

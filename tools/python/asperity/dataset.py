@@ -25,6 +25,8 @@ import numpy.typing as npt
 
 from . import _asperity
 from ._errors import BakeRemark, Error
+from ._files import write_whole
+from ._spectra import amplitudes
 from .baking import bake
 from .session import Session
 
@@ -62,27 +64,18 @@ class Report:
     refused: Dict[str, str]
 
 
-def _whole(file: Path, write: Callable[[Path], None]) -> None:
-    part = file.with_name(f".{file.stem}.{os.getpid()}.part{file.suffix}")
-    try:
-        write(part)
-        os.replace(part, file)
-    finally:
-        part.unlink(missing_ok=True)
-
-
 def _write_json(file: Path, document: Any) -> None:
     def write(part: Path) -> None:
         part.write_text(json.dumps(document, indent=1, sort_keys=True) + "\n")
 
-    _whole(file, write)
+    write_whole(file, write)
 
 
 def _bake_task(mesh: str, out: str, plan: Plan) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", BakeRemark)
         model = bake(mesh, name=Path(mesh).stem, triangles=plan.triangles, texture=plan.texture, scale=plan.scale, threads=1)
-    _whole(Path(out), lambda part: model.save(part))
+    write_whole(Path(out), lambda part: model.save(part))
 
 
 def spectrum(force: npt.ArrayLike, rate_hz: float) -> Tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
@@ -90,9 +83,7 @@ def spectrum(force: npt.ArrayLike, rate_hz: float) -> Tuple[npt.NDArray[np.float
     values = np.asarray(force, dtype=np.float64)
     if values.ndim != 2 or values.shape[1] != 3 or values.shape[0] < 2:
         raise ValueError(f"force has shape {values.shape}: give (N, 3), N, with two rows at least")
-    window = np.hanning(values.shape[0])[:, None]
-    amplitude = np.abs(np.fft.rfft((values - values.mean(axis=0)) * window, axis=0)) * 2.0 / window.sum()
-    return np.fft.rfftfreq(values.shape[0], 1.0 / rate_hz), amplitude
+    return amplitudes(values, rate_hz)
 
 
 def _touch_task(model: str, out: str, seed: int, plan: Plan) -> None:
@@ -105,7 +96,7 @@ def _touch_task(model: str, out: str, seed: int, plan: Plan) -> None:
         "time_s": felt.time_s, "probe_pose": felt.probe_pose, "hand_wrench": felt.hand_wrench,
         "contact_wrench": felt.contact_wrench, "depth_m": felt["depth_m"], "contacts": felt["contacts"],
         "spectrum_hz": frequency_hz, "spectrum_n": amplitude_n, "seed": np.int64(seed)}
-    _whole(Path(out), lambda part: np.savez(part, **columns))
+    write_whole(Path(out), lambda part: np.savez(part, **columns))
 
 
 # (kind, what it reads, what it writes, seed); the files of one kind do not depend on each other.

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _asperity
+from ._spectra import amplitudes
 from .recording import Recording
 
 _axes_names = ("x", "y", "z")
@@ -57,10 +58,9 @@ def spectrum(values: npt.ArrayLike, rate_hz: float, axes: Optional[Any] = None, 
         raise ValueError(f"values has shape {x.shape}: give (N,), 8 values or more")
     if not rate_hz > 0.0:
         raise ValueError("rate_hz has to be above 0: values per second")
-    window = np.hanning(len(x))
-    amplitude = 2.0 * np.abs(np.fft.rfft((x - x.mean()) * window)) / window.sum()
+    frequency_hz, amplitude = amplitudes(x, rate_hz)
     to = _axes(axes)
-    to.semilogy(np.fft.rfftfreq(len(x), 1.0 / rate_hz)[1:], amplitude[1:], **{"linewidth": 1.0, **line})
+    to.semilogy(frequency_hz[1:], amplitude[1:], **{"linewidth": 1.0, **line})
     to.set_xlabel("frequency (Hz)")
     to.set_ylabel("amplitude")
     to.margins(x=0.0)

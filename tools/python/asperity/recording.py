@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from . import _asperity
 from ._errors import Error
+from ._files import write_whole
 
 PathLike = Union[str, "os.PathLike[str]"]
 Floats = npt.NDArray[np.float64]
@@ -95,14 +96,10 @@ class Recording(Mapping[str, npt.NDArray[Any]]):
         write = {".npz": self._write_npz, ".csv": self._write_csv}.get(path.suffix.lower())
         if write is None:
             raise Error("unsupported", f"{path} has to end in .npz or .csv")
-        unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
         try:
-            write(unfinished)
-            os.replace(unfinished, path)
+            write_whole(path, write)
         except OSError as e:
             raise Error("io_failed", f"{path} could not be written: {e.strerror}") from e
-        finally:
-            unfinished.unlink(missing_ok=True)
 
     def _write_npz(self, path: Path) -> None:
         with open(path, "wb") as to:

@@ -96,12 +96,15 @@ py::array_t<double> to_array(const vec3& v) {
 py::array_t<double> to_array(const wrench& w) { return six(w.force, w.torque); }
 py::array_t<double> to_array(const vec6& v) { return six(v.linear, v.angular); }
 
+void put(const pose& T, double* seven) noexcept {
+  const auto q = to_xyzw(T.rotation);
+  for (int i = 0; i < 3; ++i) seven[i] = T.position[i];
+  std::copy(q.begin(), q.end(), seven + 3);
+}
+
 py::array_t<double> to_array(const pose& T) {
   py::array_t<double> out(7);
-  const auto q = to_xyzw(T.rotation);
-  double* const to = out.mutable_data();
-  for (int i = 0; i < 3; ++i) to[i] = T.position[i];
-  std::copy(q.begin(), q.end(), to + 3);
+  put(T, out.mutable_data());
   return out;
 }
 

@@ -32,6 +32,9 @@ using doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
 /// Poses, shape (N, 7). Raises ValueError or asperity.Error.
 [[nodiscard]] std::vector<pose> poses_of(py::handle given, const char* name);
 
+/// Writes a pose as seven numbers, x y z qx qy qz qw.
+void put(const pose& T, double* seven) noexcept;
+
 [[nodiscard]] py::array_t<double> to_array(const vec3& v);
 [[nodiscard]] py::array_t<double> to_array(const wrench& w);
 [[nodiscard]] py::array_t<double> to_array(const vec6& v);

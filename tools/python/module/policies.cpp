@@ -1,8 +1,9 @@
 #include "policies.hpp"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -10,12 +11,6 @@
 
 namespace asperity::python {
 namespace {
-
-void put(const pose& T, double* seven) noexcept {
-  const auto q = to_xyzw(T.rotation);
-  const double values[] = {T.position.x, T.position.y, T.position.z, q[0], q[1], q[2], q[3]};
-  std::copy(std::begin(values), std::end(values), seven);
-}
 
 // What a contact told, in a tick. @return whether all of it is finite
 bool fill(const double* six, const double* thirty_six, tick& out) noexcept {
