@@ -110,4 +110,14 @@ class two_models {
   return owned_device(out);
 }
 
+/// A handle of every kind.
+struct all_handles {
+  const two_models& models = shared_models();
+  owned_renderer renderer = models.renderer();
+  owned_tool tool = models.tool();
+  owned_device device = simulated();
+  owned_device free_device = simulated();
+  owned_session session = models.session(device.get());
+};
+
 }  // namespace asperity::test_support
