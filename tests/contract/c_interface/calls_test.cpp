@@ -4,10 +4,8 @@
 #include <functional>
 #include <gtest/gtest.h>
 #include <limits>
-#include <thread>
 #include <vector>
 
-#include "asperity/version.hpp"
 #include "contract/c_interface/saved_models.hpp"
 
 namespace {

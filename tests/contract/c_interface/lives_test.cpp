@@ -1,9 +1,6 @@
 // Structs of older and newer programs, sentences, what lives as long as something needs it, and two threads.
-#include <cmath>
 #include <cstring>
-#include <functional>
 #include <gtest/gtest.h>
-#include <limits>
 #include <thread>
 #include <vector>
 
