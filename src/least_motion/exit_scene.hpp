@@ -27,12 +27,13 @@ struct exit_body {
   field_bounds bounds;
   mark_tree marks;
 
+  /// @param threads that work at once; what is made does not depend on them
   /// @pre made
-  explicit exit_body(field_body_ptr made)
+  exit_body(field_body_ptr made, unsigned threads)
       : body(std::move(made)),
         relief(usual_relief(body->field, body->samples.samples())),
-        shape(make_moving_shape(body->field, relief)),
-        bounds(shape),
+        shape(make_moving_shape(body->field, relief, threads)),
+        bounds(shape, threads),
         marks(body->samples.samples()) {}
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(shape, bounds, marks); }
 };
@@ -52,8 +53,10 @@ struct exit_scene {
       if (std::find(bodies.begin(), bodies.end(), b) == bodies.end()) bodies.push_back(b);
     }
     std::vector<exit_body_ptr> ready(bodies.size());
-    detail::for_each_task(bodies.size(), detail::resolve_threads(0),
-                          [&](std::size_t i) { ready[i] = std::make_shared<const exit_body>(bodies[i]); });
+    // Each has all threads, because one that is done leaves the machine to the others.
+    const unsigned threads = detail::resolve_threads(0);
+    detail::for_each_task(bodies.size(), threads,
+                          [&](std::size_t i) { ready[i] = std::make_shared<const exit_body>(bodies[i], threads); });
     probe = ready[0];
     for (const field_body_ptr& b : made.fixed) {
       fixed.push_back(ready[static_cast<std::size_t>(std::find(bodies.begin(), bodies.end(), b) - bodies.begin())]);

@@ -12,6 +12,8 @@
 #include "asperity/core/math.hpp"
 #include "asperity/core/memory.hpp"
 #include "asperity/field/coarse_grid.hpp"
+#include "field/threads.hpp"
+#include "least_motion/finer_bricks.hpp"
 #include "least_motion/moving_shape.hpp"
 
 namespace asperity::exits {
@@ -21,18 +23,21 @@ class field_bounds {
  public:
   /// Allocates two numbers per node of the grid.
   /// @param shape  whose grid must outlive the bounds
-  explicit field_bounds(const moving_shape& shape) : grid_(&shape.grid()) {
-    find_highest();
-    find_steepest();
-    steepest_of_smooth_ = steepest_;
-    bend_level level = least_bend();
-    for_each_finer_cell(shape, [&](std::size_t corner, const finer_cell& cell) {
-      for (const std::size_t at : corners(corner)) {
-        highest_[at] = std::max(highest_[at], cell.highest_m);
-        level.most[at] = std::max(level.most[at], cell.bend_per_m);
+  /// @param threads that work at once; the bounds do not depend on them
+  field_bounds(const moving_shape& shape, unsigned threads) : grid_(&shape.grid()) {
+    bend_level level;
+    std::vector<finer_brick> finer;
+    detail::for_each_task(2, threads, [&](std::size_t task) {
+      if (task == 0) {
+        find_highest();
+        find_steepest();
+        level = least_bend();
+      } else {
+        finer = measured_bricks(shape, threads);
       }
-      steepest_ = std::max(steepest_, cell.steepest);
     });
+    steepest_of_smooth_ = steepest_;
+    for (const finer_brick& of : finer) add(of, level);
     spread_bend(std::move(level));
   }
 
@@ -134,7 +139,7 @@ class field_bounds {
       for (std::size_t y = 1; y + 1 < n[1]; ++y) {
         for (std::size_t x = 1; x + 1 < n[0]; ++x) {
           const std::size_t i = grid_->at(x, y, z);
-          level.most[i] = static_cast<float>(1.0001 * per_square * second_difference(value + i, stride));
+          level.most[i] = static_cast<float>(1.0001 * per_square * std::sqrt(squared_difference(value + i, stride)));
         }
       }
     }
@@ -154,59 +159,17 @@ class field_bounds {
     }
   }
 
-  // Bounds of a cell of S with finer nodes.
-  struct finer_cell {
-    float highest_m = 0.0F, bend_per_m = 0.0F;
-    double steepest = 0.0;
-  };
-
-  // Calls visit(first node of the cell, finer_cell). The spline in a cell reads `finer` + 3 nodes along each axis.
-  template <class Visit>
-  void for_each_finer_cell(const moving_shape& shape, Visit&& visit) const {
-    constexpr std::size_t cells = moving_shape::cells;
-    const auto& bricks = shape.bricks_along();
-    for (std::size_t z = 0; z < bricks[2]; ++z) {
-      for (std::size_t y = 0; y < bricks[1]; ++y) {
-        for (std::size_t x = 0; x < bricks[0]; ++x) {
-          const moving_shape::brick* const over = shape.brick_over(x, y, z);
-          if (over == nullptr) continue;
-          for (std::size_t c = 0; c < cells * cells * cells; ++c) {
-            const std::size_t in[3] = {c % cells, c / cells % cells, c / (cells * cells)};
-            const std::size_t node[3] = {x * cells + in[0], y * cells + in[1], z * cells + in[2]};
-            const auto& n = grid_->nodes;
-            if (node[0] + 1 >= n[0] || node[1] + 1 >= n[1] || node[2] + 1 >= n[2]) continue;
-            visit(grid_->at(node[0], node[1], node[2]), in_cell(*over, in));
-          }
-        }
+  void add(const finer_brick& brick, bend_level& level) {
+    for (std::size_t c = 0; c < brick.cells.size(); ++c) {
+      const std::array<std::size_t, 3> node = brick.node_of(c);
+      if (!finer_brick::is_cell(*grid_, node)) continue;
+      for (const std::size_t at : corners(grid_->at(node[0], node[1], node[2]))) {
+        highest_[at] = std::max(highest_[at], brick.cells[c].highest_m);
+        level.most[at] = std::max(level.most[at], brick.cells[c].bend_per_m);
       }
     }
-  }
-
-  [[nodiscard]] finer_cell in_cell(const moving_shape::brick& nodes, const std::size_t (&in)[3]) const noexcept {
-    constexpr std::size_t finer = moving_shape::finer, reads = finer + 3, along = moving_shape::along;
-    constexpr std::size_t stride[3] = {1, along, along * along};
-    const double per_pitch = static_cast<double>(finer) / grid_->pitch_m;
-    const float* const first = nodes.data() + moving_shape::node(in[0] * finer, in[1] * finer, in[2] * finer);
-    finer_cell out;
-    out.highest_m = *first;
-    double bend = 0.0, square = 0.0;
-    for (std::size_t k = 0; k < reads; ++k) {
-      for (std::size_t j = 0; j < reads; ++j) {
-        for (std::size_t i = 0; i < reads; ++i) {
-          const float* const at = first + k * stride[2] + j * stride[1] + i;
-          out.highest_m = std::max(out.highest_m, *at);
-          const auto inner = [](std::size_t n) { return n >= 1 && n + 1 < reads; };
-          if (inner(i) && inner(j) && inner(k)) bend = std::max(bend, second_difference(at, stride));
-          if (i + 1 < reads && j + 1 < reads && k + 1 < reads) {
-            const vec3 slope = middle_slope(at, stride);
-            square = std::max(square, glm::dot(slope, slope));
-          }
-        }
-      }
-    }
-    out.bend_per_m = static_cast<float>(1.0001 * per_pitch * per_pitch * bend);
-    out.steepest = margin * per_pitch * std::sqrt(square);
-    return out;
+    const double per_pitch = static_cast<double>(moving_shape::finer) / grid_->pitch_m;
+    steepest_ = std::max(steepest_, margin * per_pitch * std::sqrt(brick.steepest_squared));
   }
 
   [[nodiscard]] std::array<std::size_t, 8> corners(std::size_t first) const noexcept {
@@ -235,25 +198,6 @@ class field_bounds {
     return to;
   }
 
-  [[nodiscard]] static double second_difference(const float* at, const std::size_t (&stride)[3]) noexcept {
-    const auto value = [at](std::ptrdiff_t n) { return static_cast<double>(at[n]); };
-    double squares = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto d = static_cast<std::ptrdiff_t>(stride[a]);
-      const double bend = value(d) - 2.0 * value(0) + value(-d);
-      squares += bend * bend;
-      for (std::size_t b = a + 1; b < 3; ++b) {
-        const auto e = static_cast<std::ptrdiff_t>(stride[b]);
-        double most = 0.0;
-        for (const std::ptrdiff_t n : {std::ptrdiff_t{0}, -d, -e, -d - e}) {
-          most = std::max(most, std::fabs(value(n + d + e) - value(n + d) - value(n + e) + value(n)));
-        }
-        squares += 2.0 * most * most;
-      }
-    }
-    return std::sqrt(squares);
-  }
-
   void find_steepest() {
     const auto& n = grid_->nodes;
     const std::size_t stride[3] = {1, n[0], n[0] * n[1]};
@@ -275,20 +219,6 @@ class field_bounds {
       }
     }
     steepest_ = margin * std::sqrt(most);
-  }
-
-  // In the middle of a cell, from its eight corners, per pitch: sharper than the spline, which averages such slopes.
-  [[nodiscard]] static vec3 middle_slope(const float* at, const std::size_t (&stride)[3]) noexcept {
-    vec3 out(0.0);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t d = stride[axis], e = stride[(axis + 1) % 3], f = stride[(axis + 2) % 3];
-      double rise = 0.0;
-      for (const std::size_t n : {std::size_t{0}, e, f, e + f}) {
-        rise += static_cast<double>(at[n + d]) - static_cast<double>(at[n]);
-      }
-      out[static_cast<int>(axis)] = 0.25 * rise;
-    }
-    return out;
   }
 
   static constexpr double margin = 1.05;  // of the steepest slope, which is measured at points

@@ -64,6 +64,12 @@ class kept_relief {
     return !keeps_all(s) && std::fabs(s.value_m) < layer_none * pitch_m && bend_of(s, pitch_m) > 0.0;
   }
 
+  /// Whether some of the relief may move at a place where S and its derivatives were read with an error of up to
+  /// `error`, in pitches: |S|, |grad S|^2 and the trace of its second derivatives.
+  [[nodiscard]] static bool may_move(double off, double slope_squared, double bend, double error) noexcept {
+    return slope_squared < kept_full + error && off < layer_none + error && bend > notch_none - error;
+  }
+
   static constexpr double layer_full = 0.8, layer_none = 1.4;  ///< pitches: |S| of what moves in full, and not
 
  private:

@@ -2,12 +2,14 @@
 #include "least_motion/moving_shape.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <memory>
 
 #include "exit_lab.hpp"
+#include "least_motion/finer_readings.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 
@@ -18,7 +20,7 @@ using namespace test_support;
 using namespace exits;
 
 const exit_body& block() {
-  static const exit_body made(grooved_block());
+  static const exit_body made(grooved_block(), 1);
   return made;
 }
 
@@ -26,6 +28,49 @@ const exit_body& block() {
 vec3 drawn_place(drawing& draw) {
   const vec3 about = draw.between(0.0, 1.0) < 0.7 ? vec3(1.0, 7.0, 1.0) : vec3(13.0, 9.0, 7.0);
   return mm * (about * draw.vector() + (about.x < 2.0 ? vec3(0.0, 0.0, 3.0) : vec3(0.0)));
+}
+
+TEST(MovingShape, IsTheSameForAnyNumberOfThreads) {
+  drawing draw{std::mt19937_64(fresh_seed("MovingShape.IsTheSameForAnyNumberOfThreads", "20000 points"))};
+  const exit_body several(grooved_block(), 3);
+  EXPECT_EQ(several.shape.heap_bytes(), block().shape.heap_bytes());
+  EXPECT_EQ(several.bounds.steepest(), block().bounds.steepest());
+  int finer = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const vec3 p = drawn_place(draw);
+    const double radius_m = several.body->field.smooth.pitch_m * draw.between(0.0, 8.0);
+    EXPECT_EQ(several.shape.value_m(p), block().shape.value_m(p));
+    EXPECT_EQ(several.bounds.most_by_table(p, radius_m), block().bounds.most_by_table(p, radius_m));
+    EXPECT_EQ(several.bounds.bend_per_m(p, radius_m), block().bounds.bend_per_m(p, radius_m));
+    finer += several.shape.is_finer(p) ? 1 : 0;
+  }
+  EXPECT_GT(finer, 1000);
+}
+
+// The quick look at a brick's nodes may name too many, never too few.
+TEST(MovingShape, NoNodeThatMovesIsPassedOver) {
+  const body_field& field = block().body->field;
+  const detail::coarse_grid& grid = field.smooth;
+  constexpr std::size_t cells = moving_shape::cells, own = cells * moving_shape::finer;
+  const double pitch_m = grid.pitch_m / static_cast<double>(moving_shape::finer);
+  std::size_t nodes = 0, named = 0, moving = 0;
+  const auto bricks = moving_shape::bricks_over(grid);
+  for (std::size_t b = 0; b < bricks[0] * bricks[1] * bricks[2]; ++b) {
+    const std::array<std::size_t, 3> at{b % bricks[0], b / bricks[0] % bricks[1], b / (bricks[0] * bricks[1])};
+    const finer_readings near(grid, {at[0] * cells, at[1] * cells, at[2] * cells});
+    for (std::size_t n = 0; n < own * own * own; ++n, ++nodes) {
+      const vec3 p_b =
+          grid.low + pitch_m * vec3(at[0] * own + n % own, at[1] * own + n / own % own, at[2] * own + n / (own * own));
+      const bool moves = block().relief.moving_m(field, p_b) != 0.0;
+      named += near.may_move(n) ? 1U : 0U;
+      moving += moves ? 1U : 0U;
+
+      EXPECT_TRUE(near.may_move(n)) << "node " << n << " of the brick " << at[0] << ' ' << at[1] << ' ' << at[2];
+    }
+  }
+  std::printf("  of %zu nodes %zu are named, %zu move\n", nodes, named, moving);
+  EXPECT_GT(moving, 1000U);
+  EXPECT_LT(named, nodes / 2);
 }
 
 TEST(MovingShape, IsTheSmoothPartAndWhatMovesInNotches) {
