@@ -1,8 +1,10 @@
 // The asperity command: see docs/reference/command.md.
 #include "cli.hpp"
+#include "heap_room.hpp"
 #include "interrupt.hpp"
 
 int main(int argc, char** argv) {
+  asperity::command::prepare_heap();
   asperity::command::catch_interrupts();
   asperity::command::command_line line;
   asperity::command::add_bake(line);

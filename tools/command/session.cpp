@@ -14,6 +14,7 @@
 #include "asperity/control/real_session.hpp"
 #include "asperity/control/virtual_session.hpp"
 #include "cpu_clock.hpp"
+#include "heap_room.hpp"
 #include "interrupt.hpp"
 #include "record_queue.hpp"
 
@@ -257,6 +258,7 @@ result<session_outcome> run_real(session_setup setup, any_device& dev, progress_
     take_records();
   };
   const rescue_line line(rescue, take_records);
+  trim_heap();
   const memory_lock locked;
   const told_bodies bodies(setup.moves, setup.placement);
   const std::int64_t began_ns = real_session<any_renderer, any_device>::clock_ns();

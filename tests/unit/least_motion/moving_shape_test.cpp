@@ -64,7 +64,6 @@ TEST(MovingShape, NoNodeThatMovesIsPassedOver) {
       const bool moves = block().relief.moving_m(field, p_b) != 0.0;
       named += near.may_move(n) ? 1U : 0U;
       moving += moves ? 1U : 0U;
-
       EXPECT_TRUE(near.may_move(n)) << "node " << n << " of the brick " << at[0] << ' ' << at[1] << ' ' << at[2];
     }
   }
@@ -133,13 +132,13 @@ TEST(MovingShape, IsContinuousWithTwoDerivatives) {
 }
 
 TEST(MovingShape, AConvexBodyHasNoFinerNodes) {
-  const exit_body box(waved_box(vec3(7, 6, 5) * mm, 0.0, 1.0));
+  const exit_body box(waved_box(vec3(7, 6, 5) * mm, 0.0, 1.0), 1);
   EXPECT_LT(box.shape.heap_bytes(), sizeof(std::uint32_t) * box.body->field.smooth.value.size());
 }
 
 TEST(FieldBounds, HoldForEveryPointOfABall) {
   drawing draw{std::mt19937_64(fresh_seed("FieldBounds.HoldForEveryPointOfABall", "6000 balls"))};
-  const exit_body box(waved_box(vec3(12, 11, 6) * mm, 0.06 * mm, 0.7 * mm));
+  const exit_body box(waved_box(vec3(12, 11, 6) * mm, 0.06 * mm, 0.7 * mm), 2);
   int finer = 0;
   for (int i = 0; i < 6000; ++i) {
     const exit_body& body = i % 2 == 0 ? box : block();
