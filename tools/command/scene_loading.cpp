@@ -32,12 +32,15 @@ std::vector<std::future<result<model_ptr>>> loading(const std::string& probe, co
 
 error sizes_differ(const std::string& probe, double size_a, const std::string& file, double size_b) {
   const bool a_is_larger = size_a > size_b;
-  const double ratio = a_is_larger ? size_a / size_b : size_b / size_a;
-  return {error_code::invalid_argument,
-          "the probe " + probe + " (diagonal " + length_text(size_a) + ") is " + brief(ratio) + " times " +
-              (a_is_larger ? "larger" : "smaller") + " than " + file + " (" + length_text(size_b) +
-              "): is one of them in millimetres? Bake it again with --scale 0.001, or pass --allow-scale-mismatch if "
-              "this is meant"};
+  std::string text = "the probe ";
+  text.append(probe).append(" (diagonal ").append(length_text(size_a)).append(") is ");
+  text.append(brief(a_is_larger ? size_a / size_b : size_b / size_a)).append(" times ");
+  text.append(a_is_larger ? "larger" : "smaller").append(" than ").append(file);
+  text.append(" (").append(length_text(size_b));
+  text.append(
+      "): is one of them in millimetres? Bake it again with --scale 0.001, or pass --allow-scale-mismatch if this is "
+      "meant");
+  return {error_code::invalid_argument, std::move(text)};
 }
 
 }  // namespace
