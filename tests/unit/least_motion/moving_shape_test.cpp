@@ -49,13 +49,15 @@ TEST(MovingShape, IsTheSameForAnyNumberOfThreads) {
 
 // The quick look at a brick's nodes may name too many, never too few.
 TEST(MovingShape, NoNodeThatMovesIsPassedOver) {
+  drawing draw{std::mt19937_64(fresh_seed("MovingShape.NoNodeThatMovesIsPassedOver", "a fifth of all bricks"))};
   const body_field& field = block().body->field;
   const detail::coarse_grid& grid = field.smooth;
   constexpr std::size_t cells = moving_shape::cells, own = cells * moving_shape::finer;
   const double pitch_m = grid.pitch_m / static_cast<double>(moving_shape::finer);
   std::size_t nodes = 0, named = 0, moving = 0;
   const auto bricks = moving_shape::bricks_over(grid);
-  for (std::size_t b = 0; b < bricks[0] * bricks[1] * bricks[2]; ++b) {
+  constexpr std::size_t every = 5;
+  for (std::size_t b = draw.bits() % every; b < bricks[0] * bricks[1] * bricks[2]; b += every) {
     const std::array<std::size_t, 3> at{b % bricks[0], b / bricks[0] % bricks[1], b / (bricks[0] * bricks[1])};
     const finer_readings near(grid, {at[0] * cells, at[1] * cells, at[2] * cells});
     for (std::size_t n = 0; n < own * own * own; ++n, ++nodes) {
@@ -64,11 +66,12 @@ TEST(MovingShape, NoNodeThatMovesIsPassedOver) {
       const bool moves = block().relief.moving_m(field, p_b) != 0.0;
       named += near.may_move(n) ? 1U : 0U;
       moving += moves ? 1U : 0U;
-      EXPECT_TRUE(near.may_move(n)) << "node " << n << " of the brick " << at[0] << ' ' << at[1] << ' ' << at[2];
+      EXPECT_TRUE(near.may_move(n) || !moves)
+          << "node " << n << " of the brick " << at[0] << " " << at[1] << " " << at[2];
     }
   }
   std::printf("  of %zu nodes %zu are named, %zu move\n", nodes, named, moving);
-  EXPECT_GT(moving, 1000U);
+  EXPECT_GT(moving, 500U);
   EXPECT_LT(named, nodes / 2);
 }
 
