@@ -77,6 +77,15 @@ printf 'passed\tx\t\n' > planted.gate
 is "at last" "$(ran)" "gate passed"
 is "after that" "$(ran)" "passed"
 
+# None is begun when the time is over; what was due stays due.
+echo 5 >> gate/a.hpp
+export ASPERITY_UNTIL=$(($(date +%s) - 1))
+is "no time" "$(ran)" "passed"
+is "what there was no time for is said" "$(grep -c 'which are due: no time is left' said)" 2
+ASPERITY_UNTIL=$(($(date +%s) + 3600))
+is "time enough" "$(ran)" "law gate passed"
+unset ASPERITY_UNTIL
+
 # The night runs all, whatever is recorded.
 : > ran
 nightly_groups_of_tests > /dev/null
