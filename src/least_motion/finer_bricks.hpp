@@ -49,7 +49,8 @@ namespace asperity::exits {
   return out;
 }
 
-/// Bounds of the cells of S in a brick with finer nodes.
+/// Bounds of the cells of S in a brick with finer nodes. Next to a cell's rim the spline also reads nodes that count for
+/// its neighbours: there the largest of both is the bound, as field_bounds takes it.
 struct finer_brick {
   struct cell {
     float highest_m = 0.0F, bend_per_m = 0.0F;

@@ -47,7 +47,43 @@ TEST(MovingShape, IsTheSameForAnyNumberOfThreads) {
   EXPECT_GT(finer, 1000);
 }
 
-// The quick look at a brick's nodes may name too many, never too few.
+// The quick look at a brick's nodes tells what the reading tells, but where they differ by rounding.
+TEST(MovingShape, TheQuickLookIsAReading) {
+  drawing draw{std::mt19937_64(fresh_seed("MovingShape.TheQuickLookIsAReading", "2000 bricks"))};
+  constexpr std::size_t own = moving_shape::cells * moving_shape::finer;
+  std::size_t named = 0, kept = 0;
+  for (int i = 0; i < 2000; ++i) {
+    detail::coarse_grid grid;
+    grid.pitch_m = 1e-3 * draw.between(0.1, 10.0);
+    grid.nodes = {9, 8, 10};
+    const vec3 slope = draw.between(0.3, 1.2) * glm::normalize(draw.vector()), bent = draw.vector();
+    const double offset = draw.between(-2.0, 2.0), bend = draw.between(-0.2, 0.4);
+    grid.value.resize(grid.nodes[0] * grid.nodes[1] * grid.nodes[2]);
+    for (std::size_t n = 0; n < grid.value.size(); ++n) {
+      const vec3 off = vec3(n % 9, n / 9 % 8, n / 72) - vec3(4.0);
+      const double bow = glm::dot(bent, off);
+      grid.value[n] = static_cast<float>(grid.pitch_m * (offset + glm::dot(slope, off) + 0.5 * bend * bow * bow));
+    }
+    const finer_readings near(grid, {2, 2, 4});
+    for (std::size_t n = 0; n < own * own * own; ++n) {
+      const vec3 finer(n % own, n / own % own, n / (own * own));
+      const coarse_reading s = grid.read(grid.pitch_m * (vec3(2.0, 2.0, 4.0) + finer / 3.0));
+      const double off = std::fabs(s.value_m) / grid.pitch_m, square = glm::dot(s.slope, s.slope);
+      const double trace = grid.pitch_m * (s.hessian_per_m[0][0] + s.hessian_per_m[1][1] + s.hessian_per_m[2][2]);
+      if (kept_relief::may_move(off, square, trace, 0.0)) {
+        EXPECT_TRUE(near.may_move(n));
+        ++named;
+      } else if (!kept_relief::may_move(off, square, trace, 2e-3)) {
+        EXPECT_FALSE(near.may_move(n));
+        ++kept;
+      }
+    }
+  }
+  EXPECT_GT(named, 10000U);
+  EXPECT_GT(kept, 10000U);
+}
+
+// It may name too many, never too few.
 TEST(MovingShape, NoNodeThatMovesIsPassedOver) {
   drawing draw{std::mt19937_64(fresh_seed("MovingShape.NoNodeThatMovesIsPassedOver", "a fifth of all bricks"))};
   const body_field& field = block().body->field;
@@ -137,6 +173,56 @@ TEST(MovingShape, IsContinuousWithTwoDerivatives) {
 TEST(MovingShape, AConvexBodyHasNoFinerNodes) {
   const exit_body box(waved_box(vec3(7, 6, 5) * mm, 0.0, 1.0), 1);
   EXPECT_LT(box.shape.heap_bytes(), sizeof(std::uint32_t) * box.body->field.smooth.value.size());
+}
+
+TEST(FieldBounds, HoldWithinABrick) {
+  drawing draw{std::mt19937_64(fresh_seed("FieldBounds.HoldWithinABrick", "300 bricks"))};
+  constexpr std::size_t finer = moving_shape::finer, along = moving_shape::along;
+  detail::coarse_grid grid;
+  grid.nodes = {8, 8, 8};
+  double closest = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    grid.pitch_m = 1e-3 * draw.between(0.1, 10.0);
+    // Bent beyond a plane, straight before it: a bound of too few nodes would miss the bend.
+    const vec3 along_n = glm::normalize(draw.vector());
+    const double from = draw.between(-2.0, 6.0), bend = draw.between(0.01, 0.2) * grid.pitch_m;
+    moving_shape::brick nodes;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const vec3 place(n % along, n / along % along, n / (along * along));
+      const double beyond = std::max(0.0, glm::dot(along_n, place) - from);
+      nodes[n] = static_cast<float>(bend * beyond * beyond);
+    }
+    finer_brick bounds;
+    bounds.place = {1, 1, 1};
+    bounds.measure(nodes, grid);
+    float highest_m = nodes[0], bound_per_m = 0.0F;
+    for (const finer_brick::cell& cell : bounds.cells) {
+      highest_m = std::max(highest_m, cell.highest_m);
+      bound_per_m = std::max(bound_per_m, cell.bend_per_m);
+    }
+    // At the brick's rim the cells of its neighbours count too.
+    for (int j = 0; j < 200; ++j) {
+      detail::cubic_nodes at;
+      std::size_t first[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        first[k] = 1 + draw.bits() % (along - 5);
+        at.f[k] = draw.between(0.0, 1.0);
+      }
+      at.first = nodes.data() + moving_shape::node(first[0], first[1], first[2]);
+      at.row = along;
+      at.layer = along * along;
+      at.per_pitch = static_cast<double>(finer) / grid.pitch_m;
+      const coarse_reading read = at.read();
+      double squares = 0.0;
+      for (int k = 0; k < 3; ++k) squares += glm::dot(read.hessian_per_m[k], read.hessian_per_m[k]);
+      const double bend_per_m = std::sqrt(squares);
+      EXPECT_LE(bend_per_m, static_cast<double>(bound_per_m) + 1e-4 / grid.pitch_m);  // nodes are floats
+      EXPECT_LE(read.value_m, static_cast<double>(highest_m) * 1.000001);
+      if (bend_per_m * grid.pitch_m > 0.01) closest = std::max(closest, bend_per_m / static_cast<double>(bound_per_m));
+    }
+  }
+  // A bound that is never approached would be worth little.
+  EXPECT_GT(closest, 0.9);
 }
 
 TEST(FieldBounds, HoldForEveryPointOfABall) {
