@@ -13,8 +13,8 @@ constexpr std::size_t block = 32;  // half a millisecond to some: short beside a
 
 class shared_batch {
  public:
-  shared_batch(std::span<const pose> T_wa, std::span<const pose> T_wb, std::span<double> out)
-      : T_wa_(T_wa), T_wb_(T_wb), out_(out) {}
+  shared_batch(std::span<const pose> T_wa, std::span<const pose> T_wb, std::uint64_t version, std::span<double> out)
+      : T_wa_(T_wa), T_wb_(T_wb), version_(version), out_(out) {}
 
   /// @return whether there may be more
   bool step_block(any_renderer& feel) {
@@ -22,7 +22,9 @@ class shared_batch {
     if (begin >= T_wa_.size() || stop_.load(std::memory_order_relaxed)) return false;
     tick found;
     for (std::size_t i = begin; i < std::min(begin + block, T_wa_.size()); ++i) {
-      const status answered = feel.step({T_wa_[i], T_wb_}, found);
+      scene_pose at{T_wa_[i], T_wb_};
+      at.version = version_;
+      const status answered = feel.step(at, found);
       const vec6 w = to_vec6(found.force.on_probe_w);
       for (std::size_t k = 0; k < 6; ++k) out_[6 * i + k] = w[k];
       if (answered != status::ok) note(i, answered);
@@ -45,6 +47,7 @@ class shared_batch {
   }
 
   std::span<const pose> T_wa_, T_wb_;
+  std::uint64_t version_;
   std::span<double> out_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stop_{false};
@@ -55,8 +58,8 @@ class shared_batch {
 }  // namespace
 
 batch_outcome step_all(std::span<any_renderer> renderers, std::span<const pose> T_wa, std::span<const pose> T_wb,
-                       std::span<double> out, const std::function<bool()>& keep_going) {
-  shared_batch all(T_wa, T_wb, out);
+                       std::uint64_t version, std::span<double> out, const std::function<bool()>& keep_going) {
+  shared_batch all(T_wa, T_wb, version, out);
   bool cancelled = false;
   {
     std::vector<std::jthread> helpers;

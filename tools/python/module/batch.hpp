@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -21,9 +22,10 @@ struct batch_outcome {
 /// depends on its pose alone, so the threads' number changes nothing.
 /// @param renderers one per thread, alike; the calling thread works too
 /// @param keep_going asked on the calling thread between blocks
+/// @param version scene_pose::version
 /// @pre T_wa.size() * 6 == out.size(); renderers is not empty; they remember nothing, or there is one
 [[nodiscard]] batch_outcome step_all(std::span<any_renderer> renderers, std::span<const pose> T_wa,
-                                     std::span<const pose> T_wb, std::span<double> out,
+                                     std::span<const pose> T_wb, std::uint64_t version, std::span<double> out,
                                      const std::function<bool()>& keep_going);
 
 }  // namespace asperity::python

@@ -1,8 +1,10 @@
 // From poses to wrenches.
+#include <algorithm>
 #include <functional>
 #include <thread>
 
 #include "arrays.hpp"
+#include "asperity/planes/plane_renderer.hpp"
 #include "batch.hpp"
 #include "errors.hpp"
 #include "long_work.hpp"
@@ -96,7 +98,9 @@ void step_one(renderer_handle& self, const py::object& given, const Look& look) 
     const py::gil_scoped_release others_may_run;
     const std::lock_guard lock(self.busy);
     tick found;
-    answered = self.feel.front().step({T_wa, self.T_wb}, found);
+    scene_pose at{T_wa, self.T_wb};
+    at.version = self.seen.version;
+    answered = self.feel.front().step(at, found);
     if (answered == status::capacity_reached) ++self.incomplete;
     look(found, answered);
   }
@@ -131,7 +135,7 @@ py::array_t<double> step_batch(renderer_handle& self, const py::object& given, u
   py::array_t<double> out({static_cast<py::ssize_t>(T_wa.size()), py::ssize_t{6}});
   const std::span<double> rows(out.mutable_data(), static_cast<std::size_t>(out.size()));
   std::size_t used = threads != 0 ? threads : std::max(1U, std::thread::hardware_concurrency());
-  if (self.source->remembers()) used = 1;
+  if (self.source->remembers() || self.source->edited()) used = 1;
   signal_watch keep_going;
   batch_outcome outcome;
   result<void> ready;
@@ -139,7 +143,9 @@ py::array_t<double> step_batch(renderer_handle& self, const py::object& given, u
     const py::gil_scoped_release others_may_run;
     const std::lock_guard lock(self.busy);
     ready = have_renderers(self, used);
-    if (ready) outcome = step_all(std::span(self.feel).first(used), T_wa, self.T_wb, rows, std::ref(keep_going));
+    if (ready)
+      outcome =
+          step_all(std::span(self.feel).first(used), T_wa, self.T_wb, self.seen.version, rows, std::ref(keep_going));
     self.incomplete += outcome.incomplete;
   }
   unwrap(ready);
@@ -156,7 +162,13 @@ auto read_locked(renderer_handle& self, auto&& read) {
 }
 
 py::array_t<double> fixed_poses(renderer_handle& self) {
-  const std::vector<pose> T_wb = read_locked(self, [&] { return self.T_wb; });
+  const std::vector<pose> T_wb = read_locked(self, [&] {
+    std::vector<pose> there;
+    for (std::size_t b = 0; b < self.T_wb.size(); ++b) {
+      if (self.feel.front().scene().fixed[b]) there.push_back(self.T_wb[b]);
+    }
+    return there;
+  });
   py::array_t<double> out({static_cast<py::ssize_t>(T_wb.size()), py::ssize_t{7}});
   for (std::size_t i = 0; i < T_wb.size(); ++i) {
     const py::array_t<double> row = to_array(T_wb[i]);
@@ -166,11 +178,54 @@ py::array_t<double> fixed_poses(renderer_handle& self) {
 }
 
 void set_fixed_poses(renderer_handle& self, const py::object& given) {
+  if (self.source->edited())
+    raise("invalid_argument", "the bodies of this renderer are in a Scene: place() them there, then commit() here");
   std::vector<pose> T_wb = fixed_poses_of(given, self.source->bodies().fixed.size());
   read_locked(self, [&] {
     self.T_wb = std::move(T_wb);
     return true;
   });
+}
+
+// A renderer that goes on with another version lets a body that came upon the probe stand back, which is for hands. Here
+// an answer is of its pose alone, so a new one is made.
+std::uint64_t commit(renderer_handle& self) {
+  if (!self.source->edited())
+    raise("invalid_argument", "the renderer's bodies are not in a Scene: make it with Scene.renderer()");
+  result<void> made;
+  {
+    const py::gil_scoped_release others_may_run;
+    const std::lock_guard lock(self.busy);
+    if (self.source->lacks(self.seen)) {
+      scene_seen seen;
+      result<any_renderer> feel = self.source->another(&seen);
+      if (feel) {
+        self.T_wb = feel->target<plane_renderer>()->placed()->T_wb;
+        self.feel.front() = std::move(*feel);
+        self.seen = seen;
+      } else {
+        made = feel.error();
+      }
+    }
+  }
+  unwrap(made);
+  return self.seen.version;
+}
+
+// Those that are there: a Scene has slots without one.
+std::vector<model_handle> fixed_models(renderer_handle& self) {
+  return read_locked(self, [&] {
+    std::vector<model_handle> out;
+    for (const model_ptr& b : self.feel.front().scene().fixed) {
+      if (b) out.push_back({b});
+    }
+    return out;
+  });
+}
+
+std::string repr(renderer_handle& self) {
+  return "Renderer('" + self.source->bodies().probe->name + "' on " + std::to_string(fixed_models(self).size()) +
+         " fixed, formulation='" + self.source->wish().formulation + "')";
 }
 
 std::size_t memory_of(renderer_handle& self) {
@@ -207,37 +262,38 @@ void add_renderers(py::module_& m) {
            "Raises Error.")
       .def("step", &step, py::arg("pose"),
            "The wrench on the probe (6,) at a pose (7,). Raises ValueError for another shape, Error for what is no "
-           "pose.")
+           "pose.\n\n"
+           ">>> print(renderer.step([0, 0, z, 0, 0, 0, 1])[:3])  # N\n"
+           "[1.31219277e-04 9.94734986e-02 1.87564954e+00]\n")
       .def("step_batch", &step_batch, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U,
            "The wrenches (N, 6) at poses (N, 7), on several threads, 0: as many as the machine has. Each row has the "
            "bits of step() at that pose, whatever the threads. Windows depend on the pose before: theirs are computed "
-           "in order on one thread.")
+           "in order on one thread. So are those of a Scene.\n\n"
+           ">>> down = np.tile([0, 0, z, 0, 0, 0, 1.0], (5, 1))\n"
+           ">>> down[:, 2] += np.linspace(1e-3, 0, 5)\n"
+           ">>> renderer.step_batch(down).shape\n"
+           "(5, 6)\n")
       .def("query", &query, py::arg("pose"), "A Touch at a pose (7,): contacts, planes, and the wrench in its parts.")
-      .def_property("fixed_poses", &fixed_poses, &set_fixed_poses,
-                    "Poses of the fixed bodies (M, 7); set them between steps to move bodies.")
+      .def_property(
+          "fixed_poses", &fixed_poses, &set_fixed_poses,
+          "Poses of the fixed bodies (M, 7), as in fixed; set them between steps to move bodies. Those of a Scene are "
+          "placed there.")
       .def_property_readonly(
           "formulation", [](const renderer_handle& self) { return self.source->wish().formulation; },
           "least-motion, planes, window or exact.")
       .def_property_readonly(
           "probe", [](const renderer_handle& self) { return model_handle{self.source->bodies().probe}; },
           "The Model that moves.")
-      .def_property_readonly(
-          "fixed",
-          [](const renderer_handle& self) {
-            std::vector<model_handle> out;
-            for (const model_ptr& b : self.source->bodies().fixed) out.push_back({b});
-            return out;
-          },
-          "The Models that stay, as a list.")
+      .def_property_readonly("fixed", &fixed_models,
+                             "The Models that stay, as a list; of a Scene those that are there, by slot.")
+      .def("commit", &commit,
+           "Goes on with the Scene as it is now: all changes at once. Returns the version. Raises Error where the "
+           "renderer was not made by Scene.renderer().")
       .def_property_readonly(
           "incomplete", [](renderer_handle& self) { return read_locked(self, [&] { return self.incomplete; }); },
           "Steps so far at which a capacity was reached: usable, and something was missing.")
       .def_property_readonly("memory_bytes", &memory_of, "Memory that it takes beside its models, bytes.")
-      .def("__repr__", [](const renderer_handle& self) {
-        return "Renderer('" + self.source->bodies().probe->name + "' on " +
-               std::to_string(self.source->bodies().fixed.size()) + " fixed, formulation='" +
-               self.source->wish().formulation + "')";
-      });
+      .def("__repr__", &repr);
 }
 
 }  // namespace asperity::python
