@@ -167,6 +167,10 @@ class Pages(unittest.TestCase):
             names["wanted"] = lambda time_s: names["above"]
             self.run_page("reference/python.md", 0, **names)
 
+    def test_change_the_scene(self):
+        with folder_with_models():
+            self.run_page("how-to/change-the-scene.md", 1)
+
     @unittest.skipUnless("asperity.mujoco" in MODULES, "asperity was built without MuJoCo")
     def test_texture_in_mujoco(self):
         with folder_with_models():
