@@ -31,6 +31,7 @@ from ._asperity import (
     device_faults,
     load,
     load_mesh,
+    step_each,
 )
 from ._errors import BakeRemark, Error
 from .baking import bake
@@ -61,4 +62,5 @@ __all__ = [
     "load",
     "load_mesh",
     "load_recording",
+    "step_each",
 ]

@@ -161,15 +161,18 @@ class Renderer:
         fixed: Union[Model, Sequence[Model]],
         *,
         fixed_poses: Optional[npt.ArrayLike] = ...,
-        formulation: str = ...,
+        formulation: Optional[str] = ...,
         stiffness_n_per_m: Optional[float] = ...,
         period_s: float = ...,
         softness_m: float = ...,
         sharpness: float = ...,
         reach_m: float = ...,
         grid: int = ...,
-        gradient: str = ...,
-        lookup: str = ...,
+        gradient: Optional[str] = ...,
+        lookup: Optional[str] = ...,
+        backend: str = ...,
+        gpu: str = ...,
+        fallback: bool = ...,
         allow_scale_mismatch: bool = ...,
     ) -> None: ...
     def step(self, pose: npt.ArrayLike) -> _Floats: ...
@@ -183,6 +186,10 @@ class Renderer:
     @property
     def formulation(self) -> str: ...
     @property
+    def backend(self) -> str: ...
+    @property
+    def gpu(self) -> Optional[dict[str, Any]]: ...
+    @property
     def probe(self) -> Model: ...
     @property
     def fixed(self) -> List[Model]: ...
@@ -190,6 +197,8 @@ class Renderer:
     def incomplete(self) -> int: ...
     @property
     def memory_bytes(self) -> int: ...
+
+def step_each(renderers: Sequence[Renderer], poses: npt.ArrayLike, *, threads: int = ...) -> _Floats: ...
 
 class Body:
     @property

@@ -7,6 +7,7 @@
 #include "asperity/planes/plane_renderer.hpp"
 #include "asperity/window/window_renderer.hpp"
 #include "exact/exact_renderer.hpp"
+#include "gpu_renderers.hpp"
 
 namespace asperity::python {
 namespace {
@@ -25,6 +26,27 @@ result<void> check(const renderer_wish& wish) {
   const std::string& f = wish.formulation;
   if (f != "least-motion" && f != "planes" && f != "window" && f != "exact")
     return no_choice("formulation", f, "least-motion, planes, window or exact");
+  const std::string& b = wish.backend;
+  if (b != "cpu" && b != "gl-compute" && b != "gl-occlusion")
+    return no_choice("backend", b, "cpu, gl-compute or gl-occlusion");
+  if (b != "cpu" && f != "window") {
+    return error{error_code::invalid_argument,
+                 "backend '" + b + "' looks into the windows of contacts: leave formulation='" + f + "' out"};
+  }
+  if (b == "cpu" && (!wish.gpu.empty() || wish.fallback)) {
+    return error{error_code::invalid_argument,
+                 std::string(wish.fallback ? "fallback is for a GPU that fails" : "gpu chooses among GPUs") +
+                     ": add backend='gl-compute' or 'gl-occlusion'"};
+  }
+  if (b == "gl-occlusion" && wish.gradient != "central") {
+    return error{error_code::invalid_argument,
+                 "gradient='soft' needs the depth of every sample, and a query tells the largest alone: leave it out "
+                 "with backend='gl-occlusion'"};
+  }
+  if (b == "gl-occlusion" && wish.lookup != "paper") {
+    return error{error_code::invalid_argument,
+                 "lookup='exact' is not how backend='gl-occlusion' draws: leave it out, or use backend='gl-compute'"};
+  }
   if (wish.gradient != "soft" && wish.gradient != "central")
     return no_choice("gradient", wish.gradient, "soft or central");
   if (wish.lookup != "exact" && wish.lookup != "paper") return no_choice("lookup", wish.lookup, "exact or paper");
@@ -127,6 +149,7 @@ result<any_renderer> renderer_source::window() const {
   settings.depth.parallax = wish_.lookup == "paper" ? parallax_mode::paper_lookup : parallax_mode::exact;
   settings.depth.grid = wish_.grid;
   if (wish_.stiffness_n_per_m > 0.0) settings.force.stiffness_n_per_m = wish_.stiffness_n_per_m;
+  if (wish_.backend != "cpu") return make_window_on_gpu(bodies_, {wish_.backend, wish_.gpu, wish_.fallback}, settings);
   return erased(make_window_renderer(bodies_, settings));
 }
 

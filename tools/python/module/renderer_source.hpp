@@ -23,6 +23,9 @@ struct renderer_wish {
   std::uint32_t grid = 64;                   ///< samples per side of a window
   std::string gradient = "soft";             ///< of windows: or central
   std::string lookup = "exact";              ///< of windows: or paper
+  std::string backend = "cpu";               ///< of windows: or gl-compute, gl-occlusion
+  std::string gpu;                           ///< index or part of the name; empty: the first that works
+  bool fallback = false;                     ///< the CPU answers where the GPU does not
 };
 
 /// A scene, and what its renderers share.

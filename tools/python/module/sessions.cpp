@@ -8,6 +8,7 @@
 #include "asperity/device/simulated/simulated_device.hpp"
 #include "asperity/planes/plane_renderer.hpp"
 #include "errors.hpp"
+#include "gpu_renderers.hpp"
 #include "long_work.hpp"
 #include "parts.hpp"
 #include "policies.hpp"
@@ -179,6 +180,8 @@ class loops {
   /// Null where the scene never changes.
   [[nodiscard]] virtual scene_way* scenes() = 0;
   [[nodiscard]] virtual scene_use scene_in_use() = 0;
+  /// Null where the renderer has none.
+  [[nodiscard]] virtual std::shared_ptr<gpu_use> gpu() = 0;
 };
 
 template <class Feel>
@@ -199,6 +202,10 @@ class loops_of final : public loops {
     return nullptr;
   }
   [[nodiscard]] scene_use scene_in_use() override { return session_.scene_in_use(); }
+  [[nodiscard]] std::shared_ptr<gpu_use> gpu() override {
+    if constexpr (std::same_as<Feel, any_renderer>) return gpu_use_of(session_.contact().renderer());
+    return nullptr;
+  }
 
  private:
   virtual_session<Feel, simulated_device, keep_last> session_;
@@ -230,6 +237,7 @@ class session_handle {
   /// Device ticks of that time, fewer where the gate shuts.
   recorded_rows run(double seconds, const std::function<bool()>& keep_going) {
     recorded_rows rows;
+    const gpu_visit visit(loops_->gpu());
     const auto until = loops_->device_ticks() +
                        static_cast<std::uint64_t>(std::llround(seconds * 1e9 / static_cast<double>(period_ns_)));
     while (loops_->device_ticks() < until && fault() == gate_fault::none && !raised_->what && keep_going()) step(rows);
@@ -239,6 +247,7 @@ class session_handle {
   /// Tells the gate to stop, lets the wrench go to zero and disarms.
   recorded_rows stop() {
     recorded_rows rows;
+    const gpu_visit visit(loops_->gpu());
     if (stopped_) return rows;
     stopped_ = true;
     loops_->stop_gate();
@@ -327,6 +336,7 @@ pose start_of(any_renderer& feel, const bodies_there& there, bool edited, motion
     in_slots.version = placed.version;
     return feel.step(in_slots, out);
   };
+  const gpu_visit visit(gpu_use_of(feel));
   pose T_wa = unwrap(command::find_touch(there.bodies, step, quat(1.0, 0.0, 0.0, 0.0), there.T_wb));
   if (motion != motion_kind::free) T_wa.position.z += clearance_m;
   return T_wa;
