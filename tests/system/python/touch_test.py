@@ -47,15 +47,15 @@ class Touches(unittest.TestCase):
 
     def test_renderers_that_go_on_together_have_the_bits_of_each_alone(self):
         random = fresh_random()
-        kinds = ("least-motion", "planes", "window")
+        kinds = ("planes", "window", "planes", "window", "least-motion", "window")
 
         def pairs():
-            return [asperity.Renderer(model("block"), model("gear"), formulation=kinds[i % 3]) for i in range(6)]
+            return [asperity.Renderer(model("block"), model("gear"), formulation=kind) for kind in kinds]
 
         at = poses(random, 6 * 8).reshape(8, 6, 7)  # windows remember: eight steps, in order
         alone = np.array([[feel.step(pose) for feel, pose in zip(one, row)] for one in [pairs()] for row in at])
-        self.assertGreater(np.abs(alone[:, 0::3, :3]).max(), 0.01)
-        self.assertGreater(np.abs(alone[:, 2::3, :3]).max(), 0.01)
+        self.assertGreater(np.abs(alone[:, 0::2, :3]).max(), 0.01)
+        self.assertGreater(np.abs(alone[:, 1::2, :3]).max(), 0.01)
         for threads in (1, 3):
             together = pairs()
             felt = np.array([asperity.step_each(together, row, threads=threads) for row in at])
