@@ -1,5 +1,5 @@
 #!/usr/bin/python3 -P
-"""bench.py PROBE.glb FIXED.glb: what a call from Python costs over C++, and what threads bring to a batch.
+"""bench.py PROBE.glb FIXED.glb: what a call from Python costs over C++, and what threads bring to a batch and to pairs that go on together.
 
 The bodies are far apart for the first, so that a step costs C++ next to nothing: step_batch() on one thread makes the
 same steps in C++ without Python between them, and the difference per pose is what Python costs. The two alternate in
@@ -72,12 +72,36 @@ def tell_batch(renderer, poses, rounds, threads):
     print(f"step_batch() of {len(poses)} poses on {threads} threads: {told} times as fast as on one, the same bits")
 
 
+def tell_each(probe, fixed, formulation, pairs, rounds, threads):
+    """Pairs that go on together beside one after the other: contacts a second and core."""
+    renderers = [asperity.Renderer(probe, fixed, formulation=formulation) for _ in range(pairs)]
+    poses = light_touches(probe, fixed, pairs, seed=2)
+    contacts = sum(len(r.query(pose).contacts) for r, pose in zip(renderers, poses))
+    rows = list(zip(renderers, poses))
+
+    def one_by_one():
+        for renderer, pose in rows:
+            renderer.step(pose)
+
+    ways = {"step() of each": (one_by_one, 1)}
+    for n in sorted({1, threads}):
+        ways[f"step_each() on {n}"] = (lambda n=n: asperity.step_each(renderers, poses, threads=n), n)
+    took = {name: [] for name in ways}
+    for _ in range(rounds):
+        for name, (work, _) in ways.items():
+            took[name].append(seconds(work))
+    for name, (_, cores) in ways.items():
+        median = statistics.median(took[name])
+        print(f"{pairs} pairs, {name}: {1e3 * median:.2f} ms, {contacts / median / cores:.0f} contacts/s and core")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("probe")
     parser.add_argument("fixed")
     parser.add_argument("--calls", type=int, default=20000)
     parser.add_argument("--poses", type=int, default=4096)
+    parser.add_argument("--pairs", type=int, default=64)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--threads", type=int, default=len(os.sched_getaffinity(0)))
     given = parser.parse_args()
@@ -88,6 +112,7 @@ def main():
         tell_overhead(renderer, far_poses(probe, fixed, given.calls), given.rounds)
         if formulation == "least-motion" and given.threads > 1:
             tell_batch(renderer, light_touches(probe, fixed, given.poses, seed=1), given.rounds, given.threads)
+        tell_each(probe, fixed, formulation, given.pairs, given.rounds, given.threads)
 
 
 if __name__ == "__main__":

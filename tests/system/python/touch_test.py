@@ -43,6 +43,30 @@ class Touches(unittest.TestCase):
 
     def test_an_empty_batch(self):
         self.assertEqual(renderer().step_batch(np.zeros((0, 7))).shape, (0, 6))
+        self.assertEqual(asperity.step_each([], np.zeros((0, 7))).shape, (0, 6))
+
+    def test_renderers_that_go_on_together_have_the_bits_of_each_alone(self):
+        random = fresh_random()
+        kinds = ("planes", "window", "planes", "window", "least-motion", "window")
+
+        def pairs():
+            return [asperity.Renderer(model("block"), model("gear"), formulation=kind) for kind in kinds]
+
+        at = poses(random, 6 * 8).reshape(8, 6, 7)  # windows remember: eight steps, in order
+        alone = np.array([[feel.step(pose) for feel, pose in zip(one, row)] for one in [pairs()] for row in at])
+        self.assertGreater(np.abs(alone[:, 0::2, :3]).max(), 0.01)
+        self.assertGreater(np.abs(alone[:, 1::2, :3]).max(), 0.01)
+        for threads in (1, 3):
+            together = pairs()
+            felt = np.array([asperity.step_each(together, row, threads=threads) for row in at])
+            self.assertEqual(felt.tobytes(), alone.tobytes())
+
+        feel = renderer()
+        for given, count, why in (([feel, feel], 2, "there twice"), ([feel], 2, r"\(2, 7\).*each of the 1"), ([model("gear")], 1, "Renderers")):
+            with self.assertRaisesRegex((ValueError, TypeError), why):
+                asperity.step_each(given, at[0, :count])
+        with self.assertRaisesRegex(ValueError, "threads"):
+            asperity.step_each([feel], at[0, :1], threads=1000)
 
     def test_four_threads_of_python_get_their_own_answers(self):
         at = poses(fresh_random(), 40)

@@ -10,16 +10,19 @@ Five lines from two baked models to a wrench::
 
 Everything is in SI units. A pose is x y z qx qy qz qw (m, unit quaternion), a wrench is force and torque about the
 probe's centre of mass, in world axes; many of them are arrays (N, 7) and (N, 6) of float64. What calculates for longer
-than some microseconds lets other threads of Python run, and what takes long can be ended with Ctrl-C.
+than some microseconds lets other threads of Python run, and what takes long can be ended with Ctrl-C. Examples in
+docstrings go on from the lines above, with numpy as np.
 """
 
 from ._asperity import (
+    Body,
     Contact,
     Material,
     Mesh,
     Model,
     Plane,
     Renderer,
+    Scene,
     SimulatedDevice,
     Touch,
     __version__,
@@ -28,14 +31,16 @@ from ._asperity import (
     device_faults,
     load,
     load_mesh,
+    step_each,
 )
 from ._errors import BakeRemark, Error
 from .baking import bake
 from .recording import Recording, load_recording
-from .session import Session
+from .session import SceneUse, Session
 
 __all__ = [
     "BakeRemark",
+    "Body",
     "Contact",
     "Error",
     "Material",
@@ -44,6 +49,8 @@ __all__ = [
     "Plane",
     "Recording",
     "Renderer",
+    "Scene",
+    "SceneUse",
     "Session",
     "SimulatedDevice",
     "Touch",
@@ -55,4 +62,5 @@ __all__ = [
     "load",
     "load_mesh",
     "load_recording",
+    "step_each",
 ]

@@ -55,6 +55,9 @@ def bake(
 
     Raises Error with its code; cancelled where progress says so. Ctrl-C ends a bake within half a second. What was done
     differently from what was asked is told as a warning, BakeRemark.
+
+    >>> asperity.bake(asperity.benchmark_mesh("torus"), name="ring", triangles=200, texture=128, material="wood")
+    Model('ring', 200 triangles, texture 128 x 128)
     """
     if name is None:
         name = "mesh" if isinstance(mesh, _asperity.Mesh) else Path(mesh).stem

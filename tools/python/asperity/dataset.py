@@ -79,7 +79,14 @@ def _bake_task(mesh: str, out: str, plan: Plan) -> None:
 
 
 def spectrum(force: npt.ArrayLike, rate_hz: float) -> Tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Amplitude of evenly spaced forces (N, 3) over frequency: (F,) Hz and (F, 3) N, the mean taken off, Hann window."""
+    """Amplitude of evenly spaced forces (N, 3) over frequency: (F,) Hz and (F, 3) N, the mean taken off, Hann window.
+
+    >>> from asperity import dataset
+    >>> turning = 2 * np.pi * 50 * np.arange(1000) / 1000
+    >>> hz, amplitude = dataset.spectrum(np.stack([np.sin(turning), 0 * turning, 2 + 0 * turning], axis=1), 1000.0)
+    >>> hz[amplitude[:, 0].argmax()], amplitude[50].round(3)
+    (50.0, array([1., 0., 0.]))
+    """
     values = np.asarray(force, dtype=np.float64)
     if values.ndim != 2 or values.shape[1] != 3 or values.shape[0] < 2:
         raise ValueError(f"force has shape {values.shape}: give (N, 3), N, with two rows at least")

@@ -113,12 +113,20 @@ def switch_off_own_contacts(where: _Where, pairs: Sequence[Pair]) -> None:
 
 
 def from_mujoco(position: npt.ArrayLike, wxyz: npt.ArrayLike) -> _Floats:
-    """A pose x y z qx qy qz qw (7,) from a position (3,) and a quaternion w x y z (4,)."""
+    """A pose x y z qx qy qz qw (7,) from a position (3,) and a quaternion w x y z (4,).
+
+    >>> asperity.mujoco.from_mujoco([0, 0, 0.1], [1, 0, 0, 0])
+    array([0. , 0. , 0.1, 0. , 0. , 0. , 1. ])
+    """
     q = np.asarray(wxyz, dtype=np.float64)
     return np.concatenate([np.asarray(position, dtype=np.float64), q[1:], q[:1]])
 
 
 def to_mujoco(pose: npt.ArrayLike) -> Tuple[_Floats, _Floats]:
-    """Position (3,) and quaternion w x y z (4,) of a pose x y z qx qy qz qw (7,)."""
+    """Position (3,) and quaternion w x y z (4,) of a pose x y z qx qy qz qw (7,).
+
+    >>> asperity.mujoco.to_mujoco([0, 0, 0.1, 0, 0, 0, 1])
+    (array([0. , 0. , 0.1]), array([1., 0., 0., 0.]))
+    """
     p = np.asarray(pose, dtype=np.float64)
     return p[:3].copy(), np.concatenate([p[6:], p[3:6]])

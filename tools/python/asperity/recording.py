@@ -25,6 +25,12 @@ class Recording(Mapping[str, npt.NDArray[Any]]):
 
     device_pose and the others below put columns together. Wrenches are force (N) and torque (N m). Columns can be read
     by name, counted with len() and iterated over, as those of a dict.
+
+    >>> felt = asperity.Session(asperity.Renderer(probe, fixed, formulation="planes")).run(0.7)
+    >>> felt.hand_wrench.shape, felt["depth_m"].shape
+    ((700, 6), (700,))
+    >>> bool(felt.contact_wrench[-1, 2] > 1.0)  # N up, on the probe
+    True
     """
 
     def __init__(self, columns: Mapping[str, npt.ArrayLike]) -> None:
@@ -134,6 +140,10 @@ def load_recording(file: PathLike) -> Recording:
     """The Recording in a .csv or .npz of `asperity run --record` or of Recording.save().
 
     Numbers come back as they were, to the last digit. Raises Error: io_failed, bad_format or unsupported.
+
+    >>> asperity.Session(asperity.Renderer(probe, fixed, formulation="planes")).run(0.1).save("felt.npz")
+    >>> asperity.load_recording("felt.npz")
+    Recording(100 ticks, 37 columns)
     """
     path = Path(file)
     read = {".npz": _read_npz, ".csv": _read_csv}.get(path.suffix.lower())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Optional, Tuple, Union
+from typing import Any, Callable, NamedTuple, Optional, Tuple, Union
 
 import numpy.typing as npt
 
@@ -16,11 +16,30 @@ Contact = Union[Callable[[Any, Any], Any], int]
 Hand = Callable[[float, Any], Any]
 
 
+class SceneUse(NamedTuple):
+    """Which version of its Scene a session feels, and since when.
+
+    version: of commit(); 0: of a scene that never changes, or none yet.
+    tick: the first device tick with it; the session's first is 1. time_s: of that tick.
+    """
+
+    version: int
+    tick: int
+    time_s: float
+
+
 class Session:
     """A control loop with a hand at a simulated device: contacts, virtual coupling, passivity guard and output gate.
 
     The clock is virtual, so a session runs as fast as the machine can and the same one gives the same numbers, those of
-    `asperity run --record`. It has a renderer of its own, like the one given; formulation="planes" is the one for loops.
+    `asperity run --record`. It has a renderer of its own, like the one given; formulation="planes" is the one for loops. Of a renderer of Scene.renderer() the
+    bodies can change while it runs.
+
+    >>> session = asperity.Session(asperity.Renderer(probe, fixed, formulation="planes"))
+    >>> session.run(0.5)
+    Recording(500 ticks, 37 columns)
+    >>> session.time_s, session.fault
+    (0.5, 'none')
     """
 
     def __init__(
@@ -79,6 +98,20 @@ class Session:
         Call it again to go on. Raises Error after stop().
         """
         return recording_of(self._loop.run(seconds))
+
+    def commit(self) -> int:
+        """Hands over what was changed in the Scene since the last time: the next contact tick takes all of it at once.
+
+        Returns the version; scene_in_use says when it is felt. While run() goes on in another thread as well. Raises
+        Error: busy where the last changes were not taken yet, and these are kept for the next commit(); invalid_argument
+        where the renderer was not made by Scene.renderer().
+        """
+        return self._loop.commit()
+
+    @property
+    def scene_in_use(self) -> SceneUse:
+        """Which version of the Scene the hand feels, and since when."""
+        return SceneUse(*self._loop.scene_in_use)
 
     def stop(self) -> Recording:
         """Ends the session: the wrench goes to zero, the device is disarmed. Returns the Recording of that."""

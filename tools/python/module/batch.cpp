@@ -2,30 +2,24 @@
 
 #include <algorithm>
 #include <atomic>
-#include <limits>
 #include <mutex>
 #include <thread>
+#include <vector>
 
 namespace asperity::python {
 namespace {
 
-constexpr std::size_t block = 32;  // half a millisecond to some: short beside a signal, long beside a counter
-
-class shared_batch {
+class shared_rows {
  public:
-  shared_batch(std::span<const pose> T_wa, std::span<const pose> T_wb, std::span<double> out)
-      : T_wa_(T_wa), T_wb_(T_wb), out_(out) {}
+  shared_rows(const batch_shares& shares, const std::function<status(std::size_t, std::size_t)>& step)
+      : shares_(shares), step_(step) {}
 
   /// @return whether there may be more
-  bool step_block(any_renderer& feel) {
-    const std::size_t begin = next_.fetch_add(block, std::memory_order_relaxed);
-    if (begin >= T_wa_.size() || stop_.load(std::memory_order_relaxed)) return false;
-    tick found;
-    for (std::size_t i = begin; i < std::min(begin + block, T_wa_.size()); ++i) {
-      const status answered = feel.step({T_wa_[i], T_wb_}, found);
-      const vec6 w = to_vec6(found.force.on_probe_w);
-      for (std::size_t k = 0; k < 6; ++k) out_[6 * i + k] = w[k];
-      if (answered != status::ok) note(i, answered);
+  bool step_block(std::size_t thread) {
+    const std::size_t begin = next_.fetch_add(shares_.block, std::memory_order_relaxed);
+    if (begin >= shares_.rows || stop_.load(std::memory_order_relaxed)) return false;
+    for (std::size_t i = begin; i < std::min(begin + shares_.block, shares_.rows); ++i) {
+      if (const status answered = step_(thread, i); answered != status::ok) note(i, answered);
     }
     return true;
   }
@@ -44,8 +38,8 @@ class shared_batch {
     }
   }
 
-  std::span<const pose> T_wa_, T_wb_;
-  std::span<double> out_;
+  batch_shares shares_;
+  const std::function<status(std::size_t, std::size_t)>& step_;
   std::atomic<std::size_t> next_{0};
   std::atomic<bool> stop_{false};
   std::mutex lock_;
@@ -54,27 +48,25 @@ class shared_batch {
 
 }  // namespace
 
-batch_outcome step_all(std::span<any_renderer> renderers, std::span<const pose> T_wa, std::span<const pose> T_wb,
-                       std::span<double> out, const std::function<bool()>& keep_going) {
-  shared_batch all(T_wa, T_wb, out);
-  bool cancelled = false;
+batch_outcome step_rows(const batch_shares& shares, const std::function<status(std::size_t, std::size_t)>& step,
+                        const std::function<bool()>& keep_going) {
+  shared_rows all(shares, step);
   {
     std::vector<std::jthread> helpers;
-    for (std::size_t t = 1; t < std::min(renderers.size(), (T_wa.size() + block - 1) / block); ++t) {
-      helpers.emplace_back([&all, &feel = renderers[t]] {
-        while (all.step_block(feel)) {
+    for (std::size_t t = 1; t < std::min(shares.threads, (shares.rows + shares.block - 1) / shares.block); ++t) {
+      helpers.emplace_back([&all, t] {
+        while (all.step_block(t)) {
         }
       });
     }
-    while (all.step_block(renderers.front())) {
+    bool cancelled = false;
+    while (all.step_block(0)) {
       if (cancelled || keep_going()) continue;
       cancelled = true;
       all.stop();
     }
   }
-  batch_outcome outcome = all.outcome();
-  outcome.cancelled = cancelled;
-  return outcome;
+  return all.outcome();
 }
 
 }  // namespace asperity::python

@@ -1,29 +1,32 @@
-// Many poses at a time: each thread has a renderer of its own.
+// Many rows at a time, on several threads.
 #pragma once
 
 #include <cstddef>
 #include <functional>
-#include <span>
-#include <vector>
 
-#include "asperity/render/any_renderer.hpp"
+#include "asperity/core/status.hpp"
 
 namespace asperity::python {
 
 struct batch_outcome {
-  std::size_t incomplete = 0;  ///< poses at which a capacity was reached
-  status failed = status::ok;  ///< of the first pose that could not be computed
-  std::size_t failed_at = 0;   ///< its row
-  bool cancelled = false;
+  std::size_t incomplete = 0;  ///< rows at which a capacity was reached
+  status failed = status::ok;  ///< of the first row that could not be computed
+  std::size_t failed_at = 0;   ///< that row
 };
 
-/// The wrench at each pose, one row of six numbers each. Poses are handed out in blocks to whichever thread is free; a row
-/// depends on its pose alone, so the threads' number changes nothing.
-/// @param renderers one per thread, alike; the calling thread works too
+/// How rows are shared out: in blocks, to whichever thread is free.
+struct batch_shares {
+  std::size_t rows = 0;
+  std::size_t threads = 1;  ///< at most; the calling one works too
+  std::size_t block = 32;   ///< half a millisecond to some: short beside a signal, long beside a counter
+};
+
+/// Steps every row once.
+/// @param step (thread, row): thread from 0, below shares.threads; rows of one thread come one after the other. Where a row
+///        depends on nothing but itself, the threads' number changes nothing.
 /// @param keep_going asked on the calling thread between blocks
-/// @pre T_wa.size() * 6 == out.size(); renderers is not empty; they remember nothing, or there is one
-[[nodiscard]] batch_outcome step_all(std::span<any_renderer> renderers, std::span<const pose> T_wa,
-                                     std::span<const pose> T_wb, std::span<double> out,
-                                     const std::function<bool()>& keep_going);
+[[nodiscard]] batch_outcome step_rows(const batch_shares& shares,
+                                      const std::function<status(std::size_t, std::size_t)>& step,
+                                      const std::function<bool()>& keep_going);
 
 }  // namespace asperity::python

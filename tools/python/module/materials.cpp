@@ -29,9 +29,12 @@ std::string repr(const material& m) {
 }  // namespace
 
 void add_materials(py::module_& m) {
-  py::class_<material>(m, "Material",
-                       "What a surface is like to touch. Immutable. Felt through support planes: "
-                       "Renderer(formulation='planes') and sessions.")
+  py::class_<material>(
+      m, "Material",
+      "What a surface is like to touch. Immutable. Felt through support planes: "
+      "Renderer(formulation='planes') and sessions.\n\n"
+      ">>> asperity.Material('felt', stiffness_n_per_m=2e4, static_friction=0.6, dynamic_friction=0.4)\n"
+      "Material('felt', stiffness_n_per_m=20000.0, static_friction=0.6)\n")
       .def(py::init(&made_material), py::arg("name") = "", py::kw_only(), py::arg("stiffness_n_per_m") = 4e5,
            py::arg("dissipation_s_per_m") = 5.0, py::arg("static_friction") = 0.0, py::arg("dynamic_friction") = 0.0,
            py::arg("combine") = "average",
@@ -39,7 +42,9 @@ void add_materials(py::module_& m) {
            "coefficients of friction, the dynamic one at most the static one. Raises Error for one out of range.")
       .def_static(
           "preset", [](const std::string& name) { return unwrap(preset_material(name)); }, py::arg("name"),
-          "The material of that name: steel, wood, rubber or ice.")
+          "The material of that name: steel, wood, rubber or ice. Raises Error for another name.\n\n"
+          ">>> asperity.Material.preset('rubber').stiffness_n_per_m\n"
+          "3000.0\n")
       .def_readonly("name", &material::name, "Its name, for people.")
       .def_readonly("stiffness_n_per_m", &material::stiffness_n_per_m,
                     "Stiffness of each point that presses, were the other body rigid, N/m.")

@@ -85,7 +85,11 @@ py::object benchmark_coarse_mesh(const std::string& name) {
 }  // namespace
 
 void add_meshes(py::module_& m) {
-  py::class_<mesh_handle>(m, "Mesh", "A triangle mesh in metres: what a bake begins with. Immutable.")
+  py::class_<mesh_handle>(m, "Mesh",
+                          "A triangle mesh in metres: what a bake begins with. Immutable.\n\n"
+                          ">>> corners = [[0, 0, 0], [0.1, 0, 0], [0, 0.1, 0], [0, 0, 0.1]]\n"
+                          ">>> asperity.Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])\n"
+                          "Mesh(4 vertices, 4 triangles)\n")
       .def(py::init(&mesh_of_arrays), py::arg("vertices"), py::arg("triangles"),
            "A mesh of arrays, which are copied: vertices (V, 3) in metres, triangles (T, 3) of rows of vertices, "
            "counter-clockwise seen from outside. Raises ValueError for another shape or a row that is not there.")
@@ -113,7 +117,9 @@ void add_meshes(py::module_& m) {
         "The mesh of a .ply, .obj, .stl, .gltf or .glb file. scale: metres per unit of the file, 0.001 for "
         "millimetres. Raises Error.");
   m.def("benchmark_mesh", &benchmark_mesh, py::arg("name"),
-        "A model of the paper's benchmark at full resolution, m: block, gear, hammer, cad_part, file or torus.");
+        "A model of the paper's benchmark at full resolution, m: block, gear, hammer, cad_part, file or torus.\n\n"
+        ">>> asperity.benchmark_mesh('block').vertices.shape\n"
+        "(32770, 3)\n");
   m.def("benchmark_coarse_mesh", &benchmark_coarse_mesh, py::arg("name"),
         "The coarse partner of a benchmark mesh, for block and gear; None for the others.");
 }

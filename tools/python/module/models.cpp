@@ -119,13 +119,19 @@ py::dict inspect(const model_handle& self) {
 void add_models(py::module_& m) {
   py::class_<model_handle>(m, "Model",
                            "A textured model: coarse mesh, haptic texture, convex pieces. Immutable; renderers and "
-                           "arrays share it and keep it alive. Body frame, metres.")
+                           "arrays share it and keep it alive. Body frame, metres.\n\n"
+                           ">>> probe\n"
+                           "Model('block', 16 triangles, texture 256 x 256)\n"
+                           ">>> probe.high, probe.texels.shape\n"
+                           "(array([0.02 , 0.019, 0.01 ]), (256, 256, 3))\n")
       .def("save", &save_model, py::arg("file"), "Writes a .glb, which appears whole or not at all. Raises Error.")
       .def("inspect", &inspect,
            "What is known of the model, SI: size, mass properties, and what the bake measured, under the keys of "
            "`asperity inspect --json`.")
       .def("with_material", &with_material, py::arg("material"),
-           "The same model with another Material all over, or None.")
+           "The same model with another Material all over, or None.\n\n"
+           ">>> probe.with_material(asperity.Material.preset('steel')).material.name\n"
+           "'steel'\n")
       .def_property_readonly(
           "name", [](const model_handle& self) { return self.inside->name; }, "Its name.")
       .def_property_readonly(
@@ -170,7 +176,10 @@ void add_models(py::module_& m) {
                " triangles, texture " + std::to_string(self.inside->texture.width) + " x " +
                std::to_string(self.inside->texture.height) + ")";
       });
-  m.def("load", &load_model, py::arg("file"), "The textured model of a .glb file. Raises Error.");
+  m.def("load", &load_model, py::arg("file"),
+        "The textured model of a .glb file. Raises Error.\n\n"
+        ">>> asperity.load('gear.glb').name\n"
+        "'gear'\n");
 }
 
 }  // namespace asperity::python

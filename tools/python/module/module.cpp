@@ -13,5 +13,6 @@ PYBIND11_MODULE(_asperity, m) {
   asperity::python::add_baking(m);
   asperity::python::add_touches(m);
   asperity::python::add_renderers(m);
+  asperity::python::add_scenes(m);
   asperity::python::add_sessions(m);
 }

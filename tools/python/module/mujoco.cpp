@@ -192,7 +192,14 @@ PYBIND11_MODULE(_mujoco, m) {
   py::class_<mujoco_simulation>(
       m, "Simulation",
       "A MuJoCo simulation: what an MJCF says, and its state. Arrays are MuJoCo's own numbers, "
-      "which can be written; its quaternions are w x y z.")
+      "which can be written; its quaternions are w x y z.\n\n"
+      ">>> from asperity.mujoco import Simulation\n"
+      ">>> falls = Simulation.from_text(\"<mujoco><worldbody><body name='ball'><freejoint/><geom size='.1'/></body>\"\n"
+      "...                              \"</worldbody></mujoco>\")\n"
+      ">>> for _ in range(100):\n"
+      "...     falls.step()\n"
+      ">>> round(falls.time, 3), bool(falls.pose('ball')[2] < 0)\n"
+      "(0.2, True)\n")
       .def(py::init([](const std::filesystem::path& file) { return simulation_of(file.string(), nullptr); }),
            py::arg("file"), "Of an MJCF file. Raises Error.")
       .def_static("from_text", &simulation_of_text, py::arg("mjcf"), "Of the text of an MJCF. Raises Error.")

@@ -11,6 +11,7 @@ void add_models(py::module_& m);
 void add_baking(py::module_& m);
 void add_touches(py::module_& m);
 void add_renderers(py::module_& m);
+void add_scenes(py::module_& m);
 void add_sessions(py::module_& m);
 
 }  // namespace asperity::python

@@ -14,6 +14,7 @@ namespace asperity::python {
 struct renderer_handle {
   std::shared_ptr<const renderer_source> source;
   std::vector<pose> T_wb;
+  scene_seen seen;                 ///< of a scene that changes; such a renderer has no more than the first of `feel`
   std::vector<any_renderer> feel;  ///< the first for single steps; the others are made when a batch first asks for them
   std::uint64_t incomplete = 0;    ///< steps at which a capacity was reached
   std::mutex busy;                 ///< several threads of Python may call; the GIL is not held meanwhile

@@ -7,6 +7,7 @@
 #include "asperity/planes/plane_renderer.hpp"
 #include "asperity/window/window_renderer.hpp"
 #include "exact/exact_renderer.hpp"
+#include "gpu_renderers.hpp"
 
 namespace asperity::python {
 namespace {
@@ -21,11 +22,31 @@ error no_choice(const std::string& name, const std::string& given, const std::st
   return {error_code::invalid_argument, name + " is '" + given + "': give " + choices};
 }
 
-result<void> check(const scene& bodies, const renderer_wish& wish) {
-  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok;
+result<void> check(const renderer_wish& wish) {
   const std::string& f = wish.formulation;
   if (f != "least-motion" && f != "planes" && f != "window" && f != "exact")
     return no_choice("formulation", f, "least-motion, planes, window or exact");
+  const std::string& b = wish.backend;
+  if (b != "cpu" && b != "gl-compute" && b != "gl-occlusion")
+    return no_choice("backend", b, "cpu, gl-compute or gl-occlusion");
+  if (b != "cpu" && f != "window") {
+    return error{error_code::invalid_argument,
+                 "backend '" + b + "' looks into the windows of contacts: leave formulation='" + f + "' out"};
+  }
+  if (b == "cpu" && (!wish.gpu.empty() || wish.fallback)) {
+    return error{error_code::invalid_argument,
+                 std::string(wish.fallback ? "fallback is for a GPU that fails" : "gpu chooses among GPUs") +
+                     ": add backend='gl-compute' or 'gl-occlusion'"};
+  }
+  if (b == "gl-occlusion" && wish.gradient != "central") {
+    return error{error_code::invalid_argument,
+                 "gradient='soft' needs the depth of every sample, and a query tells the largest alone: leave it out "
+                 "with backend='gl-occlusion'"};
+  }
+  if (b == "gl-occlusion" && wish.lookup != "paper") {
+    return error{error_code::invalid_argument,
+                 "lookup='exact' is not how backend='gl-occlusion' draws: leave it out, or use backend='gl-compute'"};
+  }
   if (wish.gradient != "soft" && wish.gradient != "central")
     return no_choice("gradient", wish.gradient, "soft or central");
   if (wish.lookup != "exact" && wish.lookup != "paper") return no_choice("lookup", wish.lookup, "exact or paper");
@@ -57,7 +78,8 @@ double reach_of(const scene& bodies, double wanted_m) {
 }  // namespace
 
 result<renderer_source> renderer_source::make(scene bodies, renderer_wish wish) {
-  if (const result<void> ok = check(bodies, wish); !ok) return ok.error();
+  if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
+  if (const result<void> ok = check(wish); !ok) return ok.error();
   renderer_source out(std::move(bodies), std::move(wish));
   if (out.remembers()) return out;
   result<field_scene> fields = make_field_scene(out.bodies_);
@@ -67,20 +89,34 @@ result<renderer_source> renderer_source::make(scene bodies, renderer_wish wish) 
   return out;
 }
 
-result<any_renderer> renderer_source::another() const {
+result<renderer_source> renderer_source::make(std::shared_ptr<scene_handle> edited, renderer_wish wish) {
+  if (const result<void> ok = check(wish); !ok) return ok.error();
+  renderer_source out({edited->probe, {}}, std::move(wish));
+  out.edited_ = std::move(edited);
+  return out;
+}
+
+double renderer_source::reach_now(double wanted_m) const {
+  if (!edited_) return reach_of(bodies_, wanted_m);
+  const std::lock_guard lock(edited_->busy);
+  return reach_of(edited_->now(), wanted_m);
+}
+
+result<any_renderer> renderer_source::another(scene_seen* seen) const {
   if (wish_.formulation == "least-motion") return least_motion(wish_.period_s);
   if (wish_.formulation == "planes")
-    return planes(wish_.reach_m > 0.0 ? wish_.reach_m : reach_of(bodies_, reach_for(wish_.period_s)));
+    return planes(wish_.reach_m > 0.0 ? wish_.reach_m : reach_now(reach_for(wish_.period_s)), seen);
   return wish_.formulation == "exact" ? exact() : window();
 }
 
-result<any_renderer> renderer_source::another_for(const loop_periods& periods, double motion_scale) const {
+result<any_renderer> renderer_source::another_for(const loop_periods& periods, double motion_scale,
+                                                  scene_seen* seen) const {
   if (wish_.formulation == "least-motion") return least_motion(seconds(periods.renewal_ns()));
   if (wish_.formulation == "planes" && !(wish_.reach_m > 0.0)) {
-    return planes(reach_of(
-        bodies_, std::max(1.0, motion_scale) * reach_for(seconds(periods.contact_ns), seconds(periods.device_ns))));
+    const double wanted_m = reach_for(seconds(periods.contact_ns), seconds(periods.device_ns));
+    return planes(reach_now(std::max(1.0, motion_scale) * wanted_m), seen);
   }
-  return another();
+  return another(seen);
 }
 
 result<any_renderer> renderer_source::least_motion(double period_s) const {
@@ -93,10 +129,16 @@ result<any_renderer> renderer_source::least_motion(double period_s) const {
   return erased(make_least_motion_renderer(bodies_, fields_, exits_, settings));
 }
 
-result<any_renderer> renderer_source::planes(double reach_m) const {
+result<any_renderer> renderer_source::planes(double reach_m, scene_seen* seen) const {
   plane_renderer_settings settings;
   settings.reach_m = reach_m;
   if (wish_.stiffness_n_per_m > 0.0) settings.springs.stiffness_n_per_m = wish_.stiffness_n_per_m;
+  if (edited_) {
+    const std::lock_guard lock(edited_->busy);
+    result<any_renderer> made = erased(make_plane_renderer(edited_->editor, settings));
+    if (made && seen != nullptr) *seen = {edited_->changes, edited_->editor.version()};
+    return made;
+  }
   return erased(make_plane_renderer(bodies_, fields_, settings));
 }
 
@@ -107,6 +149,7 @@ result<any_renderer> renderer_source::window() const {
   settings.depth.parallax = wish_.lookup == "paper" ? parallax_mode::paper_lookup : parallax_mode::exact;
   settings.depth.grid = wish_.grid;
   if (wish_.stiffness_n_per_m > 0.0) settings.force.stiffness_n_per_m = wish_.stiffness_n_per_m;
+  if (wish_.backend != "cpu") return make_window_on_gpu(bodies_, {wish_.backend, wish_.gpu, wish_.fallback}, settings);
   return erased(make_window_renderer(bodies_, settings));
 }
 

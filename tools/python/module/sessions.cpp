@@ -4,13 +4,12 @@
 
 #include "approach.hpp"
 #include "arrays.hpp"
-#include "asperity/control/virtual_session.hpp"
-#include "asperity/device/simulated/simulated_device.hpp"
+#include "asperity/planes/plane_renderer.hpp"
 #include "errors.hpp"
 #include "long_work.hpp"
 #include "parts.hpp"
-#include "policies.hpp"
 #include "renderer_handle.hpp"
+#include "session_handle.hpp"
 #include "simulated.hpp"
 
 namespace asperity::python {
@@ -108,33 +107,6 @@ device_wish made_device(std::uint64_t seed, const std::string& motion, double pr
   return out;
 }
 
-struct keep_last {
-  session_record* last;
-  void operator()(const session_record& record) const noexcept { *last = record; }
-};
-
-/// Rows of a recording as they come.
-struct recorded_rows {
-  std::vector<double> numbers;
-  std::vector<std::uint8_t> sample, device, fault;
-
-  void add(const session_record& r) {
-    const auto put = [&](std::initializer_list<double> list) { numbers.insert(numbers.end(), list); };
-    put({static_cast<double>(r.time_ns) / 1e9});
-    for (const pose& T : {r.T_dh, r.T_wa}) {
-      const auto q = to_xyzw(T.rotation);
-      put({T.position.x, T.position.y, T.position.z, q[0], q[1], q[2], q[3]});
-    }
-    for (const wrench& w : {r.on_probe_w, r.on_hand_d})
-      put({w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z});
-    put({r.max_depth_m, static_cast<double>(r.contacts), static_cast<double>(r.contact_age_ns) / 1e9, r.delivered_j,
-         r.surplus_j, r.guard_alpha_per_s, r.guard_scale});
-    sample.push_back(static_cast<std::uint8_t>(r.sample));
-    device.push_back(static_cast<std::uint8_t>(r.device));
-    fault.push_back(static_cast<std::uint8_t>(r.fault));
-  }
-};
-
 py::array words_of(const std::vector<std::uint8_t>& codes, auto&& word) {
   py::list out;
   for (const std::uint8_t c : codes) out.append(word(c));
@@ -151,96 +123,50 @@ py::tuple to_python(const recorded_rows& rows) {
                         words_of(rows.fault, [](std::uint8_t c) { return to_string(static_cast<gate_fault>(c)); }));
 }
 
-struct session_parts {
-  any_renderer feel;
-  scene_placement placement;
-  simulated_settings device;
-  control_settings control;
-  virtual_schedule schedule;
-  pose T_wa{};  // of the probe at the start
-  std::shared_ptr<raised_in_tick> raised;
-  std::function<void(double, const pose&)> lead;  // before each device tick; empty: the hand's own motion
-};
-
-class session_handle {
- public:
-  explicit session_handle(session_parts parts)
-      : device_(std::move(parts.device)),
-        period_ns_(parts.schedule.device_period_ns),
-        raised_(std::move(parts.raised)),
-        lead_(std::move(parts.lead)),
-        session_(std::move(parts.feel), parts.placement, device_, parts.control, parts.schedule, keep_last{&last_}) {
-    last_.T_wa = parts.T_wa;
-  }
-
-  result<void> begin() {
-    if (const result<void> opened = device_.open(); !opened) return opened;
-    return device_.arm();
-  }
-
-  /// Device ticks of that time, fewer where the gate shuts.
-  recorded_rows run(double seconds, const std::function<bool()>& keep_going) {
-    recorded_rows rows;
-    const auto until = session_.device_ticks() +
-                       static_cast<std::uint64_t>(std::llround(seconds * 1e9 / static_cast<double>(period_ns_)));
-    while (session_.device_ticks() < until && fault() == gate_fault::none && !raised_->what && keep_going()) step(rows);
-    return rows;
-  }
-
-  /// Tells the gate to stop, lets the wrench go to zero and disarms.
-  recorded_rows stop() {
-    recorded_rows rows;
-    if (stopped_) return rows;
-    stopped_ = true;
-    session_.device().stop(gate_fault::stopped);
-    const std::int64_t longest = std::max<std::int64_t>(200, 200'000'000 / period_ns_);
-    for (std::int64_t i = 0; i < longest && !session_.device().gate().at_rest(); ++i) step(rows);
-    static_cast<void>(device_.disarm());
-    return rows;
-  }
-
-  [[nodiscard]] gate_fault fault() noexcept { return session_.device().gate().fault(); }
-  [[nodiscard]] double time_s() const noexcept { return 1e-9 * static_cast<double>(session_.now_ns()); }
-  [[nodiscard]] bool stopped() const noexcept { return stopped_; }
-  /// Raises what a contact or a hand in Python raised. @pre the GIL is held
-  void rethrow() { raised_->rethrow(); }
-
-  std::mutex busy;
-
- private:
-  void step(recorded_rows& rows) {
-    if (lead_) lead_(time_s(), last_.T_wa);
-    session_.beat();
-    static_cast<void>(session_.step());
-    rows.add(last_);
-  }
-
-  simulated_device device_;
-  std::int64_t period_ns_;
-  session_record last_{};
-  std::shared_ptr<raised_in_tick> raised_;
-  std::function<void(double, const pose&)> lead_;
-  virtual_session<any_renderer, simulated_device, keep_last> session_;
-  bool stopped_ = false;
-};
-
 std::int64_t period_of(double rate_hz, const char* name) {
   if (!(rate_hz >= 100.0 && rate_hz <= 10'000.0))
     throw py::value_error(std::string(name) + " has to be from 100 to 10000 Hz");
   return std::llround(1e9 / rate_hz);
 }
 
+/// The fixed bodies that are there as a session begins.
+struct bodies_there {
+  scene bodies;
+  std::vector<pose> T_wb;
+};
+
+bodies_there bodies_of(renderer_handle& renderer) {
+  const std::shared_ptr<scene_handle>& edited = renderer.source->edited();
+  const py::gil_scoped_release others_may_run;
+  if (edited) {
+    const std::lock_guard lock(edited->busy);
+    return {edited->now(), edited->poses_now()};
+  }
+  const std::lock_guard lock(renderer.busy);
+  return {renderer.source->bodies(), renderer.T_wb};
+}
+
 // Where the probe begins: given, or 3 mm above its first touch straight down.
-pose start_of(any_renderer& feel, const std::vector<pose>& T_wb, motion_kind motion) {
-  const command::step_function step = [&](const scene_pose& at, tick& out) { return feel.step(at, out); };
-  pose T_wa = unwrap(command::find_touch(feel.scene(), step, quat(1.0, 0.0, 0.0, 0.0), T_wb));
+pose start_of(any_renderer& feel, const bodies_there& there, bool edited, motion_kind motion) {
+  if (there.bodies.fixed.empty())
+    raise("invalid_argument", "the scene has no body to begin at: give start_pose, or add() a body before");
+  const command::step_function step = [&](const scene_pose& at, tick& out) {
+    if (!edited) return feel.step(at, out);
+    const placed_scene& placed = *feel.target<plane_renderer>()->placed();
+    scene_pose in_slots{at.T_wa, placed.T_wb};
+    in_slots.version = placed.version;
+    return feel.step(in_slots, out);
+  };
+  const gpu_visit visit(gpu_use_of(feel));
+  pose T_wa = unwrap(command::find_touch(there.bodies, step, quat(1.0, 0.0, 0.0, 0.0), there.T_wb));
   if (motion != motion_kind::free) T_wa.position.z += clearance_m;
   return T_wa;
 }
 
 // As in the command's sessions: oblique to both horizontal axes, so that ridges along either of them are felt.
 motion_settings motion_of(const device_wish& wish, const scene& bodies, bool start_given, double scale) {
-  const double size = std::min(bodies.probe->box.diagonal(), bodies.fixed.front()->box.diagonal());
+  double size = bodies.probe->box.diagonal();
+  if (!bodies.fixed.empty()) size = std::min(size, bodies.fixed.front()->box.diagonal());
   motion_settings motion = wish.settings.motion;
   motion.sideways_d = {0.8, 0.6, 0.0};
   motion.depth_m = wish.press_m + (start_given ? 0.0 : clearance_m / scale);
@@ -260,11 +186,21 @@ std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const de
   const bool on_planes = renderer.source->wish().formulation == "planes";
   if (friction && !on_planes)
     throw py::value_error("friction is of support planes: give Renderer formulation='planes'");
-  any_renderer feel = unwrap(renderer.source->another_for(periods, scale));
-  const scene& bodies = renderer.source->bodies();
-  std::vector<pose> T_wb = renderer.T_wb;
+  const std::shared_ptr<scene_handle>& edited = renderer.source->edited();
+  if (edited && (friction || !contact.is_none())) {
+    throw py::value_error(friction ? "friction is of the materials of a Scene's bodies: see Scene.set_material()"
+                                   : "a contact of your own knows no Scene: give a Renderer of fixed bodies");
+  }
+  scene_seen seen;
+  any_renderer feel = unwrap([&] {
+    const py::gil_scoped_release others_may_run;
+    return renderer.source->another_for(periods, scale, &seen);
+  }());
+  const bodies_there there = bodies_of(renderer);
+  const scene& bodies = there.bodies;
   const bool start_given = !start_pose.is_none();
-  const pose T_wa = start_given ? pose_of(start_pose, "start_pose") : start_of(feel, T_wb, device.settings.motion.kind);
+  const pose T_wa = start_given ? pose_of(start_pose, "start_pose")
+                                : start_of(feel, there, edited != nullptr, device.settings.motion.kind);
 
   simulated_settings simulated = device.settings;
   simulated.motion = motion_of(device, bodies, start_given, scale);
@@ -276,7 +212,7 @@ std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const de
   control.probe = felt_alike(solid_probe(shape), scale);
   if (on_planes) {
     control.coupling = coupling_for(simulated.capabilities, device_rate_hz, scale);
-    control.surfaces = surfaces_of(bodies);
+    control.surfaces = edited ? feel.target<plane_renderer>()->placed()->surfaces : surfaces_of(bodies);
   }
   if (coupling_n_per_m) control.coupling.stiffness_n_per_m = *coupling_n_per_m;
   if (coupling_n_m_per_rad) control.coupling.stiffness_n_m_per_rad = *coupling_n_m_per_rad;
@@ -302,16 +238,18 @@ std::unique_ptr<session_handle> made_session(renderer_handle& renderer, const de
         raised);
   }
   if (!contact.is_none()) feel = with_contact(std::move(feel), contact, raised);
-  auto out = std::make_unique<session_handle>(session_parts{.feel = std::move(feel),
-                                                            .placement = {std::move(T_wb), shape.centre_of_mass},
-                                                            .device = std::move(simulated),
-                                                            .control = control,
-                                                            .schedule = {.device_period_ns = periods.device_ns,
-                                                                         .contact_period_ns = periods.contact_ns,
-                                                                         .contact_one_period_late = true},
-                                                            .T_wa = T_wa,
-                                                            .raised = raised,
-                                                            .lead = std::move(lead)});
+  session_parts parts{.placement = {there.T_wb, shape.centre_of_mass},
+                      .device = std::move(simulated),
+                      .control = std::move(control),
+                      .schedule = {.device_period_ns = periods.device_ns,
+                                   .contact_period_ns = periods.contact_ns,
+                                   .contact_one_period_late = true},
+                      .T_wa = T_wa,
+                      .raised = raised,
+                      .lead = std::move(lead),
+                      .edited = edited,
+                      .seen = seen};
+  auto out = std::make_unique<session_handle>(std::move(feel), std::move(parts));
   unwrap(out->begin());
   return out;
 }
@@ -341,6 +279,18 @@ py::tuple stop(session_handle& self) {
   return to_python(rows);
 }
 
+std::uint64_t commit(session_handle& self) {
+  return unwrap([&] {
+    const py::gil_scoped_release others_may_run;
+    return self.commit();
+  }());
+}
+
+py::tuple scene_in_use(session_handle& self) {
+  const scene_use use = self.scene_in_use();
+  return py::make_tuple(use.version, use.tick, 1e-9 * static_cast<double>(use.time_ns));
+}
+
 }  // namespace
 
 void add_sessions(py::module_& m) {
@@ -351,7 +301,11 @@ void add_sessions(py::module_& m) {
   py::class_<device_wish>(
       m, "SimulatedDevice",
       "A device made of numbers, with a hand that holds it: each session makes it anew, and the same "
-      "description gives the same bits.")
+      "description gives the same bits.\n\n"
+      ">>> device = asperity.SimulatedDevice(motion='press', hand='firm', faults=[('depart', 0.1, 0.2)])\n"
+      ">>> session = asperity.Session(asperity.Renderer(probe, fixed, formulation='planes'), device)\n"
+      ">>> session.run(1.0).rows < 1000, session.fault  # it ends where the gate shuts\n"
+      "(True, 'device departed')\n")
       .def(py::init(&made_device), py::kw_only(), py::arg("seed") = 1, py::arg("motion") = "scrub",
            py::arg("press_m") = 0.012, py::arg("amplitude_m") = py::none(), py::arg("frequency_hz") = 1.0,
            py::arg("hand") = "usual", py::arg("faults") = std::vector<std::tuple<std::string, double, double>>{},
@@ -374,6 +328,8 @@ void add_sessions(py::module_& m) {
            py::arg("coupling_n_m_per_rad"), py::arg("scale"), py::arg("friction"), py::arg("contact") = py::none(),
            py::arg("hand") = py::none(), "See asperity.Session.")
       .def("run", &run, py::arg("seconds"), "Numbers (N, 34) and the words of sample, device and fault.")
+      .def("commit", &commit, "Hands over what was changed in the scene; the version.")
+      .def_property_readonly("scene_in_use", &scene_in_use, "(version, tick, time in s); see asperity.Session.")
       .def("stop", &stop, "The rows in which the wrench goes to zero, as run() gives them.")
       .def_property_readonly(
           "fault", [](session_handle& self) { return to_string(self.fault()); }, "What shut the gate, or none.")

@@ -98,7 +98,13 @@ void add_plane(py::module_& m) {
 void add_touches(py::module_& m) {
   add_contact(m);
   add_plane(m);
-  py::class_<touch>(m, "Touch", "What a renderer found at one pose of the probe. World axes, SI.")
+  py::class_<touch>(m, "Touch",
+                    "What a renderer found at one pose of the probe. World axes, SI.\n\n"
+                    ">>> touch = renderer.query([0, 0, z, 0, 0, 0, 1])\n"
+                    ">>> len(touch.contacts), touch.contacts[0].body, touch.complete\n"
+                    "(1, 0, True)\n"
+                    ">>> print(touch.contacts[0].normal)  # n_ab: down, from the block to the gear\n"
+                    "[-8.54258464e-05 -5.30340640e-02 -9.98592700e-01]\n")
       .def_property_readonly(
           "wrench", [](const touch& t) { return to_array(t.on_probe_w); },
           "On the probe (6,): force (N) and torque (N m) about its centre of mass.")
