@@ -26,7 +26,7 @@ namespace asperity::command {
 namespace {
 
 struct view_command {
-  std::string file;
+  std::vector<std::string> files;
   std::string probe;
   std::vector<std::string> fixed;
   std::vector<std::string> fixed_poses;
@@ -36,7 +36,33 @@ struct view_command {
   std::string exported;
 };
 
-bool is_recording(const view_command& options) { return extension_error(options.file, {".csv"}).empty(); }
+constexpr std::size_t most_recordings = 2;
+
+bool is_recording(const std::string& file) { return extension_error(file, {".csv"}).empty(); }
+bool is_recording(const view_command& options) { return is_recording(options.files.front()); }
+
+std::string title_of(const view_command& options) {
+  std::string out = file_stem(options.files.front());
+  if (options.files.size() > 1) out += " and " + file_stem(options.files[1]);
+  return out;
+}
+
+result<void> check_files(const view_command& options) {
+  const bool recordings = is_recording(options);
+  for (const std::string& file : options.files) {
+    if (is_recording(file) != recordings) {
+      return error{error_code::invalid_argument,
+                   options.files.front() + " and " + file + " are a recording and a model: name recordings or a model"};
+    }
+  }
+  if (!recordings && options.files.size() > 1) {
+    return error{error_code::invalid_argument, "a page shows one model: name one, or recordings (.csv)"};
+  }
+  if (options.files.size() > most_recordings) {
+    return error{error_code::limit_exceeded, "a page shows two recordings beside each other at the most"};
+  }
+  return {};
+}
 
 result<view::page_scene> recorded_scene(const view_command& options) {
   if (options.probe.empty() || options.fixed.empty()) {
@@ -47,8 +73,10 @@ result<view::page_scene> recorded_scene(const view_command& options) {
   if (!T_wb) return T_wb.error();
   const result<scene> bodies = load_scene(options.probe, options.fixed, true);
   if (!bodies) return bodies.error();
-  view::page_scene shown{.mode = view::page_mode::replay, .title = file_stem(options.file), .bodies = {}};
-  shown.bodies.push_back({file_stem(options.probe), bodies->probe, {}});
+  view::page_scene shown{.mode = view::page_mode::replay, .title = title_of(options), .bodies = {}};
+  for (std::size_t i = 0; i < options.files.size(); ++i) {
+    shown.bodies.push_back({file_stem(options.probe), bodies->probe, {}});
+  }
   for (std::size_t b = 0; b < options.fixed.size(); ++b) {
     shown.bodies.push_back({file_stem(options.fixed[b]), bodies->fixed[b], (*T_wb)[b]});
   }
@@ -60,12 +88,12 @@ result<view::page_scene> model_scene(const view_command& options) {
     return error{error_code::invalid_argument,
                  "--probe and --fixed are of a recording (.csv): leave them out for a model"};
   }
-  result<textured_model> model = io::load_textured_model(options.file);
+  result<textured_model> model = io::load_textured_model(options.files.front());
   if (!model) return model.error();
   return view::page_scene{
       .mode = view::page_mode::model,
-      .title = file_stem(options.file),
-      .bodies = {{file_stem(options.file), std::make_shared<const textured_model>(std::move(model).value()), {}}}};
+      .title = title_of(options),
+      .bodies = {{title_of(options), std::make_shared<const textured_model>(std::move(model).value()), {}}}};
 }
 
 result<void> serve(const view_command& options, view::page_content content) {
@@ -87,7 +115,9 @@ result<answer> show(const view_command& options, const common_options&) {
   if (!view_port_of(options.port)) {
     return error{error_code::invalid_argument, "--port " + options.port + ": a port is a whole number from 0 to 65535"};
   }
-  std::vector<named_file> inputs{{"view", options.file}, {"--probe", options.probe}};
+  if (const result<void> ok = check_files(options); !ok) return ok.error();
+  std::vector<named_file> inputs{{"--probe", options.probe}};
+  for (const std::string& file : options.files) inputs.push_back({"view", file});
   for (const std::string& body : options.fixed) inputs.push_back({"--fixed", body});
   const named_file exported{"--export", options.exported};
   if (const result<void> ok = check_outputs(inputs, {&exported, 1}); !ok) return ok.error();
@@ -97,23 +127,33 @@ result<answer> show(const view_command& options, const common_options&) {
     if (!opened) return opened.error();
     page.emplace(std::move(opened).value());
   }
-  std::vector<view::trace_row> rows;
-  if (is_recording(options)) {
-    result<std::vector<view::trace_row>> read = read_recording(options.file, options.scale);
+  std::vector<view::shown_recording> recordings;
+  for (const std::string& file : options.files) {
+    if (!is_recording(file)) break;
+    result<std::vector<view::trace_row>> read = read_recording(file, options.scale);
     if (!read) return read.error();
-    rows = std::move(read).value();
+    recordings.push_back({file_stem(file), std::move(read).value()});
   }
   result<view::page_scene> shown = is_recording(options) ? recorded_scene(options) : model_scene(options);
   if (!shown) return shown.error();
-  if (rows.size() > 1) {
-    shown->device_period_s = (rows.back().time_s - rows.front().time_s) / static_cast<double>(rows.size() - 1);
+  if (!recordings.empty() && recordings.front().rows.size() > 1) {
+    shown->device_period_s = recordings.front().period_s();
   }
   shown->map.scale = options.scale;
   const std::size_t points = page ? view::exported_points : view::live_points;
-  const std::size_t ticks = rows.size();
-  view::page_content content = view::make_content(*shown, std::move(rows), points);
+  view::page_content content = view::make_content(*shown, recordings, points);
   answer out;
-  out.document = {{"file", options.file}, {"ticks", ticks}};
+  out.document = {{"file", options.files.front()},
+                  {"ticks", recordings.empty() ? 0 : recordings.front().rows.size()},
+                  {"recordings", json::array()}};
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    const view::shown_recording& r = recordings[i];
+    out.document["recordings"].push_back({{"file", options.files[i]},
+                                          {"ticks", r.rows.size()},
+                                          {"from_s", r.rows.front().time_s},
+                                          {"to_s", r.rows.back().time_s},
+                                          {"period_s", r.period_s()}});
+  }
   if (!page) {
     if (const result<void> served = serve(options, std::move(content)); !served) return served.error();
     return out;
@@ -130,9 +170,11 @@ result<answer> show(const view_command& options, const common_options&) {
 
 void add_view(command_line& line) {
   const auto o = std::make_shared<view_command>();
-  CLI::App& sub = line.add("view", "Show a recording or a model on a page of a browser",
+  CLI::App& sub = line.add("view", "Show recordings or a model on a page of a browser",
                            [o](const common_options& common) { return show(*o, common); });
-  sub.add_option("file", o->file, "Recording of `run --record` (.csv) or textured model (.glb)")->required();
+  sub.add_option("files", o->files,
+                 "Recording of `run --record` (.csv), two of them to compare, or a textured model (.glb)")
+      ->required();
   sub.add_option("--probe", o->probe, "Model that the hand moved, for a recording");
   sub.add_option("--fixed", o->fixed, "Model that it touched, for a recording; may be given several times")
       ->expected(1)

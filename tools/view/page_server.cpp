@@ -153,7 +153,6 @@ class small_stacks {
 
 struct page_server::inside {
   page_content content;
-  std::string rows;  // of a replay, as bytes
   feed* live = nullptr;
   std::string token;
   std::vector<std::string> hosts;  // whose page it is; empty where the token says that
@@ -187,16 +186,17 @@ struct page_server::inside {
     if (!is_data(path)) return refuse(to, 404, "there is no such page");
     if (!may_look(to)) return refuse(to, 403, "the token is missing or wrong");
     if (path == "/scene.json") return answer(to, 200, "application/json", content.document);
-    if (path == "/rows") return answer(to, 200, "application/octet-stream", rows);
     if (path == "/frame") return frame(to, query);
-    const auto mesh = number_of<std::size_t>(path, "/mesh/");
-    if (!mesh || *mesh >= content.meshes.size()) return refuse(to, 404, "there is no such mesh");
-    return answer(to, 200, "application/octet-stream", content.meshes[*mesh]);
+    const bool of_rows = path.starts_with("/rows/");
+    const std::vector<std::string>& all = of_rows ? content.rows : content.meshes;
+    const auto number = number_of<std::size_t>(path, of_rows ? "/rows/" : "/mesh/");
+    if (!number || *number >= all.size()) return refuse(to, 404, "there is no such mesh or recording");
+    return answer(to, 200, "application/octet-stream", all[*number]);
   }
 
  private:
   static bool is_data(std::string_view path) {
-    return path == "/scene.json" || path == "/rows" || path == "/frame" || path.starts_with("/mesh/");
+    return path == "/scene.json" || path == "/frame" || path.starts_with("/rows/") || path.starts_with("/mesh/");
   }
 
   // A page of somebody else's, in the same browser, reaches this address too: by name, or by a name of its own that it
@@ -323,7 +323,6 @@ result<page_server> page_server::start(const server_settings& settings, page_con
   }
   auto self = std::make_unique<inside>();
   self->content = std::move(content);
-  append_rows(self->rows, self->content.rows);
   self->live = live;
   self->token = settings.token;
   const bool six = settings.address.find(':') != std::string::npos;

@@ -1,5 +1,6 @@
 #include "view/scene_document.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "asperity/core/printable.hpp"
@@ -45,12 +46,21 @@ json facts(const textured_model& model) {
 
 }  // namespace
 
-page_content make_content(const page_scene& scene, std::vector<trace_row> rows, std::size_t most_points) {
+page_content make_content(const page_scene& scene, const std::vector<shown_recording>& recordings,
+                          std::size_t most_points) {
   page_content out;
+  std::vector<const textured_model*> models;
+  for (const shown_body& b : scene.bodies) {
+    if (std::find(models.begin(), models.end(), b.model.get()) == models.end()) models.push_back(b.model.get());
+  }
+  std::vector<shown_mesh> meshes;
+  for (const textured_model* m : models) meshes.push_back(show_mesh(*m, most_points / models.size()));
   json bodies = json::array();
   for (const shown_body& b : scene.bodies) {
-    shown_mesh mesh = show_mesh(*b.model, most_points / scene.bodies.size());
+    const std::ptrdiff_t at = std::find(models.begin(), models.end(), b.model.get()) - models.begin();
+    const shown_mesh& mesh = meshes[static_cast<std::size_t>(at)];
     bodies.push_back({{"name", printable(b.name)},
+                      {"mesh", at},
                       {"pose", numbers(b.T_w)},
                       {"centre_of_mass", numbers(b.model->mass.centre_of_mass)},
                       {"size_m", b.model->box.diagonal()},
@@ -59,7 +69,16 @@ page_content make_content(const page_scene& scene, std::vector<trace_row> rows, 
                       {"step_m", mesh.step_m},
                       {"relief_m", {mesh.low_m, mesh.high_m}},
                       {"facts", facts(*b.model)}});
-    out.meshes.push_back(std::move(mesh.bytes));
+  }
+  for (shown_mesh& mesh : meshes) out.meshes.push_back(std::move(mesh.bytes));
+  json recorded = json::array();
+  for (const shown_recording& r : recordings) {
+    recorded.push_back({{"name", printable(r.name)},
+                        {"rows", r.rows.size()},
+                        {"from_s", r.rows.front().time_s},
+                        {"to_s", r.rows.back().time_s},
+                        {"period_s", r.period_s()}});
+    append_rows(out.rows.emplace_back(), r.rows);
   }
   const json document = {
       {"schema", "asperity.view/1"},
@@ -81,11 +100,10 @@ page_content make_content(const page_scene& scene, std::vector<trace_row> rows, 
         {"flags",
          {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out", "body_lost",
           "stands_back"}}}},
-      {"rows", rows.size()},
+      {"recordings", std::move(recorded)},
       {"bodies", std::move(bodies)}};
   // File names need not be UTF-8; JSON must be.
   out.document = document.dump(-1, ' ', false, json::error_handler_t::replace);
-  out.rows = std::move(rows);
   return out;
 }
 

@@ -3,7 +3,9 @@
 import csv
 import json
 import math
+import os
 import pathlib
+import random
 import re
 import signal
 import subprocess
@@ -15,6 +17,7 @@ import browser
 
 EXE, PROBE, FIXED, FOLDER = sys.argv[1:5]
 PICTURES = pathlib.Path(FOLDER)
+SEED = int.from_bytes(os.urandom(4), "little") if "ASPERITY_SEED" not in os.environ else int(os.environ["ASPERITY_SEED"])
 
 CONTRAST = """(() => {
   const light = (c) => { const [r, g, b] = c.map((v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });
@@ -195,6 +198,101 @@ class Page(unittest.TestCase):
         finally:
             b.open("about:blank")  # so that it does not complain about the server's end
             served.end()
+
+    def test_two_recordings_beside_each_other(self):
+        b = self.browser
+        draw = random.Random(SEED)
+        files, tables = [PICTURES / "a.csv", PICTURES / "b.csv"], []
+        ways = (("--seconds", "1.2"), ("--seconds", "0.7", "--device-rate", "500", "--press", "0.004", "--seed", str(draw.randrange(1, 99))))
+        for file, how in zip(files, ways):
+            subprocess.run([EXE, "run", *models(*how, "--quiet", "--record", str(file))], check=True)
+            with file.open() as table:
+                tables.append(list(csv.DictReader(table)))
+        page = PICTURES / "two.html"
+        subprocess.run([EXE, "view", *map(str, files), *models("--export", str(page), "--quiet")], check=True)
+        served = Served("view", *map(str, files), *models("--port", "0"))
+
+        def look_at(time_s):
+            b.value(f"""(() => {{ const s = document.getElementById('time'); s.value = 1000 * {time_s} / asperity.page.histories[0].time(asperity.page.histories[0].end - 1);
+                    s.dispatchEvent(new Event('input')); }})()""")
+            b.wait(f"Math.abs(asperity.page.at - {time_s}) < 2e-3 && !asperity.page.changed")
+            b.value("asperity.page.changed = asperity.page.dirty = true")
+            b.wait("!asperity.page.changed")
+            return b.value("asperity.page.at")
+
+        try:
+            b.open(served.url)
+            b.wait("asperity.page.state && asperity.page.compared", 90)
+            told = b.value("document.getElementById('differs').textContent")
+            self.assertIn("A a", told)
+            self.assertIn("lengths differ: A 1.2 s, B 0.7 s", told)
+            self.assertIn("rates differ: A 1000 Hz, B 500 Hz", told)
+            for wanted in (draw.uniform(0.1, 0.65) for _ in range(3)):
+                at = look_at(wanted)
+                for i, rows in enumerate(tables):
+                    row = [r for r in rows if float(r["time_s"]) <= at + 1e-9][-1]
+                    hand = f"asperity.page.state.hands[{i}]"
+                    shown = b.value(f"[...asperity.page.scene.bodies[{i}].pose.slice(0, 3), ...{hand}.hand.force]")
+                    for one, name in zip(shown, ("probe_x_m", "probe_y_m", "probe_z_m", "hand_fx_n", "hand_fy_n", "hand_fz_n")):
+                        self.assertAlmostEqual(one, float(row[name]), delta=1e-6 + 1e-5 * abs(one))
+                    # Each hand has an arrow of its own.
+                    arrow = json.loads(b.value(f"JSON.stringify(asperity.page.scene.drawn.arrows.hand_force_{'ab'[i]})"))
+                    if arrow["length"] > 0:
+                        for t, f, n in zip(arrow["tip"], arrow["from"], ("hand_fx_n", "hand_fy_n", "hand_fz_n")):
+                            self.assertAlmostEqual((t - f) / arrow["scale"], float(row[n]), delta=0.02)
+            # Both curves are there, each in the colour of its legend, and that of B ends where B does.
+            colours = json.loads(b.value("JSON.stringify([...document.querySelectorAll('#force-legend b')].map((e) => getComputedStyle(e).color))"))
+            self.assertEqual(len(set(colours)), 2)
+            b.value("document.getElementById('span').value = '0'; document.getElementById('span').dispatchEvent(new Event('change'))")
+            look_at(0.1)
+            ends = [self.last_column("force", c) for c in colours]
+            self.assertGreater(ends[0], 0.97)
+            self.assertAlmostEqual(ends[1], 0.7 / 1.2, delta=0.03)
+            b.picture(PICTURES / "two-1280-light.png")
+            look_at(1.0)
+            self.assertIn("B does not run", b.value("document.getElementById('readout').textContent"))
+            lines = b.value("asperity.csvOf({from: 0, to: 1e9})").strip().split("\n")
+            self.assertEqual([sum(line.startswith(f"{x},") for line in lines) for x in "AB"], [len(t) for t in tables])
+            look_at(0.5)
+            b.dark(True)
+            b.value("document.documentElement.dataset.theme === 'dark' || document.getElementById('theme').click()")
+            for width, height in ((1280, 720), (390, 844)):
+                b.size(width, height)
+                time.sleep(0.6)
+                b.picture(PICTURES / f"two-{width}-dark.png")
+                self.assertLessEqual(b.value("document.documentElement.scrollWidth"), width, "nothing is cut off")
+                self.assertEqual(b.value(CONTRAST), [])
+            b.value("document.getElementById('theme').click()")
+            self.assertEqual(b.value(CONTRAST), [])
+            b.size(1280, 720)
+            b.requests = []
+            b.open(page.as_uri())
+            b.wait("asperity.page.ready && asperity.page.compared && asperity.page.histories[1].size > 300", 90)
+            self.assertEqual([u for u in b.requests if not u.startswith(("file:", "data:"))], [])
+        finally:
+            b.open("about:blank")
+            served.end()
+
+    def last_column(self, canvas, colour):
+        """How far to the right a canvas has a colour, as a share of its curves' width."""
+        return self.browser.value(f"""(() => {{
+          const c = document.getElementById('{canvas}'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+          const [r, g, b] = '{colour}'.match(/\\d+/g).map(Number);
+          let last = 0;
+          for (let y = 0; y < c.height; ++y) for (let x = 0; x < c.width; ++x) {{
+            const i = 4 * (y * c.width + x);
+            if (d[i + 3] > 150 && Math.abs(d[i] - r) + Math.abs(d[i + 1] - g) + Math.abs(d[i + 2] - b) < 40) last = Math.max(last, x);
+          }}
+          return (last - 62) / (c.width - 64);
+        }})()""")
+
+    def test_what_cannot_be_shown_is_said(self):
+        recording = PICTURES / "short.csv"
+        subprocess.run([EXE, "run", *models("--seconds", "0.1", "--quiet", "--record", str(recording))], check=True)
+        for files, said in ((3 * [str(recording)], "two recordings"), ([str(recording), FIXED], "a recording and a model"), ([FIXED, PROBE], "one model")):
+            answer = subprocess.run([EXE, "view", *files, *models("--port", "0")], capture_output=True, text=True, check=False)
+            self.assertNotEqual(answer.returncode, 0)
+            self.assertIn(said, answer.stderr)
 
     def test_exported_pages_open_alone(self):
         b = self.browser

@@ -21,8 +21,8 @@ const asperity = {};
     asperity.isExported() ? JSON.parse(element("data-scene").textContent) : ask("scene.json", "json");
   asperity.loadMesh = async (i) => readMesh(
     asperity.isExported() ? decode64(element(`data-mesh-${i}`).textContent) : await ask(`mesh/${i}`, "arrayBuffer"));
-  asperity.loadRows = async () =>
-    asperity.isExported() ? decode64(element("data-rows").textContent) : ask("rows", "arrayBuffer");
+  asperity.loadRows = async (i) =>
+    asperity.isExported() ? decode64(element(`data-rows-${i}`).textContent) : ask(`rows/${i}`, "arrayBuffer");
   asperity.tell = (what) =>
     fetch(`do?${what}`, { method: "POST", headers: { ...headers, "X-Asperity": "1" } }).catch(() => undefined);
 
