@@ -7,7 +7,7 @@
 
   class Scene {
     constructor(canvas, description) {
-      const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: false });
+      const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: false });
       if (gl === null) throw new Error("This browser has no WebGL 2: the scene is not drawn, the panels are.");
       this.canvas = canvas;
       this.gl = gl;
@@ -171,12 +171,18 @@
         gl.uniform3fv(at.clay, b.clay ?? (b.probe ? [0.60, 0.47, 0.30] : i % 2 === 1 ? [0.50, 0.53, 0.55] : [0.46, 0.50, 0.44]));
         const [low, high] = b.drawing.relief;
         gl.uniform1f(at.zero, high > low ? -low / (high - low) : 0.5);
-        // What is seen through is drawn over what has been drawn before.
+        // What is seen through is drawn over what has been drawn before, also where both are at the same place.
         gl.uniform1f(at.alpha, b.alpha ?? 1);
-        if (b.alpha) { gl.enable(gl.BLEND); gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA); }
+        if (b.alpha) {
+          gl.enable(gl.BLEND);
+          gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+          gl.enable(gl.POLYGON_OFFSET_FILL);
+          gl.polygonOffset(-1, -8);
+        }
         gl.bindVertexArray(b.drawing.vao);
         gl.drawElements(gl.TRIANGLES, b.drawing.count, gl.UNSIGNED_INT, 0);
         gl.disable(gl.BLEND);
+        gl.disable(gl.POLYGON_OFFSET_FILL);
       });
       gl.bindVertexArray(null);
     }
