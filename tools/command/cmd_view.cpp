@@ -1,15 +1,19 @@
 // asperity view: a recording or a model on a page of a browser.
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "asperity/io/mesh_file.hpp"
 #include "asperity/io/textured_model_file.hpp"
+#include "asperity/picture/model_picture.hpp"
 #include "cli.hpp"
 #include "file_names.hpp"
 #include "interrupt.hpp"
+#include "mesh_units.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
 #include "poses.hpp"
@@ -30,10 +34,12 @@ struct view_command {
   std::string probe;
   std::vector<std::string> fixed;
   std::vector<std::string> fixed_poses;
-  double scale = 1.0;
+  std::optional<double> scale;  // of the session's motion, or of the original
   std::string port = std::to_string(usual_view_port);
   std::string address = "127.0.0.1";
   std::string exported;
+  std::string original;
+  std::optional<std::string> units;  // of the original
 };
 
 constexpr std::size_t most_recordings = 2;
@@ -65,6 +71,9 @@ result<void> check_files(const view_command& options) {
 }
 
 result<view::page_scene> recorded_scene(const view_command& options) {
+  if (!options.original.empty()) {
+    return error{error_code::invalid_argument, "--original is of a model (.glb): leave it out for a recording"};
+  }
   if (options.probe.empty() || options.fixed.empty()) {
     return error{error_code::invalid_argument,
                  "a recording does not hold the models: name those of its session with --probe and --fixed"};
@@ -90,10 +99,22 @@ result<view::page_scene> model_scene(const view_command& options) {
   }
   result<textured_model> model = io::load_textured_model(options.files.front());
   if (!model) return model.error();
+  std::shared_ptr<triangle_mesh> original;
+  if (!options.original.empty()) {
+    result<triangle_mesh> loaded = io::load_mesh(options.original, not_interrupted);
+    if (!loaded) return loaded.error();
+    original = std::make_shared<triangle_mesh>(std::move(loaded).value());
+    mesh_units units;
+    units.units = options.units;
+    units.scale = options.scale;
+    if (const result<void> ok = bring_to_metres(units, options.original, *original); !ok) return ok.error();
+    const std::string name = std::filesystem::path(options.original).filename().string();
+    if (const result<void> fits = picture::check_original(*model, *original, name); !fits) return fits.error();
+  }
   return view::page_scene{
       .mode = view::page_mode::model,
       .title = title_of(options),
-      .bodies = {{title_of(options), std::make_shared<const textured_model>(std::move(model).value()), {}}}};
+      .bodies = {{title_of(options), std::make_shared<const textured_model>(std::move(model).value()), {}, original}}};
 }
 
 result<void> serve(const view_command& options, view::page_content content) {
@@ -118,6 +139,9 @@ result<answer> show(const view_command& options, const common_options&) {
   if (const result<void> ok = check_files(options); !ok) return ok.error();
   std::vector<named_file> inputs{{"--probe", options.probe}};
   for (const std::string& file : options.files) inputs.push_back({"view", file});
+  if (!options.original.empty()) {
+    for (named_file& file : mesh_files(options.original, "--original")) inputs.push_back(std::move(file));
+  }
   for (const std::string& body : options.fixed) inputs.push_back({"--fixed", body});
   const named_file exported{"--export", options.exported};
   if (const result<void> ok = check_outputs(inputs, {&exported, 1}); !ok) return ok.error();
@@ -130,7 +154,7 @@ result<answer> show(const view_command& options, const common_options&) {
   std::vector<view::shown_recording> recordings;
   for (const std::string& file : options.files) {
     if (!is_recording(file)) break;
-    result<std::vector<view::trace_row>> read = read_recording(file, options.scale);
+    result<std::vector<view::trace_row>> read = read_recording(file, options.scale.value_or(1.0));
     if (!read) return read.error();
     recordings.push_back({file_stem(file), std::move(read).value()});
   }
@@ -139,7 +163,7 @@ result<answer> show(const view_command& options, const common_options&) {
   if (!recordings.empty() && recordings.front().rows.size() > 1) {
     shown->device_period_s = recordings.front().period_s();
   }
-  shown->map.scale = options.scale;
+  if (is_recording(options)) shown->map.scale = options.scale.value_or(1.0);
   const std::size_t points = page ? view::exported_points : view::live_points;
   view::page_content content = view::make_content(*shown, recordings, points);
   answer out;
@@ -183,9 +207,15 @@ void add_view(command_line& line) {
       ->check(pose_form_error, "POSE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  sub.add_option("--scale", o->scale, "Motion scaling of the session on record")
-      ->check(positive_number_error, "NUMBER > 0")
-      ->capture_default_str();
+  auto* original = sub.add_option("--original", o->original,
+                                  "Mesh that the model was baked from: the page can then colour the distance to it");
+  auto* scale = sub.add_option("--scale", o->scale,
+                               "Motion scaling of the session on record; with --original: metres per unit of it")
+                    ->check(positive_number_error, "NUMBER > 0");
+  sub.add_option("--units", o->units, "Unit of the original: m, cm, mm or in")
+      ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
+      ->excludes(scale)
+      ->needs(original);
   sub.add_option("--port", o->port, "Port of the page; 0: any that is free")->capture_default_str();
   sub.add_option("--view-address", o->address,
                  "Address of this machine at which the page is; another one than the loopback needs the token that is "

@@ -50,11 +50,16 @@ page_content make_content(const page_scene& scene, const std::vector<shown_recor
                           std::size_t most_points) {
   page_content out;
   std::vector<const textured_model*> models;
+  std::vector<const triangle_mesh*> originals;
   for (const shown_body& b : scene.bodies) {
-    if (std::find(models.begin(), models.end(), b.model.get()) == models.end()) models.push_back(b.model.get());
+    if (std::find(models.begin(), models.end(), b.model.get()) != models.end()) continue;
+    models.push_back(b.model.get());
+    originals.push_back(b.original.get());
   }
   std::vector<shown_mesh> meshes;
-  for (const textured_model* m : models) meshes.push_back(show_mesh(*m, most_points / models.size()));
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    meshes.push_back(show_mesh(*models[i], most_points / models.size(), originals[i]));
+  }
   json bodies = json::array();
   for (const shown_body& b : scene.bodies) {
     const std::ptrdiff_t at = std::find(models.begin(), models.end(), b.model.get()) - models.begin();
@@ -68,6 +73,10 @@ page_content make_content(const page_scene& scene, const std::vector<shown_recor
                       {"triangles", mesh.triangles},
                       {"step_m", mesh.step_m},
                       {"relief_m", {mesh.low_m, mesh.high_m}},
+                      {"error_m", mesh.errors ? json{{"high", mesh.errors->high_m},
+                                                     {"rms", mesh.errors->rms_m},
+                                                     {"largest", mesh.errors->largest_m}}
+                                              : json()},
                       {"facts", facts(*b.model)}});
   }
   for (shown_mesh& mesh : meshes) out.meshes.push_back(std::move(mesh.bytes));

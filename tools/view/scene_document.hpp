@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "asperity/control/workspace_map.hpp"
 #include "asperity/model/textured_model.hpp"
+#include "asperity/model/triangle_mesh.hpp"
 #include "view/trace.hpp"
 
 namespace asperity::view {
@@ -21,6 +23,7 @@ struct shown_body {
   std::string name;
   model_ptr model;
   pose T_w{};
+  std::shared_ptr<const triangle_mesh> original{};  ///< what the model was baked from, to colour it by the distance
 };
 
 struct page_scene {

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """The live page, the replay and the exported page in a headless Chromium. ASPERITY PROBE FIXED FOLDER."""
+import array
 import csv
 import json
 import math
@@ -51,6 +52,17 @@ class Served:
     def end(self):
         self.process.send_signal(signal.SIGINT)
         self.process.communicate(timeout=30)
+
+
+def moved_ply(ply, by):
+    """A binary PLY whose vertices are x, y and z as floats, moved up."""
+    head = ply.index(b"end_header\n") + 11
+    count = int(re.search(rb"element vertex (\d+)", ply)[1])
+    end = head + 12 * count
+    numbers = array.array("f", ply[head:end])
+    for i in range(2, len(numbers), 3):
+        numbers[i] += by
+    return ply[:head] + numbers.tobytes() + ply[end:]
 
 
 def models(*more):
@@ -286,10 +298,89 @@ class Page(unittest.TestCase):
           return (last - 62) / (c.width - 64);
         }})()""")
 
+    def test_a_bake_beside_its_full_mesh(self):
+        b = self.browser
+        # The full mesh, moved: how far the textured surface is from it is known, but at the edges.
+        by = 1e-3 * random.Random(SEED).uniform(0.6, 1.4)
+        moved = PICTURES / "moved.ply"
+        moved.write_bytes(moved_ply(pathlib.Path(FIXED).with_suffix(".ply").read_bytes(), by))
+        page = PICTURES / "bake.html"
+        subprocess.run([EXE, "view", FIXED, "--original", str(moved), "--export", str(page), "--quiet"], check=True)
+        b.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
+        b.open(page.as_uri())
+        b.wait("asperity.page.ready && asperity.page.frames > 1", 90)
+        self.assertFalse(b.value("asperity.page.turning"), "motion is reduced")
+        b.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "no-preference"}])
+        found = json.loads(b.value("""(async () => {
+          const mesh = await asperity.loadMesh(0), high = asperity.page.description.bodies[0].error_m.high, top = [], side = [];
+          for (let i = 0; i < mesh.points; ++i) {
+            const share = [0, 1, 2].map((k) => mesh.places[4 * i + k] / 65535), d = mesh.errors[i] / 65535 * high;
+            if ([0, 1].every((k) => share[k] > 0.1 && share[k] < 0.9) && Math.abs(mesh.normals[4 * i + 2]) > 120) top.push(d);
+            if (share[2] > 0.2 && share[2] < 0.8 && Math.abs(mesh.normals[4 * i + 2]) < 5) side.push(d);
+          }
+          const middle = (list) => list.sort((x, y) => x - y)[list.length >> 1];
+          return JSON.stringify({ top: middle(top), side: middle(side), tops: top.length, sides: side.length });
+        })()"""))
+        self.assertGreater(min(found["tops"], found["sides"]), 100)
+        self.assertAlmostEqual(found["top"], by, delta=0.1 * by)
+        self.assertLess(found["side"], 0.2 * by)
+        # What is drawn: a top that is coloured as its distance is, and every kind of surface differs from the others.
+        self.assertIsNone(b.value("document.querySelector('#colours [value=error]').disabled || null"))
+        pictures = {}
+        for colours, surface in (("clay", "textured"), ("error", "textured"), ("pieces", "textured"), ("relief", "textured"),
+                                 ("pieces", "coarse"), ("clay", "both")):
+            for name, value in (("colours", colours), ("surface", surface)):
+                b.value(f"(() => {{ const s = document.getElementById('{name}'); s.value = '{value}'; s.dispatchEvent(new Event('change')); }})()")
+            self.assertEqual(b.value("document.getElementById('values').hidden"), colours not in ("error", "relief"))
+            pictures[colours, surface] = json.loads(b.value("""(() => {
+              const s = asperity.page.scene, gl = s.gl;
+              s.lookFrom('top');
+              s.draw(null);
+              const [w, h] = [s.canvas.width, s.canvas.height], out = new Uint8Array(4 * w * h);
+              gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, out);
+              const kinds = new Set();
+              for (let i = 0; i < out.length; i += 4) kinds.add((out[i] >> 5) << 6 | (out[i + 1] >> 5) << 3 | out[i + 2] >> 5);
+              const at = 4 * (w * (h >> 1) + (w >> 1));
+              return JSON.stringify({ middle: Array.from(out.slice(at, at + 3)), kinds: [...kinds] });
+            })()"""))
+            b.value("asperity.page.scene.lookFrom('corner')")
+            time.sleep(0.4)
+            b.picture(PICTURES / f"bake-{colours}-{surface}.png")
+        of_heat = b.value(f"(() => {{ const x = Math.min(0.9999, {by} / asperity.page.description.bodies[0].error_m.high) * 6, k = Math.floor(x);"
+                          " return asperity.heat[k].map((c, i) => c + (asperity.heat[k + 1][i] - c) * (x - k)); })()")
+        middle = pictures["error", "textured"]["middle"]
+        self.assertLess(max(abs(m - h) for m, h in zip(middle, of_heat)), 70, (middle, of_heat))
+        self.assertGreaterEqual(len(pictures["pieces", "textured"]["kinds"]), 4)
+        self.assertEqual(len({json.dumps(p) for p in pictures.values()}), len(pictures))
+        b.value("asperity.page.scene.paint = 'error', asperity.showValues(asperity.page)")
+        told = re.search(r"([\d.]+) (\w?)m", b.value("document.getElementById('values-high').textContent"))
+        high = b.value("asperity.page.description.bodies[0].error_m.high")
+        self.assertAlmostEqual(float(told[1]) * {"m": 1e-3, "\u00b5": 1e-6}[told[2]], high, delta=0.06 * high)
+        for width, height in ((1280, 720), (390, 844)):
+            b.size(width, height)
+            for _ in range(2):
+                b.value("document.getElementById('theme').click()")
+                time.sleep(0.4)
+                self.assertEqual(b.value(CONTRAST), [])
+            self.assertLessEqual(b.value("document.documentElement.scrollWidth"), width, "nothing is cut off")
+            b.picture(PICTURES / f"bake-{width}.png")
+        b.value("document.getElementById('turn').click()")
+        self.assertTrue(b.value("asperity.page.turning"))
+        # Without the full mesh the choice says what it needs.
+        subprocess.run([EXE, "view", FIXED, "--export", str(page), "--quiet"], check=True)
+        b.open(page.as_uri())
+        b.wait("asperity.page.ready && asperity.page.frames > 1", 90)
+        self.assertTrue(b.value("document.querySelector('#colours [value=error]').disabled"))
+        self.assertIn("--original", b.value("document.querySelector('#colours [value=error]').textContent"))
+        self.assertTrue(b.value("asperity.page.turning"))
+        b.value("document.getElementById('turn').click()")
+        self.assertFalse(b.value("asperity.page.turning"))
+
     def test_what_cannot_be_shown_is_said(self):
         recording = PICTURES / "short.csv"
         subprocess.run([EXE, "run", *models("--seconds", "0.1", "--quiet", "--record", str(recording))], check=True)
-        for files, said in ((3 * [str(recording)], "two recordings"), ([str(recording), FIXED], "a recording and a model"), ([FIXED, PROBE], "one model")):
+        for files, said in ((3 * [str(recording)], "two recordings"), ([str(recording), FIXED], "a recording and a model"), ([FIXED, PROBE], "one model"),
+                            ([str(recording), "--original", FIXED], "--original is of a model")):
             answer = subprocess.run([EXE, "view", *files, *models("--port", "0")], capture_output=True, text=True, check=False)
             self.assertNotEqual(answer.returncode, 0)
             self.assertIn(said, answer.stderr)

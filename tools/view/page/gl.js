@@ -35,26 +35,28 @@
     uniform vec3 low, size;
     layout(location = 0) in vec4 place;  // share of the box, and of the relief's range
     layout(location = 1) in vec4 normalAndPiece;
+    layout(location = 2) in float distanceShare;  // of the errors' range
     out vec3 normal, world;
-    out float relief;
+    out float relief, apart;
     flat out int piece;
     void main() {
       vec4 w = model * vec4(low + size * place.xyz, 1.0);
       world = w.xyz;
       normal = mat3(model) * (normalAndPiece.xyz / 127.0);
       relief = place.w;
+      apart = distanceShare;
       piece = int(normalAndPiece.w);
       gl_Position = view * w;
     }`;
   // One key light from beside the viewer rakes over the surface, so that small relief throws tones; the sky fills.
   const bodyFragment = `#version 300 es
     precision highp float;
-    uniform vec3 eye, key, clay, colours[8];
+    uniform vec3 eye, key, clay, colours[8], heat[7];
     uniform vec3 scaleLow, scaleMiddle, scaleHigh;
     uniform float zero, alpha;
     uniform int paint;
     in vec3 normal, world;
-    in float relief;
+    in float relief, apart;
     flat in int piece;
     out vec4 colour;
     void main() {
@@ -69,10 +71,23 @@
                              : mix(scaleMiddle, scaleHigh, (relief - zero) / max(1.0 - zero, 1e-6));
       } else if (paint == 2) {
         base = colours[piece];
+      } else if (paint == 3) {
+        float x = clamp(apart, 0.0, 0.9999) * 6.0;
+        base = mix(heat[int(x)], heat[int(x) + 1], fract(x));
       }
-      vec3 light = base * (0.16 + 0.22 * sky + 0.78 * lit) + 0.10 * shine;
-      colour = vec4(pow(light, vec3(1.0 / 2.2)), alpha);
+      // Values are shaded weakly, so that a colour stays the one of the scale.
+      bool value = paint == 1 || paint == 3;
+      vec3 light = value ? base * (0.72 + 0.28 * lit) : base * (0.16 + 0.22 * sky + 0.78 * lit) + 0.10 * shine;
+      colour = vec4(paint == 4 ? vec3(0.08) : pow(light, vec3(1.0 / 2.2)), alpha);
     }`;
+  // Colours of values, sRGB. Dark blue over violet and orange to light yellow for what has no sign: lightness grows
+  // evenly. Blue over grey to orange for what has one.
+  asperity.heat = [[13, 8, 35], [66, 20, 110], [140, 41, 99], [212, 72, 66], [246, 138, 40], [252, 205, 85], [252, 253, 200]];
+  const linear = (c) => c.map((v) => (v / 255) ** 2.2);
+  const encoded = (c) => c.map((v) => Math.round(255 * v ** (1 / 2.2)));
+  const about = [[0.05, 0.19, 0.52], [0.72, 0.72, 0.70], [0.75, 0.24, 0.02]];
+  Object.assign(asperity, { heatLinear: asperity.heat.flatMap(linear), aboutZero: about, aboutZeroShown: about.map(encoded) });
+
   const partVertex = `#version 300 es
     uniform mat4 view, model;
     layout(location = 0) in vec3 place;

@@ -187,7 +187,8 @@
       const from = e.target.dataset.from;
       if (from && page.scene !== null) page.scene.lookFrom(from, page.state ? page.state.probe.centre : null);
     });
-    element("colours").addEventListener("change", (e) => { page.scene.paint = e.target.value; redraw(); });
+    element("colours").addEventListener("change", (e) => { page.scene.paint = e.target.value; asperity.showValues(page); redraw(); });
+    element("surface").addEventListener("change", (e) => { page.scene.surface = e.target.value; redraw(); });
     click("turn", () => {
       page.turning = !page.turning;
       element("turn").setAttribute("aria-pressed", String(page.turning));
@@ -264,6 +265,7 @@
     }
     asperity.listParts(page, partsOf(description, hands));
     asperity.listFacts(description);
+    asperity.offerErrors(description);
     try {
       page.scene = new asperity.Scene(element("scene"), description);
     } catch (why) {

@@ -179,8 +179,7 @@
     g.fillText(`${short(most)} Hz`, width - 2, height - 2);
   };
 
-  // Dark blue over violet and orange to light yellow: lightness grows evenly.
-  const heat = [[13, 8, 35], [66, 20, 110], [140, 41, 99], [212, 72, 66], [246, 138, 40], [252, 205, 85], [252, 253, 200]];
+  const heat = asperity.heat;
   const heatAt = (share) => {
     const x = Math.max(0, Math.min(0.9999, share)) * (heat.length - 1), k = Math.floor(x);
     return heat[k].map((c, i) => c + (heat[k + 1][i] - c) * (x - k));

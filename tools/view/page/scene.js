@@ -17,6 +17,7 @@
       this.bodies = description.bodies.map((b) => ({ ...b, drawing: null, shown: true }));
       this.camera = { at: [0, 0, 0], distance: 1, yaw: -0.9, pitch: 0.5 };
       this.paint = "clay";
+      this.surface = "textured";  // or "coarse", or "both"
       this.dark = false;
       this.drawn = { arrows: {} };
       asperity.steer(this);
@@ -49,10 +50,52 @@
       gl.vertexAttribPointer(1, 4, gl.BYTE, false, 4, 0);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, mesh.indices, gl.STATIC_DRAW);
+      if (mesh.errors !== null) {
+        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+        gl.bufferData(gl.ARRAY_BUFFER, mesh.errors, gl.STATIC_DRAW);
+        gl.enableVertexAttribArray(2);
+        gl.vertexAttribPointer(2, 1, gl.UNSIGNED_SHORT, true, 2, 0);
+      }
       gl.bindVertexArray(null);
-      const drawing = { vao, count: mesh.indices.length, low: mesh.low, relief: mesh.relief,
+      const drawing = { vao, count: mesh.indices.length, ...this.coarse(mesh), low: mesh.low, relief: mesh.relief,
+                        hasErrors: mesh.errors !== null,
                         size: mesh.high.map((h, k) => h - mesh.low[k]) };
       for (const b of this.bodies) if (b.mesh === i) b.drawing = drawing;
+    }
+
+    // The coarse mesh: flat triangles in the colours of their pieces, and their edges.
+    coarse(mesh) {
+      const gl = this.gl, count = mesh.triangles.length / 3;
+      const size = mesh.high.map((h, k) => h - mesh.low[k]), normals = new Int8Array(12 * count), places = new Float32Array(12 * count);
+      const edges = new Map();
+      let point = 0;
+      for (let t = 0; t < count; ++t) {
+        const corner = [0, 1, 2].map((k) => Array.from(mesh.corners.subarray(3 * mesh.triangles[3 * t + k], 3 * mesh.triangles[3 * t + k] + 3)));
+        const n = unit(cross(sub(corner[1], corner[0]), sub(corner[2], corner[0]))).map((x) => Math.round(127 * x));
+        for (let k = 0; k < 3; ++k) {
+          // Shares of the box of the points, in which the program thinks; the relief is none.
+          places.set([0, 1, 2].map((i) => (corner[k][i] - mesh.low[i]) / (size[i] || 1)), 12 * t + 4 * k);
+          places[12 * t + 4 * k + 3] = -mesh.relief[0] / ((mesh.relief[1] - mesh.relief[0]) || 1);
+          normals.set([...n, mesh.normals[4 * point + 3]], 12 * t + 4 * k);
+          const [one, other] = [mesh.triangles[3 * t + k], mesh.triangles[3 * t + (k + 1) % 3]];
+          edges.set(`${Math.min(one, other)} ${Math.max(one, other)}`, [3 * t + k, 3 * t + (k + 1) % 3]);
+        }
+        point += (mesh.shape[2 * t] + 1) * (mesh.shape[2 * t + 1] + 1);
+      }
+      const vao = gl.createVertexArray();
+      gl.bindVertexArray(vao);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, places, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(0);
+      gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16, 0);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, normals, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(1);
+      gl.vertexAttribPointer(1, 4, gl.BYTE, false, 4, 0);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array([...edges.values()].flat()), gl.STATIC_DRAW);
+      gl.bindVertexArray(null);
+      return { coarseVao: vao, coarsePoints: 3 * count, coarseEdges: edges.size };
     }
 
     // Box of all bodies where they are, in the world.
@@ -155,10 +198,10 @@
       gl.uniformMatrix4fv(at.view, false, view.matrix);
       gl.uniform3fv(at.eye, view.eye);
       gl.uniform3fv(at.key, view.key);
-      gl.uniform1i(at.paint, { clay: 0, relief: 1, pieces: 2 }[this.paint] ?? 0);
-      gl.uniform3fv(at.scaleLow, [0.05, 0.19, 0.52]);
-      gl.uniform3fv(at.scaleMiddle, [0.72, 0.72, 0.70]);
-      gl.uniform3fv(at.scaleHigh, [0.75, 0.24, 0.02]);
+      gl.uniform3fv(at.scaleLow, asperity.aboutZero[0]);
+      gl.uniform3fv(at.scaleMiddle, asperity.aboutZero[1]);
+      gl.uniform3fv(at.scaleHigh, asperity.aboutZero[2]);
+      gl.uniform3fv(at.heat, asperity.heatLinear);
       gl.uniform3fv(at.colours, [0.40, 0.58, 0.78, 0.80, 0.58, 0.34, 0.26, 0.52, 0.42, 0.76, 0.46, 0.58,
                                  0.80, 0.76, 0.42, 0.38, 0.36, 0.66, 0.60, 0.80, 0.80, 0.66, 0.32, 0.24]);
       const order = [...this.bodies.keys()].sort((one, other) => (this.bodies[one].alpha ? 1 : 0) - (this.bodies[other].alpha ? 1 : 0));
@@ -179,12 +222,43 @@
           gl.enable(gl.POLYGON_OFFSET_FILL);
           gl.polygonOffset(-1, -8);
         }
-        gl.bindVertexArray(b.drawing.vao);
-        gl.drawElements(gl.TRIANGLES, b.drawing.count, gl.UNSIGNED_INT, 0);
+        const paint = { clay: 0, relief: 1, pieces: 2, error: b.drawing.hasErrors ? 3 : 0 }[this.paint];
+        if (this.surface !== "coarse") {
+          gl.uniform1i(at.paint, paint);
+          gl.bindVertexArray(b.drawing.vao);
+          gl.drawElements(gl.TRIANGLES, b.drawing.count, gl.UNSIGNED_INT, 0);
+        }
         gl.disable(gl.BLEND);
+        if (this.surface !== "textured") this.drawCoarse(b, at, paint);
         gl.disable(gl.POLYGON_OFFSET_FILL);
       });
       gl.bindVertexArray(null);
+    }
+
+    // Edges lie in front of the triangles that they are of, and show faintly through the relief.
+    drawCoarse(b, at, paint) {
+      const gl = this.gl;
+      gl.bindVertexArray(b.drawing.coarseVao);
+      if (this.surface === "coarse") {
+        gl.uniform1i(at.paint, paint === 2 ? 2 : 0);
+        gl.enable(gl.POLYGON_OFFSET_FILL);
+        gl.polygonOffset(1, 1);
+        gl.drawArrays(gl.TRIANGLES, 0, b.drawing.coarsePoints);
+        gl.disable(gl.POLYGON_OFFSET_FILL);
+      }
+      gl.uniform1i(at.paint, 4);
+      const lines = (alpha) => { gl.uniform1f(at.alpha, alpha); gl.drawElements(gl.LINES, 2 * b.drawing.coarseEdges, gl.UNSIGNED_INT, 0); };
+      if (this.surface === "both") {
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+        gl.depthFunc(gl.GREATER);
+        gl.depthMask(false);
+        lines(0.12);
+        gl.depthMask(true);
+        gl.depthFunc(gl.LEQUAL);
+        gl.disable(gl.BLEND);
+      }
+      lines(1);
     }
 
     shape(name, matrix, tint, shaded = 1) {
