@@ -340,16 +340,18 @@ class Page(unittest.TestCase):
               gl.readPixels(0, 0, w, h, gl.RGBA, gl.UNSIGNED_BYTE, out);
               const kinds = new Set();
               for (let i = 0; i < out.length; i += 4) kinds.add((out[i] >> 5) << 6 | (out[i + 1] >> 5) << 3 | out[i + 2] >> 5);
-              const at = 4 * (w * (h >> 1) + (w >> 1));
-              return JSON.stringify({ middle: Array.from(out.slice(at, at + 3)), kinds: [...kinds] });
+              const about = [[], [], []];
+              for (let y = -50; y <= 50; ++y) for (let x = -50; x <= 50; ++x) about.forEach((c, k) => c.push(out[4 * (w * ((h >> 1) + y) + (w >> 1) + x) + k]));
+              return JSON.stringify({ middle: about.map((c) => c.sort((p, q) => p - q)[c.length >> 1]), kinds: [...kinds] });
             })()"""))
             b.value("asperity.page.scene.lookFrom('corner')")
             time.sleep(0.4)
             b.picture(PICTURES / f"bake-{colours}-{surface}.png")
-        of_heat = b.value(f"(() => {{ const x = Math.min(0.9999, {by} / asperity.page.description.bodies[0].error_m.high) * 6, k = Math.floor(x);"
+        of_heat = b.value(f"(() => {{ const x = Math.min(0.9999, {found['top']} / asperity.page.description.bodies[0].error_m.high) * 6, k = Math.floor(x);"
                           " return asperity.heat[k].map((c, i) => c + (asperity.heat[k + 1][i] - c) * (x - k)); })()")
         middle = pictures["error", "textured"]["middle"]
-        self.assertLess(max(abs(m - h) for m, h in zip(middle, of_heat)), 70, (middle, of_heat))
+        # The light takes up to 14 % of a colour away.
+        self.assertLess(max(abs(m - h) for m, h in zip(middle, of_heat)), 60, (middle, of_heat))
         self.assertGreaterEqual(len(pictures["pieces", "textured"]["kinds"]), 4)
         self.assertEqual(len({json.dumps(p) for p in pictures.values()}), len(pictures))
         b.value("asperity.page.scene.paint = 'error', asperity.showValues(asperity.page)")
