@@ -312,14 +312,15 @@ class Page(unittest.TestCase):
         self.assertFalse(b.value("asperity.page.turning"), "motion is reduced")
         b.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "no-preference"}])
         found = json.loads(b.value("""(async () => {
-          const mesh = await asperity.loadMesh(0), high = asperity.page.description.bodies[0].error_m.high, top = [], side = [];
+          const mesh = await asperity.loadMesh(0), high = asperity.page.description.bodies[0].error_m.high, top = [], side = [], up = [];
           for (let i = 0; i < mesh.points; ++i) {
             const share = [0, 1, 2].map((k) => mesh.places[4 * i + k] / 65535), d = mesh.errors[i] / 65535 * high;
             if ([0, 1].every((k) => share[k] > 0.1 && share[k] < 0.9) && Math.abs(mesh.normals[4 * i + 2]) > 120) top.push(d);
+            if ([0, 1].every((k) => Math.abs(share[k] - 0.5) < 0.15) && mesh.normals[4 * i + 2] > 40) up.push(d);
             if (share[2] > 0.2 && share[2] < 0.8 && Math.abs(mesh.normals[4 * i + 2]) < 5) side.push(d);
           }
           const middle = (list) => list.sort((x, y) => x - y)[list.length >> 1];
-          return JSON.stringify({ top: middle(top), side: middle(side), tops: top.length, sides: side.length });
+          return JSON.stringify({ top: middle(top), up: middle(up), side: middle(side), tops: top.length, sides: side.length });
         })()"""))
         self.assertGreater(min(found["tops"], found["sides"]), 100)
         self.assertAlmostEqual(found["top"], by, delta=0.1 * by)
@@ -347,7 +348,7 @@ class Page(unittest.TestCase):
             b.value("asperity.page.scene.lookFrom('corner')")
             time.sleep(0.4)
             b.picture(PICTURES / f"bake-{colours}-{surface}.png")
-        of_heat = b.value(f"(() => {{ const x = Math.min(0.9999, {found['top']} / asperity.page.description.bodies[0].error_m.high) * 6, k = Math.floor(x);"
+        of_heat = b.value(f"(() => {{ const x = Math.min(0.9999, {found['up']} / asperity.page.description.bodies[0].error_m.high) * 6, k = Math.floor(x);"
                           " return asperity.heat[k].map((c, i) => c + (asperity.heat[k + 1][i] - c) * (x - k)); })()")
         middle = pictures["error", "textured"]["middle"]
         # The light takes up to 14 % of a colour away.
