@@ -236,7 +236,8 @@ struct page_server::inside {
   }
 
   // Head of eight 32-bit words and two doubles: "ASPF", rows, contacts, bodies, flags (1 paused, 2 over), contacts that
-  // did not fit, 0, 0; number of the row after the last, rows missed; then speed, rows, contacts, poses of bodies.
+  // did not fit, 0, 0; number of the row after the last, rows missed; then speed, rows, contacts, poses of bodies,
+  // pose of the probe at those contacts.
   [[nodiscard]] std::string frame_bytes(std::uint64_t first, std::uint64_t missed,
                                         const std::vector<trace_row>& rows_now) const {
     const contact_snapshot touched = live->contacts();
@@ -258,10 +259,12 @@ struct page_server::inside {
         put(x);
       }
     }
-    for (const pose& T : touched.T_wb) {
+    const auto put_pose = [&](const pose& T) {
       for (const double x : {T.position.x, T.position.y, T.position.z}) put(x);
       for (const double q : to_xyzw(T.rotation)) put(q);
-    }
+    };
+    for (const pose& T : touched.T_wb) put_pose(T);
+    put_pose(touched.T_wa);
     return out;
   }
 

@@ -92,7 +92,7 @@ class Page(unittest.TestCase):
         served = Served("run", *models("--view", "0", "--seconds", "600"))
         try:
             b.open(served.url)
-            b.wait("asperity.page.ready && asperity.page.history.size > 500 && asperity.page.scene.drawn.contacts > 0", 90)
+            b.wait("asperity.page.ready && asperity.page.history.size > 500 && asperity.page.scene.drawn.contacts > 0 && asperity.page.contactMap", 90)
             b.value("document.getElementById('pause').click()")
             b.wait("asperity.page.paused && document.getElementById('state').textContent === 'paused'")
             time.sleep(0.5)
@@ -105,6 +105,39 @@ class Page(unittest.TestCase):
             self.assertGreater(math.hypot(*found["felt"]), 0.1)
             for one, other in zip(drawn, found["felt"]):
                 self.assertAlmostEqual(one, other, delta=0.01 * math.hypot(*found["felt"]))
+            # The map at the deepest contact: the surface goes through the contact, within the points' distance; it does
+            # not depend on where the world is; and the probe that is drawn off it leaves that much of a gap.
+            away = random.Random(SEED).uniform(2e-4, 6e-4)
+            found = json.loads(b.value("""(() => {
+              const p = asperity.page, m = p.contactMap, s = p.scene, { add, turn, times } = asperity.vectors;
+              const body = s.bodies.find((x) => x.name === m.body), q = [0.5, -0.5, 0.5, 0.5], product = (a, b) => [
+                a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
+                a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3], a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]];
+              const moved = (pose) => [...add(turn(q, pose.slice(0, 3)), [0.1, -0.2, 0.3]), ...product(q, pose.slice(3))];
+              const lifted = (pose) => [...add(pose.slice(0, 3), times(-AWAY, m.deepest.n)), ...pose.slice(3)];
+              const turned = { ...m.deepest, p: moved([...m.deepest.p, 0, 0, 0, 1]).slice(0, 3), n: turn(q, m.deepest.n) };
+              const fixed = (pose) => ({ mesh: body.drawing.mesh, pose }), probe = (pose) => ({ mesh: s.bodies[0].drawing.mesh, pose });
+              const plain = asperity.contactMap(fixed(body.pose), probe(p.contactProbe), m.deepest, m.frame.u, m.radius);
+              const whole = asperity.contactMap(fixed(moved(body.pose)), probe(moved(p.contactProbe)), turned, turn(q, m.frame.u), m.radius);
+              const off = asperity.contactMap(fixed(body.pose), probe(lifted(p.contactProbe)), m.deepest, m.frame.u, m.radius);
+              const both = (one, other) => Array.from(one).map((x, i) => [x, other[i]]).filter((x) => x.every((y) => !Number.isNaN(y)));
+              const apart = (one, other, by) => { const d = both(one, other).map(([x, y]) => Math.abs(y - x - by)).sort((x, y) => x - y); return d[Math.floor(0.9 * d.length)]; };
+              const at = m.cells * (m.cells >> 1) + (m.cells >> 1);
+              return JSON.stringify({ centre: plain.surface[at], gap: plain.clearance[at], step: body.step_m + s.bodies[0].step_m, depth: m.deepest.depth,
+                radius: m.radius, cells: both(plain.clearance, plain.clearance).length, world: apart(plain.surface, whole.surface, 0) + apart(plain.clearance, whole.clearance, 0),
+                lifted: apart(plain.clearance, off.clearance, AWAY), hidden: document.getElementById('contact').hidden });
+            })()""".replace("AWAY", str(away))))
+            self.assertFalse(found["hidden"])
+            self.assertGreater(found["cells"], 20)
+            self.assertLess(found["world"], 1e-6)
+            self.assertLess(found["lifted"], 2e-5)
+            self.assertLess(abs(found["centre"]), 0.3 * found["radius"], found)
+            b.value("document.querySelector('[data-part=map]').click()")
+            b.value("asperity.page.changed = asperity.page.dirty = true")
+            b.wait("document.getElementById('contact').hidden")
+            b.value("document.querySelector('[data-part=map]').click()")
+            b.value("asperity.page.changed = asperity.page.dirty = true")
+            b.wait("!document.getElementById('contact').hidden")
             for dark in (False, True):
                 b.dark(dark)
                 b.value(f"document.documentElement.dataset.theme === '{'dark' if dark else 'light'}' || document.getElementById('theme').click()")

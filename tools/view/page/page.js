@@ -5,7 +5,7 @@
   const element = (id) => document.getElementById(id);
   const amount = asperity.amount;
   const parts = [["probe", "Probe"], ["bodies", "Fixed bodies"], ["hand", "Hand"], ["coupling", "Coupling"],
-                 ["contacts", "Contact points"], ["planes", "Support planes"], ["force", "Force on the hand"],
+                 ["contacts", "Contact points"], ["map", "Relief at the contact"], ["planes", "Support planes"], ["force", "Force on the hand"],
                  ["torque", "Torque on the hand"], ["probe_force", "Force on the probe"]];
   const page = {
     description: null, scene: null, histories: [], live: null, spectrogram: new asperity.Spectrogram(),
@@ -141,6 +141,7 @@
         if (scene !== null) chooseScale(range());
         state.scale = { force: page.scaleForce, torque: page.scaleTorque };
         drawTime();
+        if (scene !== null) asperity.showContact(page);
       }
     }
     if (scene === null) return;
@@ -237,7 +238,7 @@
   function partsOf(description, hands) {
     if (description.mode === "model") return [];
     const each = [...description.bodies.keys()].filter((i) => (i < hands ? hands > 1 : description.bodies.length - hands > 1));
-    const boxes = parts.filter(([name]) => (name === "probe" ? hands === 1 : name !== "bodies" || description.bodies.length - hands === 1));
+    const boxes = parts.filter(([name]) => name !== "map" || description.mode === "live").filter(([name]) => (name === "probe" ? hands === 1 : name !== "bodies" || description.bodies.length - hands === 1));
     for (const i of each) {
       page.shown[`body${i}`] = true;
       boxes.push([`body${i}`, i < hands ? `Probe of ${"AB"[i]}` : description.bodies[i].name]);
@@ -306,6 +307,7 @@
         trouble("");
         Object.assign(page, { paused: frame.paused, over: frame.over, speed: frame.speed });
         page.contacts = contactsOf(frame.contacts);
+        page.contactProbe = frame.probe;
         placeBodies(frame.poses);
         page.changed = true;
         if (frame.rows === 0) page.dirty = true;

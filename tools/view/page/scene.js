@@ -58,7 +58,7 @@
       }
       gl.bindVertexArray(null);
       const drawing = { vao, count: mesh.indices.length, ...this.coarse(mesh), low: mesh.low, relief: mesh.relief,
-                        hasErrors: mesh.errors !== null,
+                        hasErrors: mesh.errors !== null, mesh,
                         size: mesh.high.map((h, k) => h - mesh.low[k]) };
       for (const b of this.bodies) if (b.mesh === i) b.drawing = drawing;
     }

@@ -135,7 +135,9 @@ const asperity = {};
       const list = new Float32Array(bytes.slice(at, at + 32 * contacts));
       at += 32 * contacts;
       const poses = new Float32Array(bytes.slice(at, at + 28 * bodies));
-      onFrame({ rows, contacts: list, poses, dropped, paused: (flags & 1) !== 0, over: (flags & 2) !== 0,
+      at += 28 * bodies;
+      const probe = Array.from(new Float32Array(bytes.slice(at, at + 28)));
+      onFrame({ rows, contacts: list, poses, probe, dropped, paused: (flags & 1) !== 0, over: (flags & 2) !== 0,
                 speed: head.getFloat64(48, true), restarted });
       if ((flags & 2) !== 0 && rows === 0) return;
       await new Promise((drawn) => requestAnimationFrame(drawn));
