@@ -105,6 +105,11 @@ class Page(unittest.TestCase):
             self.assertGreater(math.hypot(*found["felt"]), 0.1)
             for one, other in zip(drawn, found["felt"]):
                 self.assertAlmostEqual(one, other, delta=0.01 * math.hypot(*found["felt"]))
+            for _ in range(100):
+                if not b.value("document.getElementById('contact').hidden"):
+                    break
+                b.value("asperity.tell('step=10')")
+                time.sleep(0.3)
             # The map at the deepest contact: the surface goes through the contact, within the points' distance; it does
             # not depend on where the world is; and the probe that is drawn off it leaves that much of a gap.
             away = random.Random(SEED).uniform(2e-4, 6e-4)
@@ -114,18 +119,19 @@ class Page(unittest.TestCase):
                 a[3] * b[0] + a[0] * b[3] + a[1] * b[2] - a[2] * b[1], a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
                 a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3], a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]];
               const moved = (pose) => [...add(turn(q, pose.slice(0, 3)), [0.1, -0.2, 0.3]), ...product(q, pose.slice(3))];
-              const lifted = (pose) => [...add(pose.slice(0, 3), times(-AWAY, m.deepest.n)), ...pose.slice(3)];
+              const lifted = (pose, way = 1) => [...add(pose.slice(0, 3), times(-way * AWAY, m.deepest.n)), ...pose.slice(3)];
               const turned = { ...m.deepest, p: moved([...m.deepest.p, 0, 0, 0, 1]).slice(0, 3), n: turn(q, m.deepest.n) };
               const fixed = (pose) => ({ mesh: body.drawing.mesh, pose }), probe = (pose) => ({ mesh: s.bodies[0].drawing.mesh, pose });
               const plain = asperity.contactMap(fixed(body.pose), probe(p.contactProbe), m.deepest, m.frame.u, m.radius);
               const whole = asperity.contactMap(fixed(moved(body.pose)), probe(moved(p.contactProbe)), turned, turn(q, m.frame.u), m.radius);
               const off = asperity.contactMap(fixed(body.pose), probe(lifted(p.contactProbe)), m.deepest, m.frame.u, m.radius);
+              const sunk = asperity.contactMap(fixed(lifted(body.pose, -1)), probe(p.contactProbe), m.deepest, m.frame.u, m.radius);
               const both = (one, other) => Array.from(one).map((x, i) => [x, other[i]]).filter((x) => x.every((y) => !Number.isNaN(y)));
               const apart = (one, other, by) => { const d = both(one, other).map(([x, y]) => Math.abs(y - x - by)).sort((x, y) => x - y); return d[Math.floor(0.9 * d.length)]; };
               const at = m.cells * (m.cells >> 1) + (m.cells >> 1);
               return JSON.stringify({ centre: plain.surface[at], gap: plain.clearance[at], step: body.step_m + s.bodies[0].step_m, depth: m.deepest.depth,
                 radius: m.radius, cells: both(plain.clearance, plain.clearance).length, world: apart(plain.surface, whole.surface, 0) + apart(plain.clearance, whole.clearance, 0),
-                lifted: apart(plain.clearance, off.clearance, AWAY), hidden: document.getElementById('contact').hidden });
+                lifted: apart(plain.clearance, off.clearance, AWAY) + apart(plain.clearance, sunk.clearance, AWAY), hidden: document.getElementById('contact').hidden });
             })()""".replace("AWAY", str(away))))
             self.assertFalse(found["hidden"])
             self.assertGreater(found["cells"], 20)
