@@ -1,4 +1,5 @@
 // asperity view: a recording or a model on a page of a browser.
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "cli.hpp"
 #include "file_names.hpp"
 #include "interrupt.hpp"
+#include "led_session.hpp"
 #include "mesh_units.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
@@ -40,9 +42,11 @@ struct view_command {
   std::string exported;
   std::string original;
   std::optional<std::string> units;  // of the original
+  bool gallery = false;
 };
 
 constexpr std::size_t most_recordings = 2;
+constexpr std::size_t most_listed = 500;
 
 bool is_recording(const std::string& file) { return extension_error(file, {".csv"}).empty(); }
 bool is_recording(const view_command& options) { return is_recording(options.files.front()); }
@@ -53,7 +57,57 @@ std::string title_of(const view_command& options) {
   return out;
 }
 
+bool is_gallery(const view_command& options) {
+  std::error_code unread;
+  return options.gallery || std::filesystem::is_directory(options.files.front(), unread);
+}
+
+result<void> check_gallery(const view_command& options) {
+  if (!options.exported.empty() || !options.original.empty() || !options.probe.empty() || !options.fixed.empty()) {
+    return error{error_code::invalid_argument,
+                 "a gallery has its models from the list: leave out --probe, --fixed, --original and --export"};
+  }
+  if (!view::is_loopback(options.address)) {
+    return error{error_code::invalid_argument,
+                 "a gallery starts sessions, which is for this machine alone: leave --view-address out"};
+  }
+  return {};
+}
+
+// The models that were named, and those of the folders that were.
+result<std::vector<std::string>> listed_models(const view_command& options) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> out;
+  for (const std::string& file : options.files) {
+    std::error_code failed;
+    if (!fs::is_directory(file, failed)) {
+      if (!extension_error(file, {".glb"}).empty() || !fs::is_regular_file(file, failed)) {
+        return error{error_code::invalid_argument, file + " is no textured model (.glb) and no folder of them"};
+      }
+      out.push_back(file);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (fs::directory_iterator at(file, failed), end; !failed && at != end; at.increment(failed)) {
+      if (extension_error(at->path().string(), {".glb"}).empty()) inside.push_back(at->path().string());
+    }
+    if (failed) return error{error_code::io_failed, "cannot read the folder " + file + ": " + failed.message()};
+    std::sort(inside.begin(), inside.end());
+    out.insert(out.end(), inside.begin(), inside.end());
+  }
+  if (out.empty()) {
+    return error{error_code::invalid_argument,
+                 options.files.front() + " has no textured model (.glb): bake one with `asperity bake`"};
+  }
+  if (out.size() > most_listed) {
+    return error{error_code::limit_exceeded,
+                 "a gallery lists " + std::to_string(most_listed) + " models at the most: name a folder with fewer"};
+  }
+  return out;
+}
+
 result<void> check_files(const view_command& options) {
+  if (is_gallery(options)) return check_gallery(options);
   const bool recordings = is_recording(options);
   for (const std::string& file : options.files) {
     if (is_recording(file) != recordings) {
@@ -62,7 +116,8 @@ result<void> check_files(const view_command& options) {
     }
   }
   if (!recordings && options.files.size() > 1) {
-    return error{error_code::invalid_argument, "a page shows one model: name one, or recordings (.csv)"};
+    return error{error_code::invalid_argument,
+                 "a page shows one model: name one, or recordings (.csv), or add --gallery"};
   }
   if (options.files.size() > most_recordings) {
     return error{error_code::limit_exceeded, "a page shows two recordings beside each other at the most"};
@@ -132,11 +187,54 @@ result<void> serve(const view_command& options, view::page_content content) {
   return {};
 }
 
+// Starts the sessions that pages ask for, one at a time, until somebody interrupts.
+result<answer> serve_gallery(const view_command& options) {
+  const result<std::vector<std::string>> files = listed_models(options);
+  if (!files) return files.error();
+  view::page_scene shown{.mode = view::page_mode::gallery, .title = "Models", .bodies = {}};
+  for (const std::string& file : *files) shown.listed.push_back(file_stem(file));
+  view::gallery models(shown.listed);
+  const view::server_settings settings{
+      .address = options.address, .port = view_port_of(options.port).value_or(usual_view_port), .token = {}};
+  const result<view::page_server> server =
+      view::page_server::start(settings, view::make_content(shown, {}, view::live_points), nullptr, &models);
+  if (!server) return server.error();
+  complain("note: the page is at " + server->url() + ", until Ctrl-C");
+  std::optional<led_session> session;
+  std::size_t sessions = 0;
+  using told = view::gallery::told;
+  using phase = view::gallery::phase;
+  for (; !interrupted(); std::this_thread::sleep_for(std::chrono::milliseconds(30))) {
+    if (const auto [asked, wish] = models.take(); asked) {
+      session.reset();
+      if (!wish) continue;
+      result<led_session> started = led_session::start((*files)[wish->probe], (*files)[wish->fixed]);
+      if (!started) {
+        models.became({phase::idle, {}, started.error().message});
+        continue;
+      }
+      session.emplace(std::move(started).value());
+      ++sessions;
+    }
+    if (!session) continue;
+    if (session->look()) {
+      models.became(session->url().empty() ? told{phase::starting, {}, {}} : told{phase::running, session->url(), {}});
+    } else {
+      models.became({phase::idle, {}, session->trouble()});
+      session.reset();
+    }
+  }
+  answer out;
+  out.document = {{"models", shown.listed}, {"sessions", sessions}};
+  return out;
+}
+
 result<answer> show(const view_command& options, const common_options&) {
   if (!view_port_of(options.port)) {
     return error{error_code::invalid_argument, "--port " + options.port + ": a port is a whole number from 0 to 65535"};
   }
   if (const result<void> ok = check_files(options); !ok) return ok.error();
+  if (is_gallery(options)) return serve_gallery(options);
   std::vector<named_file> inputs{{"--probe", options.probe}};
   for (const std::string& file : options.files) inputs.push_back({"view", file});
   if (!options.original.empty()) {
@@ -196,8 +294,9 @@ void add_view(command_line& line) {
   const auto o = std::make_shared<view_command>();
   CLI::App& sub = line.add("view", "Show recordings or a model on a page of a browser",
                            [o](const common_options& common) { return show(*o, common); });
-  sub.add_option("files", o->files,
-                 "Recording of `run --record` (.csv), two of them to compare, or a textured model (.glb)")
+  sub.add_option(
+         "files", o->files,
+         "Recording of `run --record` (.csv), two of them to compare, a textured model (.glb), or a folder of them")
       ->required();
   sub.add_option("--probe", o->probe, "Model that the hand moved, for a recording");
   sub.add_option("--fixed", o->fixed, "Model that it touched, for a recording; may be given several times")
@@ -212,6 +311,7 @@ void add_view(command_line& line) {
   auto* scale = sub.add_option("--scale", o->scale,
                                "Motion scaling of the session on record; with --original: metres per unit of it")
                     ->check(positive_number_error, "NUMBER > 0");
+  sub.add_flag("--gallery", o->gallery, "List the models, to pick two of them and touch one with the other");
   sub.add_option("--units", o->units, "Unit of the original: m, cm, mm or in")
       ->check(CLI::IsMember({"m", "cm", "mm", "in"}))
       ->excludes(scale)

@@ -27,7 +27,17 @@ json names(int count) {
 }
 
 const char* to_string(page_mode m) {
-  return m == page_mode::live ? "live" : m == page_mode::replay ? "replay" : "model";
+  switch (m) {
+    case page_mode::live:
+      return "live";
+    case page_mode::replay:
+      return "replay";
+    case page_mode::model:
+      return "model";
+    case page_mode::gallery:
+      return "gallery";
+  }
+  return "";
 }
 
 json facts(const textured_model& model) {
@@ -89,12 +99,15 @@ page_content make_content(const page_scene& scene, const std::vector<shown_recor
                         {"period_s", r.period_s()}});
     append_rows(out.rows.emplace_back(), r.rows);
   }
+  json listed = json::array();
+  for (const std::string& name : scene.listed) listed.push_back(printable(name));
   const json document = {
       {"schema", "asperity.view/1"},
       {"mode", to_string(scene.mode)},
       {"title", printable(scene.title)},
       {"virtual_clock", scene.virtual_clock},
       {"leads", scene.leads},
+      {"listed", std::move(listed)},
       {"device_period_s", scene.device_period_s},
       {"most_force_n", scene.most_force_n},
       {"device_axes",

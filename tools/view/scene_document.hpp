@@ -15,7 +15,7 @@
 namespace asperity::view {
 
 /// What a page shows.
-enum class page_mode : std::uint8_t { live, replay, model };
+enum class page_mode : std::uint8_t { live, replay, model, gallery };
 
 /// A body of the scene. The first is the probe, or the first two are where two recordings are compared, but for
 /// page_mode::model.
@@ -31,10 +31,11 @@ struct page_scene {
   std::string title;
   std::vector<shown_body> bodies;
   workspace_map map{};
-  bool virtual_clock = false;     ///< pages may pause a live session
-  bool leads = false;             ///< pages lead the simulated hand
-  double device_period_s = 1e-3;  ///< a tick that takes longer is late
-  double most_force_n = 0.0;      ///< of the device; 0: not known
+  bool virtual_clock = false;         ///< pages may pause a live session
+  bool leads = false;                 ///< pages lead the simulated hand
+  std::vector<std::string> listed{};  ///< page_mode::gallery: the names of its models
+  double device_period_s = 1e-3;      ///< a tick that takes longer is late
+  double most_force_n = 0.0;          ///< of the device; 0: not known
 };
 
 /// A recording that a page replays. Where there are two, each has a probe of its own among the first bodies of the scene.

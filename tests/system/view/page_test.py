@@ -65,6 +65,15 @@ def moved_ply(ply, by):
     return ply[:head] + numbers.tobytes() + ply[end:]
 
 
+def is_session(cmdline):
+    """Whether a process is a session of this test's models that a hand leads."""
+    try:
+        line = cmdline.read_bytes().decode(errors="replace").split("\0")
+    except OSError:
+        return False
+    return line[0] == "asperity" and "mouse" in line and str(pathlib.Path(FIXED).resolve().parent) in " ".join(line)
+
+
 def models(*more):
     return ["--probe", PROBE, "--fixed", FIXED, *more]
 
@@ -417,6 +426,72 @@ class Page(unittest.TestCase):
         self.assertTrue(b.value("asperity.page.turning"))
         b.value("document.getElementById('turn').click()")
         self.assertFalse(b.value("asperity.page.turning"))
+
+    def test_a_gallery_starts_sessions(self):
+        b = self.browser
+        served = Served("view", str(pathlib.Path(FIXED).parent), "--port", "0")
+        names = sorted(p.stem for p in pathlib.Path(FIXED).parent.glob("*.glb"))
+
+        def children():
+            """What runs as a session now; one that has ended and was not yet waited for does not."""
+            found = []
+            for task in pathlib.Path(f"/proc/{served.process.pid}/task").iterdir():
+                for pid in (task / "children").read_text().split():
+                    line = pathlib.Path(f"/proc/{pid}/cmdline").read_bytes().decode().split("\0")
+                    if len(line) > 1:
+                        found.append(line[1:])
+            return found
+
+        def ask(what):
+            return b.value(f"fetch('do?{what}', {{method: 'POST', headers: {{'X-Asperity': '1'}}}}).then((r) => r.status)")
+
+        try:
+            b.open(served.url)
+            b.wait("document.querySelectorAll('#probes input').length > 0", 60)
+            self.assertEqual(b.value("[...document.querySelectorAll('#bodies label')].map((e) => e.textContent)"), names)
+            self.assertEqual(children(), [])
+            for width, height in ((390, 844), (1280, 720)):
+                b.size(width, height)
+                for _ in range(2):
+                    b.value("document.getElementById('theme').click()")
+                    self.assertEqual(b.value(CONTRAST), [])
+                time.sleep(0.2)
+                b.picture(PICTURES / f"gallery-{width}.png")
+                self.assertLessEqual(b.value("document.documentElement.scrollWidth"), width, "nothing is cut off")
+            # Nothing but numbers of the list is taken.
+            for wrong in ("touch=0,99", "touch=-1,0", "touch=0", "touch=0,1,2", f"touch={names[0]},{names[1]}", "touch=/etc/passwd,0", "pause", "hand=0,0,0,0,0,0,1"):
+                self.assertEqual(ask(wrong), 400, wrong)
+            self.assertEqual(children(), [])
+            b.complaints.clear()  # the refusals
+            # With keys alone: the gear on the block, as it is listed.
+            probe, fixed = names.index("gear"), names.index("block")
+            b.value(f"document.querySelector('#probes input[value=\"{probe}\"]').click(), document.querySelector('#bodies input[value=\"{fixed}\"]').click()")
+            b.value("document.getElementById('touch').focus()")
+            b.key("Enter", text="\r")
+            gallery = b.value("location.href")
+            b.wait(f"location.href !== '{gallery}' && asperity.page.ready && asperity.page.history.size > 50", 90)
+            self.assertTrue(b.value("asperity.page.description.leads"))
+            self.assertEqual(b.value("asperity.page.description.title"), "gear on block")
+            session, = children()
+            self.assertEqual(session[:2] + session[6:7], ["run", "--probe", "mouse"])
+            b.wait("asperity.page.state !== undefined")
+            # Back ends it.
+            b.value("history.back()")
+            b.wait("document.querySelectorAll('#probes input').length > 0 && !document.getElementById('touch').disabled", 60)
+            until = time.monotonic() + 20
+            while children() and time.monotonic() < until:
+                time.sleep(0.1)
+            self.assertEqual(children(), [])
+            # A second wish ends the first session, and the gallery's end the last one.
+            for first in (0, 1):
+                self.assertEqual(ask(f"touch={first},{1 - first}"), 204)
+                b.wait("asperity.loadSession().then((s) => s.phase === 'running')", 90)
+                self.assertEqual(len(children()), 1)
+        finally:
+            b.complaints[:] = [c for c in b.complaints if "ERR_CONNECTION" not in c]  # of the session that was left
+            b.open("about:blank")
+            served.end()
+        self.assertFalse([p for p in pathlib.Path("/proc").glob("[0-9]*/cmdline") if is_session(p)])
 
     def test_what_cannot_be_shown_is_said(self):
         recording = PICTURES / "short.csv"

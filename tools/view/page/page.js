@@ -257,6 +257,12 @@
     document.body.dataset.mode = description.mode;
     element("title").textContent = description.title;
     document.title = `${description.title} \u00b7 asperity`;
+    if (description.mode === "gallery") {
+      element("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme !== "dark"));
+      setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
+      asperity.openGallery(description);
+      return;
+    }
     const hands = description.mode === "model" ? 0 : Math.max(1, description.recordings.length);
     for (let i = 0; i < hands; ++i) description.bodies[i].probe = true;
     element("state").textContent = description.mode === "model" ? "model" : "opening";

@@ -19,6 +19,7 @@ const asperity = {};
 
   asperity.loadScene = async () =>
     asperity.isExported() ? JSON.parse(element("data-scene").textContent) : ask("scene.json", "json");
+  asperity.loadSession = async () => ask("session.json", "json");
   asperity.loadMesh = async (i) => readMesh(
     asperity.isExported() ? decode64(element(`data-mesh-${i}`).textContent) : await ask(`mesh/${i}`, "arrayBuffer"));
   asperity.loadRows = async (i) =>
