@@ -47,15 +47,22 @@ class Session:
 
     def ask(self, path, method="GET", headers=(), host=None):
         host = host or f"{self.host}:{self.port}"
-        lines = [f"{method} {path} HTTP/1.1", f"Host: {host}", "Connection: close", *headers]
+        lines = [f"{method} {path} HTTP/1.1", f"Host: {host}", *headers]
         with self.connect() as s:
             s.sendall(("\r\n".join(lines) + "\r\n\r\n").encode("latin-1"))
             return read_all(s)
 
 
+def is_whole(out):
+    head, gap, body = out.partition(b"\r\n\r\n")
+    length = re.search(rb"\r\nContent-Length: (\d+)", head)
+    return bool(gap and length) and len(body) >= int(length[1])
+
+
+# Not until the server hangs up: it does so at once, and what a busy machine has not read by then is gone.
 def read_all(s):
     out = b""
-    while True:
+    while not is_whole(out):
         try:
             more = s.recv(1 << 16)
         except ConnectionResetError:
