@@ -55,34 +55,6 @@ double round_up(double value) {
   return 10.0 * power;
 }
 
-std::optional<error> fault_of(const textured_model& model, const picture_options& options) {
-  const std::string& name = options.original_name;
-  if (options.original->triangles.empty()) {
-    return error{error_code::invalid_argument, name + " has no triangles: give the mesh that the model was baked from"};
-  }
-  for (const vec3& p : options.original->positions) {
-    if (!std::isfinite(p.x + p.y + p.z)) {
-      return error{error_code::invalid_argument, name + " has coordinates that are not finite: mend the mesh"};
-    }
-  }
-  const bounds box = bounds_of(options.original->positions);
-  const double full = box.diagonal();
-  const double coarse = model.box.diagonal();
-  if (!(full > 0.8 * coarse && full < 1.25 * coarse)) {
-    return error{error_code::invalid_argument,
-                 name + " is of another size than the model (diagonal " + text::length_text(full) + ", the model's " +
-                     text::length_text(coarse) +
-                     "): give the mesh that the model was baked from, and the --scale of that bake"};
-  }
-  const double apart = std::max(glm::length(box.low - model.box.low), glm::length(box.high - model.box.high));
-  if (apart > 0.15 * coarse) {
-    return error{error_code::invalid_argument,
-                 name + " is of the model's size but lies elsewhere (corners of the boxes are up to " +
-                     text::length_text(apart) + " apart): give the mesh that the model was baked from"};
-  }
-  return std::nullopt;
-}
-
 view look_at(const textured_model& model, const fine_surface* surface, const picture_options& options) {
   extent covered(look_from_above(model.box.high - model.box.low, options.up, options.turn_deg));
   for (const vec3& p : model.mesh.positions) covered.add(p);
@@ -263,9 +235,38 @@ class page {
 
 }  // namespace
 
+result<void> check_original(const textured_model& model, const triangle_mesh& original, const std::string& name) {
+  if (original.triangles.empty()) {
+    return error{error_code::invalid_argument, name + " has no triangles: give the mesh that the model was baked from"};
+  }
+  for (const vec3& p : original.positions) {
+    if (!std::isfinite(p.x + p.y + p.z)) {
+      return error{error_code::invalid_argument, name + " has coordinates that are not finite: mend the mesh"};
+    }
+  }
+  const bounds box = bounds_of(original.positions);
+  const double full = box.diagonal();
+  const double coarse = model.box.diagonal();
+  if (!(full > 0.8 * coarse && full < 1.25 * coarse)) {
+    return error{error_code::invalid_argument,
+                 name + " is of another size than the model (diagonal " + text::length_text(full) + ", the model's " +
+                     text::length_text(coarse) +
+                     "): give the mesh that the model was baked from, and the --scale of that bake"};
+  }
+  const double apart = std::max(glm::length(box.low - model.box.low), glm::length(box.high - model.box.high));
+  if (apart > 0.15 * coarse) {
+    return error{error_code::invalid_argument,
+                 name + " is of the model's size but lies elsewhere (corners of the boxes are up to " +
+                     text::length_text(apart) + " apart): give the mesh that the model was baked from"};
+  }
+  return {};
+}
+
 result<model_picture> draw_model(const textured_model& model, const picture_options& options) {
   if (options.original != nullptr) {
-    if (std::optional<error> fault = fault_of(model, options)) return *std::move(fault);
+    if (const result<void> fits = check_original(model, *options.original, options.original_name); !fits) {
+      return fits.error();
+    }
   }
   bake::stage_monitor monitor(options.progress);
   monitor.begin("picture");

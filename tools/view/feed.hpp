@@ -32,12 +32,14 @@ struct contact_snapshot {
   std::uint64_t number = 0;  ///< counts the snapshots of a session
   fixed_vector<shown_contact, capacity> list;
   fixed_vector<pose, 16> T_wb;  ///< where the first fixed bodies are
+  pose T_wa{};                  ///< where the probe was when they were found
 };
 
 /// Copies what a tick found. Planes come first where there are some, contacts of windows otherwise; what does not fit is
 /// left out and counted by the list.
 /// @rt safe
 inline void take_contacts(const scene_pose& at, const tick& found, contact_snapshot& to) noexcept {
+  to.T_wa = at.T_wa;
   to.T_wb.clear();
   for (const pose& T : at.T_wb) static_cast<void>(to.T_wb.push_back(T));
   to.list.clear();

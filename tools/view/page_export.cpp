@@ -53,9 +53,9 @@ std::string export_page(const page_content& content) {
   for (std::size_t i = 0; i < content.meshes.size(); ++i) {
     data += data_element("data-mesh-" + std::to_string(i), "application/base64", base64(content.meshes[i]));
   }
-  std::string rows;
-  append_rows(rows, content.rows);
-  data += data_element("data-rows", "application/base64", base64(rows));
+  for (std::size_t i = 0; i < content.rows.size(); ++i) {
+    data += data_element("data-rows-" + std::to_string(i), "application/base64", base64(content.rows[i]));
+  }
   for (const page_file& f : files) {
     const std::string name(f.path.substr(1));
     if (f.type.starts_with("text/css")) {

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <pthread.h>
 #include <string_view>
@@ -20,6 +21,7 @@
 #include <utility>
 #include <vector>
 
+#include "asperity/core/printable.hpp"
 #include "view/page_files.hpp"
 
 namespace asperity::view {
@@ -153,8 +155,8 @@ class small_stacks {
 
 struct page_server::inside {
   page_content content;
-  std::string rows;  // of a replay, as bytes
   feed* live = nullptr;
+  gallery* models = nullptr;
   std::string token;
   std::vector<std::string> hosts;  // whose page it is; empty where the token says that
   std::string url;
@@ -187,16 +189,19 @@ struct page_server::inside {
     if (!is_data(path)) return refuse(to, 404, "there is no such page");
     if (!may_look(to)) return refuse(to, 403, "the token is missing or wrong");
     if (path == "/scene.json") return answer(to, 200, "application/json", content.document);
-    if (path == "/rows") return answer(to, 200, "application/octet-stream", rows);
     if (path == "/frame") return frame(to, query);
-    const auto mesh = number_of<std::size_t>(path, "/mesh/");
-    if (!mesh || *mesh >= content.meshes.size()) return refuse(to, 404, "there is no such mesh");
-    return answer(to, 200, "application/octet-stream", content.meshes[*mesh]);
+    if (path == "/session.json") return led(to);
+    const bool of_rows = path.starts_with("/rows/");
+    const std::vector<std::string>& all = of_rows ? content.rows : content.meshes;
+    const auto number = number_of<std::size_t>(path, of_rows ? "/rows/" : "/mesh/");
+    if (!number || *number >= all.size()) return refuse(to, 404, "there is no such mesh or recording");
+    return answer(to, 200, "application/octet-stream", all[*number]);
   }
 
  private:
   static bool is_data(std::string_view path) {
-    return path == "/scene.json" || path == "/rows" || path == "/frame" || path.starts_with("/mesh/");
+    return path == "/scene.json" || path == "/frame" || path == "/session.json" || path.starts_with("/rows/") ||
+           path.starts_with("/mesh/");
   }
 
   // A page of somebody else's, in the same browser, reaches this address too: by name, or by a name of its own that it
@@ -236,7 +241,8 @@ struct page_server::inside {
   }
 
   // Head of eight 32-bit words and two doubles: "ASPF", rows, contacts, bodies, flags (1 paused, 2 over), contacts that
-  // did not fit, 0, 0; number of the row after the last, rows missed; then speed, rows, contacts, poses of bodies.
+  // did not fit, 0, 0; number of the row after the last, rows missed; then speed, rows, contacts, poses of bodies,
+  // pose of the probe at those contacts.
   [[nodiscard]] std::string frame_bytes(std::uint64_t first, std::uint64_t missed,
                                         const std::vector<trace_row>& rows_now) const {
     const contact_snapshot touched = live->contacts();
@@ -258,17 +264,46 @@ struct page_server::inside {
         put(x);
       }
     }
-    for (const pose& T : touched.T_wb) {
+    const auto put_pose = [&](const pose& T) {
       for (const double x : {T.position.x, T.position.y, T.position.z}) put(x);
       for (const double q : to_xyzw(T.rotation)) put(q);
-    }
+    };
+    for (const pose& T : touched.T_wb) put_pose(T);
+    put_pose(touched.T_wa);
     return out;
+  }
+
+  // What became of the session that a gallery's page asked for.
+  int led(mg_connection* to) {
+    if (models == nullptr) return refuse(to, 404, "this page is no gallery");
+    const gallery::told now = models->tell();
+    const char* const phase = now.now == gallery::phase::idle       ? "idle"
+                              : now.now == gallery::phase::starting ? "starting"
+                                                                    : "running";
+    const nlohmann::json document = {{"phase", phase}, {"url", now.url}, {"trouble", printable(now.trouble)}};
+    return answer(to, 200, "application/json", document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+  }
+
+  int choose(mg_connection* to, std::string_view query) {
+    if (query == "leave") {
+      models->leave();
+      return answer(to, 204, {}, {});
+    }
+    const std::size_t comma = query.find(',');
+    if (comma == std::string_view::npos) return refuse(to, 400, "touch=PROBE,FIXED or leave");
+    const auto probe = number_of<std::size_t>(query.substr(0, comma), "touch=");
+    const auto fixed = number_of<std::size_t>(query.substr(comma), ",");
+    if (!probe || !fixed || !models->ask(*probe, *fixed)) {
+      return refuse(to, 400, "touch=PROBE,FIXED: numbers of two models on the list, from 0");
+    }
+    return answer(to, 204, {}, {});
   }
 
   int command(mg_connection* to, std::string_view path, std::string_view query) {
     // A header of its own: a form of somebody else's page cannot send one.
     if (path != "/do" || header_of(to, "X-Asperity").empty())
       return refuse(to, 404, "POST is for /do, with X-Asperity");
+    if (models != nullptr) return choose(to, query);
     if (live == nullptr) return refuse(to, 404, "there is no session to pause");
     if (query == "pause" || query == "resume") {
       live->forget_steps();
@@ -317,14 +352,15 @@ bool is_loopback(std::string_view address) noexcept {
          (address.starts_with("127.") && address.find_first_not_of("0123456789.") == std::string_view::npos);
 }
 
-result<page_server> page_server::start(const server_settings& settings, page_content content, feed* live) {
+result<page_server> page_server::start(const server_settings& settings, page_content content, feed* live,
+                                       gallery* models) {
   if (settings.token.empty() && !is_loopback(settings.address)) {
     return error{error_code::invalid_argument, settings.address + " is open to other machines: it needs a token"};
   }
   auto self = std::make_unique<inside>();
   self->content = std::move(content);
-  append_rows(self->rows, self->content.rows);
   self->live = live;
+  self->models = models;
   self->token = settings.token;
   const bool six = settings.address.find(':') != std::string::npos;
   const std::string host = six ? '[' + settings.address + ']' : settings.address;

@@ -7,6 +7,7 @@
 
 #include "asperity/core/status.hpp"
 #include "view/feed.hpp"
+#include "view/gallery.hpp"
 #include "view/scene_document.hpp"
 
 namespace asperity::view {
@@ -38,8 +39,10 @@ inline constexpr int most_pages = 16;
 class page_server {
  public:
   /// @param live null where nothing happens; otherwise it outlives the server
+  /// @param models null but for page_mode::gallery; otherwise it outlives the server
   /// @return invalid_argument (another address than the loopback without a token) | io_failed (the port is taken)
-  [[nodiscard]] static result<page_server> start(const server_settings& settings, page_content content, feed* live);
+  [[nodiscard]] static result<page_server> start(const server_settings& settings, page_content content, feed* live,
+                                                 gallery* models = nullptr);
 
   page_server(page_server&&) noexcept;
   page_server& operator=(page_server&&) = delete;

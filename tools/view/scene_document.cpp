@@ -1,5 +1,6 @@
 #include "view/scene_document.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "asperity/core/printable.hpp"
@@ -26,7 +27,17 @@ json names(int count) {
 }
 
 const char* to_string(page_mode m) {
-  return m == page_mode::live ? "live" : m == page_mode::replay ? "replay" : "model";
+  switch (m) {
+    case page_mode::live:
+      return "live";
+    case page_mode::replay:
+      return "replay";
+    case page_mode::model:
+      return "model";
+    case page_mode::gallery:
+      return "gallery";
+  }
+  return "";
 }
 
 json facts(const textured_model& model) {
@@ -45,12 +56,26 @@ json facts(const textured_model& model) {
 
 }  // namespace
 
-page_content make_content(const page_scene& scene, std::vector<trace_row> rows, std::size_t most_points) {
+page_content make_content(const page_scene& scene, const std::vector<shown_recording>& recordings,
+                          std::size_t most_points) {
   page_content out;
+  std::vector<const textured_model*> models;
+  std::vector<const triangle_mesh*> originals;
+  for (const shown_body& b : scene.bodies) {
+    if (std::find(models.begin(), models.end(), b.model.get()) != models.end()) continue;
+    models.push_back(b.model.get());
+    originals.push_back(b.original.get());
+  }
+  std::vector<shown_mesh> meshes;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    meshes.push_back(show_mesh(*models[i], most_points / models.size(), originals[i]));
+  }
   json bodies = json::array();
   for (const shown_body& b : scene.bodies) {
-    shown_mesh mesh = show_mesh(*b.model, most_points / scene.bodies.size());
+    const std::ptrdiff_t at = std::find(models.begin(), models.end(), b.model.get()) - models.begin();
+    const shown_mesh& mesh = meshes[static_cast<std::size_t>(at)];
     bodies.push_back({{"name", printable(b.name)},
+                      {"mesh", at},
                       {"pose", numbers(b.T_w)},
                       {"centre_of_mass", numbers(b.model->mass.centre_of_mass)},
                       {"size_m", b.model->box.diagonal()},
@@ -58,15 +83,31 @@ page_content make_content(const page_scene& scene, std::vector<trace_row> rows, 
                       {"triangles", mesh.triangles},
                       {"step_m", mesh.step_m},
                       {"relief_m", {mesh.low_m, mesh.high_m}},
+                      {"error_m", mesh.errors ? json{{"high", mesh.errors->high_m},
+                                                     {"rms", mesh.errors->rms_m},
+                                                     {"largest", mesh.errors->largest_m}}
+                                              : json()},
                       {"facts", facts(*b.model)}});
-    out.meshes.push_back(std::move(mesh.bytes));
   }
+  for (shown_mesh& mesh : meshes) out.meshes.push_back(std::move(mesh.bytes));
+  json recorded = json::array();
+  for (const shown_recording& r : recordings) {
+    recorded.push_back({{"name", printable(r.name)},
+                        {"rows", r.rows.size()},
+                        {"from_s", r.rows.front().time_s},
+                        {"to_s", r.rows.back().time_s},
+                        {"period_s", r.period_s()}});
+    append_rows(out.rows.emplace_back(), r.rows);
+  }
+  json listed = json::array();
+  for (const std::string& name : scene.listed) listed.push_back(printable(name));
   const json document = {
       {"schema", "asperity.view/1"},
       {"mode", to_string(scene.mode)},
       {"title", printable(scene.title)},
       {"virtual_clock", scene.virtual_clock},
       {"leads", scene.leads},
+      {"listed", std::move(listed)},
       {"device_period_s", scene.device_period_s},
       {"most_force_n", scene.most_force_n},
       {"device_axes",
@@ -81,11 +122,10 @@ page_content make_content(const page_scene& scene, std::vector<trace_row> rows, 
         {"flags",
          {"beyond_field", "passed", "not_held", "planes_left_out", "unbalanced", "friction_left_out", "body_lost",
           "stands_back"}}}},
-      {"rows", rows.size()},
+      {"recordings", std::move(recorded)},
       {"bodies", std::move(bodies)}};
   // File names need not be UTF-8; JSON must be.
   out.document = document.dump(-1, ' ', false, json::error_handler_t::replace);
-  out.rows = std::move(rows);
   return out;
 }
 

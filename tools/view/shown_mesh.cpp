@@ -42,9 +42,27 @@ std::vector<std::uint8_t> patch_colours(const textured_model& model) {
   return out;
 }
 
+// As on the picture of `inspect`: least differences are rounding, and single points far out would leave all others one
+// colour.
+shown_mesh::distances describe(std::vector<float>& apart, const picture::fine_surface& surface, double diagonal_m) {
+  constexpr double rounding = 1e-5, usual = 0.98;
+  shown_mesh::distances out;
+  double squares = 0.0, area = 0.0;
+  for (std::size_t i = 0; i < apart.size(); ++i) {
+    const double a = static_cast<double>(surface.areas[i]), d = static_cast<double>(apart[i]);
+    squares += a * d * d;
+    area += a;
+    out.largest_m = std::max(out.largest_m, d);
+    if (d < rounding * diagonal_m) apart[i] = 0.0F;
+  }
+  out.rms_m = area > 0.0 ? std::sqrt(squares / area) : 0.0;
+  out.high_m = std::max(picture::quantile(apart, surface.areas, usual), rounding * diagonal_m);
+  return out;
+}
+
 }  // namespace
 
-shown_mesh show_mesh(const textured_model& model, std::size_t most_points) {
+shown_mesh show_mesh(const textured_model& model, std::size_t most_points, const triangle_mesh* original) {
   constexpr double coarser = 1.25;
   constexpr int most_tries = 24;
   shown_mesh out;
@@ -71,21 +89,37 @@ shown_mesh show_mesh(const textured_model& model, std::size_t most_points) {
   out.low_m = std::min(0.0, picture::quantile(surface.heights, surface.areas, usual));
   out.high_m = std::max(0.0, picture::quantile(surface.heights, surface.areas, 1.0 - usual));
 
+  std::vector<float> apart;
+  if (original != nullptr) {
+    const bake::triangle_bvh tree(original->positions, original->triangles);
+    bake::stage_monitor nobody_waits(nullptr);
+    if (result<std::vector<float>> measured = picture::distances(surface, tree, 0, nobody_waits)) {
+      apart = std::move(measured).value();
+      out.errors = describe(apart, surface, model.box.diagonal());
+    }
+  }
+
   std::string& to = out.bytes;
-  to.reserve(48 + 8 * surface.patches.size() + 12 * surface.points.size());
+  to.reserve(56 + 20 * surface.patches.size() + 12 * model.mesh.positions.size() + 14 * surface.points.size());
   to += "ASPM";
   append(to, static_cast<std::uint32_t>(surface.points.size()));
   append(to, static_cast<std::uint32_t>(surface.patches.size()));
-  append(to, std::uint32_t{0});
+  append(to, static_cast<std::uint32_t>(model.mesh.positions.size()));
   append(to, low);
   append(to, high);
   append(to, static_cast<float>(out.low_m));
   append(to, static_cast<float>(out.high_m));
+  append(to, static_cast<float>(out.errors ? out.errors->high_m : -1.0));
+  append(to, 0.0F);
   for (const picture::fine_patch& p : surface.patches) {
     append(to, p.columns);
     append(to, p.rows);
     out.triangles += p.columns * (2 * std::size_t{p.rows} - 1);
   }
+  for (const vec3& p : model.mesh.positions) {
+    for (int k = 0; k < 3; ++k) append(to, static_cast<float>(p[k]));
+  }
+  for (const coarse_triangle& t : model.mesh.triangles) append(to, t.vertex);
   for (std::size_t i = 0; i < surface.points.size(); ++i) {
     for (int k = 0; k < 3; ++k) {
       const auto at = static_cast<std::size_t>(k);
@@ -102,6 +136,7 @@ shown_mesh show_mesh(const textured_model& model, std::size_t most_points) {
       append(to, colour[p]);
     }
   }
+  for (const float d : apart) append(to, share16(static_cast<double>(d), 0.0, out.errors->high_m));
   return out;
 }
 

@@ -351,7 +351,7 @@ bool has_page() { return run({"view", "--help"}).exit_status == 0; }
 TEST_F(documents, view_of_a_model_and_of_a_recording) {
   if (!has_page()) GTEST_SKIP() << "this build has no live page (Debian: libcivetweb-dev)";
   const json model = expect_document({"view", pin(), "--export", path("pin.html")}, "asperity.view/1");
-  expect_keys(model, {"schema", "file", "ticks", "export"});
+  expect_keys(model, {"schema", "file", "ticks", "recordings", "export"});
   EXPECT_EQ(model["file"], pin());
   EXPECT_EQ(model["ticks"], 0);
   expect_keys(model["export"], {"file", "bytes"});
@@ -365,6 +365,13 @@ TEST_F(documents, view_of_a_model_and_of_a_recording) {
       {"view", path("felt.csv"), "--probe", pin(), "--fixed", pin(), "--export", path("felt.html")}, "asperity.view/1");
   EXPECT_EQ(session["ticks"], 51) << "at 1 kHz, the first and the last among them";
   EXPECT_EQ(session["export"]["bytes"], read("felt.html").size());
+  const json two = expect_document(
+      {"view", path("felt.csv"), path("felt.csv"), "--probe", pin(), "--fixed", pin(), "--export", path("felt.html")},
+      "asperity.view/1");
+  ASSERT_EQ(two["recordings"].size(), 2U);
+  expect_keys(two["recordings"][1], {"file", "ticks", "from_s", "to_s", "period_s"});
+  EXPECT_EQ(two["recordings"][1]["ticks"], 51);
+  EXPECT_DOUBLE_EQ(two["recordings"][1]["period_s"].get<double>(), 1e-3);
   const std::set<std::string> made{"pin.html", "felt.csv", "felt.html"};
   EXPECT_EQ(files(), made);
 
@@ -372,6 +379,9 @@ TEST_F(documents, view_of_a_model_and_of_a_recording) {
   expect_failure({"view", pin(), "--probe", pin(), "--export", path("no.html")}, 1, "invalid_argument");
   expect_failure({"view", path("nothing.glb"), "--export", path("no.html")}, 1, "io_failed");
   expect_failure({"view", pin(), "--port", "65536"}, 1, "invalid_argument");
+  expect_failure({"view", pin(), pin(), "--export", path("no.html")}, 1, "invalid_argument");
+  expect_failure({"view", "--gallery", pin(), "--export", path("no.html")}, 1, "invalid_argument");
+  expect_failure({"view", pin(), "--original", path("nothing.ply"), "--export", path("no.html")}, 1, "io_failed");
 }
 
 TEST_F(documents, a_served_page_ends_with_a_document) {
@@ -381,7 +391,13 @@ TEST_F(documents, a_served_page_ends_with_a_document) {
   const outcome shown = run({"view", pin(), "--port", "0", "--json"}, ended);
   EXPECT_NE(shown.err.find("note: the page is at http://127.0.0.1:"), std::string::npos) << shown.err;
   const json d = json::parse(shown.out, nullptr, false);
-  expect_keys(d, {"schema", "file", "ticks"});
+  expect_keys(d, {"schema", "file", "ticks", "recordings"});
+
+  const outcome listed = run({"view", "--gallery", pin(), pin(), "--port", "0", "--json"}, ended);
+  const json gallery = json::parse(listed.out, nullptr, false);
+  expect_keys(gallery, {"schema", "models", "sessions"});
+  EXPECT_EQ(gallery["models"].size(), 2U);
+  EXPECT_EQ(gallery["sessions"], 0);
 
   // A session tells the same of itself, whether it is looked at or not.
   const std::vector<std::string> run_briefly{"run", "--probe", pin(), "--fixed", pin(), "--seconds", "0.05", "--json"};

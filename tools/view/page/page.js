@@ -5,57 +5,74 @@
   const element = (id) => document.getElementById(id);
   const amount = asperity.amount;
   const parts = [["probe", "Probe"], ["bodies", "Fixed bodies"], ["hand", "Hand"], ["coupling", "Coupling"],
-                 ["contacts", "Contact points"], ["planes", "Support planes"], ["force", "Force on the hand"],
+                 ["contacts", "Contact points"], ["map", "Relief at the contact"], ["planes", "Support planes"], ["force", "Force on the hand"],
                  ["torque", "Torque on the hand"], ["probe_force", "Force on the probe"]];
   const page = {
-    description: null, scene: null, history: null, live: null, spectrogram: new asperity.Spectrogram(),
+    description: null, scene: null, histories: [], live: null, spectrogram: new asperity.Spectrogram(),
     shown: Object.fromEntries(parts.map(([name]) => [name, name !== "probe_force"])),
     at: null,        // time that is shown; null: the newest
-    scaleForce: 1, scaleTorque: 1, contacts: [], seen: { row: 0, fault: 0, device: -1, flags: 0, sample: 0, contacts: 0 },
+    scaleForce: 1, scaleTorque: 1, contacts: [], seen: [asperity.nothingSeen(), asperity.nothingSeen()],
+    get history() { return this.histories[0] ?? null; },
     paused: false, over: false, speed: 1, events: 0, turning: false, changed: true, lastPlots: 0, frames: 0,
   };
   asperity.page = page;
 
   // --- what is shown at a time
-  const newestTime = () => (page.history.size > 0 ? page.history.time(page.history.end - 1) : 0);
+  const filled = () => page.histories.filter((h) => h.size > 0);
+  const newestTime = () => Math.max(0, ...filled().map((h) => h.time(h.end - 1)));
+  const oldestTime = () => (filled().length > 0 ? Math.min(...filled().map((h) => h.time(h.first))) : 0);
+  const compares = () => page.histories.length > 1;
   const shownTime = () => (page.at === null ? newestTime() : page.at);
 
   function range() {
-    const history = page.history, span = Number(element("span").value), oldest = history.size > 0 ? history.time(history.first) : 0;
+    const span = Number(element("span").value), oldest = oldestTime();
     if (span === 0) return { from: oldest, to: newestTime() };
     const to = page.at === null ? newestTime() : Math.min(newestTime(), page.at + span / 2);
     return { from: Math.max(oldest, to - span), to: Math.max(to, Math.min(newestTime(), oldest + span)) };
   }
 
-  function pose(row, name) {
-    const v = Array.from(page.history.some(row, `${name}_x`, 7));
+  function pose(history, row, name) {
+    const v = Array.from(history.some(row, `${name}_x`, 7));
     return { p: v.slice(0, 3), q: v.slice(3) };
   }
 
-  // Everything of one row that the scene draws. Wrenches are newtons in world axes.
-  function stateAt(row) {
+  // One row of a history as the scene draws it. Wrenches are newtons in world axes.
+  function handAt(history, row) {
     const c = page.description.bodies[0].centre_of_mass;
-    const probe = pose(row, "probe"), target = pose(row, "target");
+    const probe = pose(history, row, "probe"), target = pose(history, row, "target");
     const centre = (at) => add(at.p, turn(at.q, c));
-    const vector = (name) => Array.from(page.history.some(row, name, 3));
+    const vector = (name) => Array.from(history.some(row, name, 3));
     const toWorld = (v) => turn(page.description.device_axes, v);
     return {
       row, probe: { ...probe, centre: centre(probe) }, target: { ...target, centre: centre(target) },
       hand: { force: toWorld(vector("hand_fx")), torque: toWorld(vector("hand_tx")) },
       contact: { force: vector("contact_fx"), torque: vector("contact_tx") },
-      scale: { force: page.scaleForce, torque: page.scaleTorque }, shown: page.shown,
+    };
+  }
+
+  // Everything that the scene draws at the time that is shown. A recording that does not run then stays where it was.
+  function stateNow() {
+    const rowOf = (h) => (page.at === null ? h.end - 1 : h.rowAt(page.at));
+    const hands = filled().map((h, i) => ({ ...handAt(h, rowOf(h)), ...(compares() ? compared[i] : {}) }));
+    return {
+      ...hands[0], hands, scale: { force: page.scaleForce, torque: page.scaleTorque }, shown: page.shown,
       contacts: page.at === null ? page.contacts : [],
     };
   }
 
+  // Of two recordings: the colours of their hands and probes.
+  const compared = [{ name: "_a", colour: { light: [0.60, 0.26, 0], dark: [1, 0.69, 0.44] } },
+                    { name: "_b", colour: { light: [0.35, 0.21, 0.69], dark: [0.76, 0.66, 1] } }];
+
   // Metres of an arrow for a newton: so that the largest force of the last seconds is a third of the scene. Steps of two
   // and five, so that arrows do not breathe with the force.
   function chooseScale(span) {
-    const history = page.history;
     let force = 0, torque = 0;
-    for (let row = history.rowAt(span.from); row < history.end && history.time(row) <= span.to; row += 7) {
-      force = Math.max(force, length(history.some(row, "hand_fx", 3)));
-      torque = Math.max(torque, length(history.some(row, "hand_tx", 3)));
+    for (const history of filled()) {
+      for (let row = history.rowAt(span.from); row < history.end && history.time(row) <= span.to; row += 7) {
+        force = Math.max(force, length(history.some(row, "hand_fx", 3)));
+        torque = Math.max(torque, length(history.some(row, "hand_tx", 3)));
+      }
     }
     const choose = (most, now) => {
       if (!(most > 0)) return now;
@@ -79,75 +96,11 @@
     element("scale-text").textContent = `${amount(newtons, "N")} \u00b7 ${amount(moment, "N m")}`;
   }
 
-  // --- events
-  function addEvent(time, text, bad) {
-    const list = element("events"), item = document.createElement("li");
-    item.textContent = `${time.toFixed(3)} s  ${text}`;
-    if (bad) item.dataset.level = "bad";
-    list.prepend(item);
-    ++page.events;
-    while (list.children.length > 200) list.lastChild.remove();
-  }
-
-  function findEvents() {
-    const h = page.history, n = page.description.names, seen = page.seen;
-    if (seen.row > h.end) Object.assign(seen, { row: h.first, device: -1 });
-    const missedBefore = seen.missed ?? 0;
-    if (h.missed > missedBefore) addEvent(newestTime(), `${h.missed - missedBefore} ticks were not drawn`, false);
-    seen.missed = h.missed;
-    for (let row = Math.max(seen.row, h.first); row < h.end; ++row) {
-      const time = h.time(row), of = (name) => h.value(row, h.column[name]);
-      const fault = of("fault"), device = of("device"), flags = of("flags"), sample = of("sample");
-      if (fault !== seen.fault) addEvent(time, fault === 0 ? "gate open" : `gate shut: ${n.fault[fault]}`, fault !== 0);
-      if (device !== seen.device && seen.device >= 0) addEvent(time, `device ${n.device[device]}`, n.device[device] === "fault");
-      for (let bit = 0; bit < 8; ++bit) {
-        if (((flags & ~seen.flags) >> bit) & 1) addEvent(time, `planes: ${n.flags[bit].replaceAll("_", " ")}`, true);
-      }
-      if (sample !== seen.sample && sample !== 0) addEvent(time, `sample: ${n.sample[sample]}`, true);
-      const touches = of("contacts") > 0;
-      if (touches && !seen.touches && time - (seen.let ?? -1) > 0.05) addEvent(time, "touches", false);
-      if (!touches && seen.touches) seen.let = time;
-      Object.assign(seen, { fault, device, flags, sample, touches });
-    }
-    seen.row = h.end;
-  }
-
   // --- drawing
-  function legend(id, entries) {
-    const text = entries.map(([label, colour]) => `${colour}|${label}`).join();
-    if (element(id).dataset.text === text) return;
-    element(id).dataset.text = text;
-    element(id).replaceChildren(...entries.map(([label, colour]) => {
-      const b = document.createElement("b");
-      b.textContent = label;
-      if (colour) b.style.color = `var(${colour})`;
-      return b;
-    }));
-  }
-
-  function drawPlots() {
-    const h = page.history, span = range(), cursor = shownTime();
-    const three = (name, unit, least) => ["x", "y", "z"].map((axis) => ({ column: `${name}${axis}`, unit, colour: `--${axis}`, least }));
-    asperity.drawCurves(element("force"), h, span, three("hand_f", "N", 0.05), cursor);
-    asperity.drawCurves(element("torque"), h, span, three("hand_t", "N m", 1e-3), cursor);
-    asperity.drawCurves(element("energy"), h, span, [{ column: "delivered", unit: "J", colour: "--total", least: 1e-6 },
-                                                     { column: "surplus", unit: "J", colour: "--x" }], cursor);
-    const axes = [["x", "--x"], ["y", "--y"], ["z", "--z"]];
-    legend("force-legend", axes);
-    legend("torque-legend", axes);
-    legend("energy-legend", [["to the hand", "--total"], ["surplus", "--x"]]);
-    page.spectrogram.draw(element("spectrum"), h, span, cursor, page.description.device_period_s);
-    legend("spectrum-legend", [["1 mN to 1 N", ""]]);
-    const t = asperity.drawTicks(element("ticks"), h, span, page.description.device_period_s);
-    page.ticks = t;
-    legend("ticks-legend", t === null ? [["not measured", ""]]
-      : [[`p50 ${amount(t.p50, "s")}`, ""], [`p99 ${amount(t.p99, "s")}`, ""], [`${t.late} late`, t.late > 0 ? "--late" : ""]]);
-  }
-
   function describe(state) {
     const chip = element("state"), names = page.description.names;
     if (page.description.mode === "replay") {
-      chip.textContent = "recording";
+      chip.textContent = compares() ? "two recordings" : "recording";
     } else if (page.over) {
       chip.textContent = "session over";
       delete chip.dataset.level;
@@ -160,6 +113,7 @@
       chip.dataset.level = fault !== 0 ? "bad" : page.paused ? "" : "good";
     }
     if (state === null) return;
+    if (compares()) { asperity.compare.describe(page, shownTime()); return; }
     const of = (name) => page.history.value(state.row, page.history.column[name]);
     element("readout").textContent = `force ${amount(length(state.hand.force), "N")}   torque ${amount(length(state.hand.torque), "N m")}` +
       `   depth ${amount(of("depth"), "m")}   ${of("contacts")} contacts`;
@@ -168,35 +122,38 @@
   function draw(now) {
     requestAnimationFrame(draw);
     const scene = page.scene;
-    if (page.turning && scene !== null) { scene.camera.yaw += 0.006; page.changed = true; }
+    const passed = Math.min(100, now - (page.before ?? now));
+    page.before = now;
+    if (page.turning && scene !== null) { scene.camera.yaw += 0.00036 * passed; page.changed = true; }
     if (!page.changed && !(scene !== null && scene.asked)) return;
     page.changed = false;
     ++page.frames;
     let state = null;
     if (page.history !== null && page.history.size > 0) {
-      state = stateAt(page.at === null ? page.history.end - 1 : page.history.rowAt(page.at));
+      state = stateNow();
       page.state = state;
       if (now - page.lastPlots > 90 || page.dirty) {
         page.lastPlots = now;
         page.dirty = false;
-        findEvents();
-        drawPlots();
+        asperity.findEvents(page);
+        (compares() ? asperity.compare.draw : asperity.drawPanels)(page, range(), shownTime());
         describe(state);
         if (scene !== null) chooseScale(range());
         state.scale = { force: page.scaleForce, torque: page.scaleTorque };
         drawTime();
+        if (scene !== null) asperity.showContact(page);
       }
     }
     if (scene === null) return;
     scene.asked = false;
-    if (state !== null) scene.bodies[0].pose = [...state.probe.p, ...state.probe.q];
-    scene.bodies.forEach((b, i) => { b.shown = b.probe ? page.shown.probe : page.shown[`body${i}`] ?? page.shown.bodies; });
+    if (state !== null) state.hands.forEach((h, i) => { scene.bodies[i].pose = [...h.probe.p, ...h.probe.q]; });
+    scene.bodies.forEach((b, i) => { b.shown = page.shown[`body${i}`] ?? (b.probe ? page.shown.probe : page.shown.bodies); });
     scene.draw(state);
     drawScale(state);
   }
 
   function drawTime() {
-    const h = page.history, first = h.time(h.first), last = newestTime();
+    const first = oldestTime(), last = newestTime();
     const slider = element("time");
     if (document.activeElement !== slider || page.at === null) {
       slider.value = page.at === null ? slider.max : String(Math.round((Number(slider.max) * (page.at - first)) / Math.max(1e-9, last - first)));
@@ -210,29 +167,9 @@
     element("pause").textContent = page.paused ? "Resume" : "Pause";
   }
 
-  // --- files for people
-  function save(name, blob) {
-    const link = document.createElement("a");
-    link.href = URL.createObjectURL(blob);
-    link.download = name;
-    link.click();
-    setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-  }
-
-  asperity.csvOf = (span) => {
-    const h = page.history, columns = page.description.columns;
-    const lines = [["time_s", ...columns].join()];
-    if (h.size > 0) {
-      for (let row = h.rowAt(span.from); row < h.end && h.time(row) <= span.to; ++row) {
-        lines.push([h.time(row), ...h.some(row, columns[0], columns.length)].join());
-      }
-    }
-    return lines.join("\n") + "\n";
-  };
-
   function savePicture() {
     page.scene.draw(page.state ?? null);
-    page.scene.canvas.toBlob((blob) => save("asperity.png", blob));
+    page.scene.canvas.toBlob((blob) => asperity.save("asperity.png", blob));
   }
 
   // --- switches
@@ -251,14 +188,15 @@
       const from = e.target.dataset.from;
       if (from && page.scene !== null) page.scene.lookFrom(from, page.state ? page.state.probe.centre : null);
     });
-    element("colours").addEventListener("change", (e) => { page.scene.paint = e.target.value; redraw(); });
+    element("colours").addEventListener("change", (e) => { page.scene.paint = e.target.value; asperity.showValues(page); redraw(); });
+    element("surface").addEventListener("change", (e) => { page.scene.surface = e.target.value; redraw(); });
     click("turn", () => {
       page.turning = !page.turning;
       element("turn").setAttribute("aria-pressed", String(page.turning));
       redraw();
     });
     click("picture", savePicture);
-    click("table", () => save("asperity.csv", new Blob([asperity.csvOf(range())], { type: "text/csv" })));
+    click("table", () => asperity.save("asperity.csv", new Blob([asperity.csvOf(range())], { type: "text/csv" })));
     click("hold", () => {
       if (page.description.mode === "replay") {
         page.playing = !page.playing;
@@ -269,12 +207,13 @@
       redraw();
     });
     element("time").addEventListener("input", (e) => {
-      const h = page.history, share = Number(e.target.value) / Number(e.target.max);
+      const share = Number(e.target.value) / Number(e.target.max);
       page.playing = false;
-      page.at = share >= 1 && page.description.mode === "live" ? null : h.time(h.first) + share * (newestTime() - h.time(h.first));
+      page.at = share >= 1 && page.description.mode === "live" ? null : oldestTime() + share * (newestTime() - oldestTime());
       redraw();
     });
     element("span").addEventListener("change", redraw);
+    element("component").addEventListener("change", redraw);
     click("pause", () => asperity.tell(page.paused ? "resume" : "pause"));
     click("step", () => asperity.tell("step=1"));
     element("speed").addEventListener("change", (e) => asperity.tell(`speed=${e.target.value}`));
@@ -284,8 +223,7 @@
 
   function play() {
     let before = performance.now();
-    const h = page.history;
-    if (page.at === null || page.at >= newestTime()) page.at = h.time(h.first);
+    if (page.at === null || page.at >= newestTime()) page.at = oldestTime();
     const go = (now) => {
       if (!page.playing) return;
       page.at += (now - before) / 1000;
@@ -297,34 +235,15 @@
     requestAnimationFrame(go);
   }
 
-  function listParts(description) {
-    const boxes = description.mode === "model" ? [] : parts.filter(([name]) => name !== "bodies" || description.bodies.length <= 2);
-    if (description.bodies.length > 2) description.bodies.forEach((b, i) => { if (i > 0) { boxes.push([`body${i}`, b.name]); page.shown[`body${i}`] = true; } });
-    element("parts").replaceChildren(...boxes.map(([name, label]) => {
-      const line = document.createElement("label"), box = document.createElement("input");
-      box.type = "checkbox";
-      box.checked = page.shown[name];
-      box.dataset.part = name;
-      box.addEventListener("change", () => { page.shown[name] = box.checked; page.changed = true; });
-      line.append(box, label);
-      return line;
-    }));
-    document.querySelector(".parts").hidden = boxes.length === 0;
-  }
-
-  function listFacts(description) {
-    const table = element("facts"), rows = [["model", "shown", "coarse", "pieces", "texture", "error (rms, most)"]];
-    for (const b of description.bodies) {
-      const f = b.facts, thousands = (n) => (n >= 10000 ? `${Math.round(n / 1000)} k` : String(n));
-      const less = f.texels > 1.2 * b.points ? ` points for ${thousands(f.texels)} texels, ${amount(b.step_m, "m")} apart` : " points, all texels";
-      rows.push([b.name, thousands(b.points) + less, `${f.coarse_triangles} triangles`, String(f.pieces), f.texture.join(" \u00d7 "),
-                 `${amount(f.rms_error_m, "m")}, ${amount(f.max_error_m, "m")}`]);
+  function partsOf(description, hands) {
+    if (description.mode === "model") return [];
+    const each = [...description.bodies.keys()].filter((i) => (i < hands ? hands > 1 : description.bodies.length - hands > 1));
+    const boxes = parts.filter(([name]) => name !== "map" || description.mode === "live").filter(([name]) => (name === "probe" ? hands === 1 : name !== "bodies" || description.bodies.length - hands === 1));
+    for (const i of each) {
+      page.shown[`body${i}`] = true;
+      boxes.push([`body${i}`, i < hands ? `Probe of ${"AB"[i]}` : description.bodies[i].name]);
     }
-    table.replaceChildren(...rows.map((cells, i) => {
-      const line = document.createElement("tr");
-      line.append(...cells.map((text) => Object.assign(document.createElement(i === 0 ? "th" : "td"), { textContent: text })));
-      return line;
-    }));
+    return boxes;
   }
 
   function trouble(text) {
@@ -338,14 +257,22 @@
     document.body.dataset.mode = description.mode;
     element("title").textContent = description.title;
     document.title = `${description.title} \u00b7 asperity`;
-    if (description.mode !== "model") description.bodies[0].probe = true;
+    if (description.mode === "gallery") {
+      element("theme").addEventListener("click", () => setTheme(document.documentElement.dataset.theme !== "dark"));
+      setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
+      asperity.openGallery(description);
+      return;
+    }
+    const hands = description.mode === "model" ? 0 : Math.max(1, description.recordings.length);
+    for (let i = 0; i < hands; ++i) description.bodies[i].probe = true;
     element("state").textContent = description.mode === "model" ? "model" : "opening";
     for (const control of element("session").querySelectorAll("button, select")) {
       control.disabled = !description.virtual_clock;
       if (control.disabled) control.title = "A session on the real clock does not wait for anybody";
     }
-    listParts(description);
-    listFacts(description);
+    asperity.listParts(page, partsOf(description, hands));
+    asperity.listFacts(description);
+    asperity.offerErrors(description);
     try {
       page.scene = new asperity.Scene(element("scene"), description);
     } catch (why) {
@@ -362,18 +289,21 @@
       page.turning = !matchMedia("(prefers-reduced-motion: reduce)").matches;
       element("turn").setAttribute("aria-pressed", String(page.turning));
     } else {
-      page.history = new asperity.History(description.columns, description.mode === "replay" ? Math.max(1, description.rows) : 65536);
+      const sizes = description.mode === "replay" ? description.recordings.map((r) => r.rows) : [65536];
+      page.histories = sizes.map((rows) => new asperity.History(description.columns, rows));
     }
     if (page.scene !== null) {
       page.scene.paint = "clay";
-      await Promise.all(description.bodies.map(async (b, i) => { page.scene.addMesh(i, await asperity.loadMesh(i)); page.changed = true; }));
+      const meshes = [...new Set(description.bodies.map((b) => b.mesh))];
+      await Promise.all(meshes.map(async (i) => { page.scene.addMesh(i, await asperity.loadMesh(i)); page.changed = true; }));
       page.scene.lookFrom("corner");
     }
     page.ready = performance.now();
     requestAnimationFrame(draw);
     if (description.mode === "replay") {
-      page.history.add(await asperity.loadRows(), 0, description.rows);
-      page.at = page.history.size > 0 ? page.history.time(page.history.first) : null;
+      await Promise.all(page.histories.map(async (h, i) => h.add(await asperity.loadRows(i), 0, description.recordings[i].rows)));
+      page.at = oldestTime();
+      if (compares()) asperity.compare.open(page);
       page.changed = page.dirty = true;
       if (page.scene !== null) { scenePoses(); page.scene.lookFrom("corner"); }
     }
@@ -383,6 +313,7 @@
         trouble("");
         Object.assign(page, { paused: frame.paused, over: frame.over, speed: frame.speed });
         page.contacts = contactsOf(frame.contacts);
+        page.contactProbe = frame.probe;
         placeBodies(frame.poses);
         page.changed = true;
         if (frame.rows === 0) page.dirty = true;
@@ -395,9 +326,13 @@
     }
   }
 
+  // Where the probes begin, and of two the second one lets the first one through.
   function scenePoses() {
-    const first = pose(page.history.first, "probe");
-    page.scene.bodies[0].pose = [...first.p, ...first.q];
+    page.histories.forEach((h, i) => {
+      const first = pose(h, h.first, "probe"), body = page.scene.bodies[i];
+      body.pose = [...first.p, ...first.q];
+      if (compares()) Object.assign(body, i === 0 ? { clay: [0.62, 0.40, 0.20] } : { clay: [0.42, 0.33, 0.66], alpha: 0.55 });
+    });
   }
 
   function contactsOf(list) {

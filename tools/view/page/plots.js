@@ -33,6 +33,22 @@
 
   const left = 62, bottom = 14;
 
+  // The zero line, and what the top and the bottom stand for.
+  function valueAxis(g, width, floor, zero, high, low) {
+    g.strokeStyle = css("--line");
+    g.lineWidth = 1;
+    g.beginPath();
+    g.moveTo(left, Math.round(zero) + 0.5);
+    g.lineTo(width, Math.round(zero) + 0.5);
+    g.stroke();
+    g.fillStyle = css("--soft");
+    g.textAlign = "right";
+    g.textBaseline = "top";
+    g.fillText(high, left - 4, 0);
+    g.textBaseline = "bottom";
+    g.fillText(low, left - 4, floor + 3);
+  }
+
   function timeAxis(g, width, height, from, to) {
     g.fillStyle = css("--soft");
     g.textBaseline = "alphabetic";
@@ -42,22 +58,23 @@
     g.fillText(`${short(to, 5)} s`, width - 2, height - 2);
   }
 
-  // Curves of columns of a history. Of several rows on one pixel the least and the largest are drawn: nothing is lost.
+  // Curves of columns of a history, or of their own. Of several rows on one pixel the least and the largest are drawn:
+  // nothing is lost. Where a history has no rows there is no curve.
   asperity.drawCurves = (canvas, history, range, curves, cursor) => {
     const { g, width, height } = begin(canvas);
     const floor = height - bottom, top = 3;
     if (history.size < 2) return;
-    const [first, last] = [history.rowAt(range.from), history.rowAt(range.to)];
     const span = Math.max(1e-9, range.to - range.from);
     const x = (t) => left + ((width - left - 2) * (t - range.from)) / span;
     const columns = Math.max(1, Math.floor(width - left));
     let low = 0, high = 0;
     const lines = curves.map((c) => {
       const cells = new Float32Array(2 * columns).fill(NaN);
-      const index = history.column[c.column];
-      for (let row = first; row <= last; ++row) {
-        const v = c.of ? c.of(row) : history.value(row, index);
-        const cell = Math.min(columns - 1, Math.max(0, Math.floor(x(history.time(row)) - left)));
+      const from = c.history ?? history, index = from.column[c.column], end = from.size > 0 ? from.rowAt(range.to) : -1;
+      for (let row = from.rowAt(range.from); row <= end; ++row) {
+        const v = c.of ? c.of(row) : from.value(row, index), time = from.time(row);
+        if (Number.isNaN(v) || time > range.to || time < range.from - span / columns) continue;
+        const cell = Math.min(columns - 1, Math.max(0, Math.floor(x(time) - left)));
         if (!(cells[2 * cell] <= v)) cells[2 * cell] = v;
         if (!(cells[2 * cell + 1] >= v)) cells[2 * cell + 1] = v;
         low = Math.min(low, v);
@@ -67,18 +84,7 @@
     });
     if (high - low < (curves[0].least ?? 1e-12)) high = low + (curves[0].least ?? 1e-12);
     const y = (v) => floor - ((floor - top) * (v - low)) / (high - low);
-    g.strokeStyle = css("--line");
-    g.lineWidth = 1;
-    g.beginPath();
-    g.moveTo(left, Math.round(y(0)) + 0.5);
-    g.lineTo(width, Math.round(y(0)) + 0.5);
-    g.stroke();
-    g.fillStyle = css("--soft");
-    g.textAlign = "right";
-    g.textBaseline = "top";
-    g.fillText(asperity.amount(high, curves[0].unit, 2), left - 4, 0);
-    g.textBaseline = "bottom";
-    g.fillText(asperity.amount(low, curves[0].unit, 2), left - 4, floor + 3);
+    valueAxis(g, width, floor, y(0), asperity.amount(high, curves[0].unit, 2), asperity.amount(low, curves[0].unit, 2));
     lines.forEach((cells, i) => {
       g.strokeStyle = css(curves[i].colour);
       g.lineWidth = 1.4;
@@ -147,8 +153,33 @@
     return out.map(Math.sqrt);
   };
 
-  // Dark blue over violet and orange to light yellow: lightness grows evenly.
-  const heat = [[13, 8, 35], [66, 20, 110], [140, 41, 99], [212, 72, 66], [246, 138, 40], [252, 205, 85], [252, 253, 200]];
+  // Spectra of histories over each other, each of the 256 rows before its `end`: amplitudes from 1 mN to 1 N.
+  asperity.drawSpectra = (canvas, lines, periods) => {
+    const { g, width, height } = begin(canvas);
+    const floor = height - bottom, most = 0.5 / Math.min(...periods.filter((p) => p > 0));
+    valueAxis(g, width, floor, floor, "1 N", "1 mN");
+    lines.forEach((line, i) => {
+      if (line.end - line.history.first < 256 || !(periods[i] > 0)) return;
+      const amplitude = asperity.spectrumAt(line.history, line.end);
+      g.strokeStyle = css(line.colour);
+      g.lineWidth = 1.4;
+      g.beginPath();
+      for (let k = 1; k < 128; ++k) {
+        const x = left + ((width - left - 2) * k) / (256 * periods[i] * most);
+        const y = floor - floor * Math.max(0, Math.min(1, Math.log10(amplitude[k] / 1e-3) / 3));
+        k > 1 ? g.lineTo(x, y) : g.moveTo(x, y);
+      }
+      g.stroke();
+    });
+    g.fillStyle = css("--soft");
+    g.textBaseline = "alphabetic";
+    g.textAlign = "left";
+    g.fillText("0", left, height - 2);
+    g.textAlign = "right";
+    g.fillText(`${short(most)} Hz`, width - 2, height - 2);
+  };
+
+  const heat = asperity.heat;
   const heatAt = (share) => {
     const x = Math.max(0, Math.min(0.9999, share)) * (heat.length - 1), k = Math.floor(x);
     return heat[k].map((c, i) => c + (heat[k + 1][i] - c) * (x - k));

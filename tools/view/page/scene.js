@@ -1,159 +1,26 @@
 // The scene in three dimensions: bodies, hand, contacts and arrows, on WebGL 2.
 "use strict";
 (() => {
-  // Vectors and quaternions (x y z w) are arrays; matrices are columns, as WebGL takes them.
-  const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-  const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-  const times = (s, a) => [s * a[0], s * a[1], s * a[2]];
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const length = (a) => Math.hypot(a[0], a[1], a[2]);
-  const unit = (a) => times(1 / (length(a) || 1), a);
-  const turn = (q, v) => {
-    const t = times(2, cross(q, v));
-    return add(add(v, times(q[3], t)), cross(q, t));
-  };
-  const poseMatrix = (p, q, scale = 1) => {
-    const [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => times(scale, turn(q, axis)));
-    return [...x, 0, ...y, 0, ...z, 0, ...p, 1];
-  };
-  // Takes the unit shape along +z to one from `from` along `along`, so thick across.
-  const along = (from, way, thick) => {
-    const z = unit(way);
-    const x = unit(cross(Math.abs(z[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0], z));
-    return [...times(thick, x), 0, ...times(thick, cross(z, x)), 0, ...way, 0, ...from, 1];
-  };
-  const multiply = (a, b) => {
-    const out = new Array(16).fill(0);
-    for (let c = 0; c < 4; ++c) for (let r = 0; r < 4; ++r) for (let k = 0; k < 4; ++k) out[4 * c + r] += a[4 * k + r] * b[4 * c + k];
-    return out;
-  };
-  Object.assign(asperity, { vectors: { add, sub, times, dot, cross, length, unit, turn } });
-
-  const bodyVertex = `#version 300 es
-    uniform mat4 view, model;
-    uniform vec3 low, size;
-    layout(location = 0) in vec4 place;  // share of the box, and of the relief's range
-    layout(location = 1) in vec4 normalAndPiece;
-    out vec3 normal, world;
-    out float relief;
-    flat out int piece;
-    void main() {
-      vec4 w = model * vec4(low + size * place.xyz, 1.0);
-      world = w.xyz;
-      normal = mat3(model) * (normalAndPiece.xyz / 127.0);
-      relief = place.w;
-      piece = int(normalAndPiece.w);
-      gl_Position = view * w;
-    }`;
-  // One key light from beside the viewer rakes over the surface, so that small relief throws tones; the sky fills.
-  const bodyFragment = `#version 300 es
-    precision highp float;
-    uniform vec3 eye, key, clay, colours[8];
-    uniform vec3 scaleLow, scaleMiddle, scaleHigh;
-    uniform float zero;
-    uniform int paint;
-    in vec3 normal, world;
-    in float relief;
-    flat in int piece;
-    out vec4 colour;
-    void main() {
-      vec3 n = normalize(normal);
-      vec3 toEye = normalize(eye - world);
-      float lit = max(dot(n, key), 0.0);
-      float sky = 0.5 + 0.5 * n.z;
-      float shine = pow(max(dot(n, normalize(key + toEye)), 0.0), 40.0);
-      vec3 base = clay;
-      if (paint == 1) {
-        base = relief < zero ? mix(scaleLow, scaleMiddle, relief / max(zero, 1e-6))
-                             : mix(scaleMiddle, scaleHigh, (relief - zero) / max(1.0 - zero, 1e-6));
-      } else if (paint == 2) {
-        base = colours[piece];
-      }
-      vec3 light = base * (0.16 + 0.22 * sky + 0.78 * lit) + 0.10 * shine;
-      colour = vec4(pow(light, vec3(1.0 / 2.2)), 1.0);
-    }`;
-  const partVertex = `#version 300 es
-    uniform mat4 view, model;
-    layout(location = 0) in vec3 place;
-    layout(location = 1) in vec3 across;
-    out vec3 normal;
-    void main() {
-      normal = mat3(model) * across;
-      gl_Position = view * (model * vec4(place, 1.0));
-    }`;
-  const partFragment = `#version 300 es
-    precision highp float;
-    uniform vec4 tint;
-    uniform vec3 key;
-    uniform float shaded;
-    in vec3 normal;
-    out vec4 colour;
-    void main() {
-      float light = mix(1.0, 0.72 + 0.28 * abs(dot(normalize(normal), key)), shaded);
-      colour = vec4(tint.rgb * light, tint.a);
-    }`;
-
-  function program(gl, vertex, fragment) {
-    const made = gl.createProgram();
-    for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
-      const shader = gl.createShader(kind);
-      gl.shaderSource(shader, text);
-      gl.compileShader(shader);
-      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader));
-      gl.attachShader(made, shader);
-    }
-    gl.linkProgram(made);
-    if (!gl.getProgramParameter(made, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(made));
-    const at = {};
-    for (let i = 0; i < gl.getProgramParameter(made, gl.ACTIVE_UNIFORMS); ++i) {
-      const name = gl.getActiveUniform(made, i).name.replace("[0]", "");
-      at[name] = gl.getUniformLocation(made, name);
-    }
-    return { made, at };
-  }
-
-  // A solid of revolution about z: profile of [radius, height], as triangles with normals.
-  function revolve(profile, sides = 24) {
-    const out = [];
-    for (let k = 0; k + 1 < profile.length; ++k) {
-      const [[r0, z0], [r1, z1]] = [profile[k], profile[k + 1]];
-      const n = unit([z1 - z0, 0, r0 - r1]);
-      for (let s = 0; s < sides; ++s) {
-        const [a, b] = [s, s + 1].map((i) => (2 * Math.PI * i) / sides);
-        const point = (r, z, t) => [r * Math.cos(t), r * Math.sin(t), z];
-        const across = (t) => [n[0] * Math.cos(t), n[0] * Math.sin(t), n[2]];
-        for (const [r, z, t] of [[r0, z0, a], [r0, z0, b], [r1, z1, b], [r0, z0, a], [r1, z1, b], [r1, z1, a]]) {
-          out.push(...point(r, z, t), ...across(t));
-        }
-      }
-    }
-    return new Float32Array(out);
-  }
-  const ball = Array.from({ length: 13 }, (_, i) => [Math.sin((Math.PI * i) / 12), -Math.cos((Math.PI * i) / 12)]);
-  const shapes = {
-    rod: revolve([[0, 0], [1, 0], [1, 1], [0, 1]]),
-    cone: revolve([[0, 0], [1, 0], [0, 1]]),
-    ball: revolve(ball),
-    disc: revolve([[0, 0], [1, 0]], 32),
-    ring: revolve([[0.86, -0.07], [1, 0], [0.86, 0.07], [0.86, -0.07]], 40),
-  };
+  const { add, sub, times, dot, cross, length, unit, turn } = asperity.vectors;
+  const { poseMatrix, along, multiply } = asperity.matrices;
+  const { make, bodyVertex, bodyFragment, partVertex, partFragment } = asperity.programs;
 
   class Scene {
     constructor(canvas, description) {
-      const gl = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: false });
+      const gl = canvas.getContext("webgl2", { antialias: true, alpha: false, preserveDrawingBuffer: false });
       if (gl === null) throw new Error("This browser has no WebGL 2: the scene is not drawn, the panels are.");
       this.canvas = canvas;
       this.gl = gl;
-      this.body = program(gl, bodyVertex, bodyFragment);
-      this.part = program(gl, partVertex, partFragment);
-      this.shapes = Object.fromEntries(Object.entries(shapes).map(([name, data]) => [name, this.buffer(data)]));
-      this.bodies = description.bodies.map((b) => ({ ...b, mesh: null, shown: true }));
+      this.body = make(gl, bodyVertex, bodyFragment);
+      this.part = make(gl, partVertex, partFragment);
+      this.shapes = Object.fromEntries(Object.entries(asperity.shapes).map(([name, data]) => [name, this.buffer(data)]));
+      this.bodies = description.bodies.map((b) => ({ ...b, drawing: null, shown: true }));
       this.camera = { at: [0, 0, 0], distance: 1, yaw: -0.9, pitch: 0.5 };
       this.paint = "clay";
+      this.surface = "textured";  // or "coarse", or "both"
       this.dark = false;
       this.drawn = { arrows: {} };
-      this.listen();
+      asperity.steer(this);
     }
 
     buffer(data) {
@@ -169,6 +36,7 @@
       return { vao, count: data.length / 6 };
     }
 
+    // For all bodies that have this mesh.
     addMesh(i, mesh) {
       const gl = this.gl, vao = gl.createVertexArray();
       gl.bindVertexArray(vao);
@@ -182,18 +50,61 @@
       gl.vertexAttribPointer(1, 4, gl.BYTE, false, 4, 0);
       gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, mesh.indices, gl.STATIC_DRAW);
+      if (mesh.errors !== null) {
+        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+        gl.bufferData(gl.ARRAY_BUFFER, mesh.errors, gl.STATIC_DRAW);
+        gl.enableVertexAttribArray(2);
+        gl.vertexAttribPointer(2, 1, gl.UNSIGNED_SHORT, true, 2, 0);
+      }
       gl.bindVertexArray(null);
-      this.bodies[i].mesh = { vao, count: mesh.indices.length, low: mesh.low, relief: mesh.relief,
-                              size: mesh.high.map((h, k) => h - mesh.low[k]) };
+      const drawing = { vao, count: mesh.indices.length, ...this.coarse(mesh), low: mesh.low, relief: mesh.relief,
+                        hasErrors: mesh.errors !== null, mesh,
+                        size: mesh.high.map((h, k) => h - mesh.low[k]) };
+      for (const b of this.bodies) if (b.mesh === i) b.drawing = drawing;
+    }
+
+    // The coarse mesh: flat triangles in the colours of their pieces, and their edges.
+    coarse(mesh) {
+      const gl = this.gl, count = mesh.triangles.length / 3;
+      const size = mesh.high.map((h, k) => h - mesh.low[k]), normals = new Int8Array(12 * count), places = new Float32Array(12 * count);
+      const edges = new Map();
+      let point = 0;
+      for (let t = 0; t < count; ++t) {
+        const corner = [0, 1, 2].map((k) => Array.from(mesh.corners.subarray(3 * mesh.triangles[3 * t + k], 3 * mesh.triangles[3 * t + k] + 3)));
+        const n = unit(cross(sub(corner[1], corner[0]), sub(corner[2], corner[0]))).map((x) => Math.round(127 * x));
+        for (let k = 0; k < 3; ++k) {
+          // Shares of the box of the points, in which the program thinks; the relief is none.
+          places.set([0, 1, 2].map((i) => (corner[k][i] - mesh.low[i]) / (size[i] || 1)), 12 * t + 4 * k);
+          places[12 * t + 4 * k + 3] = -mesh.relief[0] / ((mesh.relief[1] - mesh.relief[0]) || 1);
+          normals.set([...n, mesh.normals[4 * point + 3]], 12 * t + 4 * k);
+          const [one, other] = [mesh.triangles[3 * t + k], mesh.triangles[3 * t + (k + 1) % 3]];
+          edges.set(`${Math.min(one, other)} ${Math.max(one, other)}`, [3 * t + k, 3 * t + (k + 1) % 3]);
+        }
+        point += (mesh.shape[2 * t] + 1) * (mesh.shape[2 * t + 1] + 1);
+      }
+      const vao = gl.createVertexArray();
+      gl.bindVertexArray(vao);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, places, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(0);
+      gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16, 0);
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, normals, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(1);
+      gl.vertexAttribPointer(1, 4, gl.BYTE, false, 4, 0);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, new Uint32Array([...edges.values()].flat()), gl.STATIC_DRAW);
+      gl.bindVertexArray(null);
+      return { coarseVao: vao, coarsePoints: 3 * count, coarseEdges: edges.size };
     }
 
     // Box of all bodies where they are, in the world.
     box() {
       const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
       for (const b of this.bodies) {
-        if (b.mesh === null) continue;
+        if (b.drawing === null) continue;
         for (let corner = 0; corner < 8; ++corner) {
-          const p = [0, 1, 2].map((k) => b.mesh.low[k] + ((corner >> k) & 1) * b.mesh.size[k]);
+          const p = [0, 1, 2].map((k) => b.drawing.low[k] + ((corner >> k) & 1) * b.drawing.size[k]);
           const w = add(b.pose.slice(0, 3), turn(b.pose.slice(3), p));
           for (let k = 0; k < 3; ++k) { low[k] = Math.min(low[k], w[k]); high[k] = Math.max(high[k], w[k]); }
         }
@@ -211,56 +122,6 @@
       this.camera.at = name === "touch" && touch !== null ? touch : times(0.5, add(box.low, box.high));
       this.camera.distance = (name === "touch" ? 0.6 : 1.7) * box.size;
       this.asked = true;
-    }
-
-    listen() {
-      const held = new Map();
-      const c = this.canvas;
-      let led = null;  // the pointer that leads the hand
-      c.addEventListener("pointerdown", (e) => {
-        c.setPointerCapture(e.pointerId);
-        held.set(e.pointerId, [e.clientX, e.clientY]);
-        if (held.size === 1 && this.lead?.takes(e.offsetX, e.offsetY)) led = e.pointerId;
-      });
-      const release = (e) => { held.delete(e.pointerId); if (led === e.pointerId) led = null; };
-      c.addEventListener("pointerup", release);
-      c.addEventListener("pointercancel", release);
-      c.addEventListener("contextmenu", (e) => e.preventDefault());
-      c.addEventListener("pointermove", (e) => {
-        const before = held.get(e.pointerId);
-        if (before === undefined) return;
-        const moved = [e.clientX - before[0], e.clientY - before[1]];
-        if (led === e.pointerId && held.size === 1) {
-          const turns = e.buttons === 2 || e.altKey;
-          this.lead.drag(...moved, turns ? "turn" : e.shiftKey ? "deep" : "move");
-        } else if (held.size === 2) {
-          const other = [...held.entries()].find(([id]) => id !== e.pointerId)[1];
-          const gap = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]) || 1;
-          this.zoom(gap(before) / gap([e.clientX, e.clientY]));
-          this.pan(moved[0] / 2, moved[1] / 2);
-        } else if (e.shiftKey || e.buttons === 2 || e.buttons === 4) {
-          this.pan(...moved);
-        } else {
-          this.rotate(-0.008 * moved[0], 0.008 * moved[1]);
-        }
-        held.set(e.pointerId, [e.clientX, e.clientY]);
-      });
-      c.addEventListener("wheel", (e) => {
-        e.preventDefault();
-        if (led !== null) { this.lead.drag(0, 0.2 * e.deltaY, "deep"); return; }
-        this.zoom(Math.exp(0.0012 * e.deltaY));
-      }, { passive: false });
-      c.addEventListener("keydown", (e) => {
-        const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-        const way = arrows[e.key];
-        if (way !== undefined) e.shiftKey ? this.pan(-20 * way[0], 20 * way[1]) : this.rotate(0.1 * way[0], 0.1 * way[1]);
-        else if (e.key === "+" || e.key === "=") this.zoom(1 / 1.15);
-        else if (e.key === "-") this.zoom(1.15);
-        else if (e.key === "0") this.lookFrom("corner");
-        else if (this.lead?.key(e.key.toLowerCase(), e.shiftKey)) { /* the hand was led */ }
-        else return;
-        e.preventDefault();
-      });
     }
 
     rotate(yaw, pitch) {
@@ -326,7 +187,9 @@
       gl.uniformMatrix4fv(this.part.at.view, false, view.matrix);
       gl.uniform3fv(this.part.at.key, view.key);
       this.drawn = { arrows: {}, contacts: 0 };
-      if (state !== null) this.drawParts(state);
+      if (state === null) return;
+      this.drawContacts(state);
+      for (const s of state.hands) this.drawHand(s, state);
     }
 
     drawBodies(view) {
@@ -335,24 +198,67 @@
       gl.uniformMatrix4fv(at.view, false, view.matrix);
       gl.uniform3fv(at.eye, view.eye);
       gl.uniform3fv(at.key, view.key);
-      gl.uniform1i(at.paint, { clay: 0, relief: 1, pieces: 2 }[this.paint] ?? 0);
-      gl.uniform3fv(at.scaleLow, [0.05, 0.19, 0.52]);
-      gl.uniform3fv(at.scaleMiddle, [0.72, 0.72, 0.70]);
-      gl.uniform3fv(at.scaleHigh, [0.75, 0.24, 0.02]);
+      gl.uniform3fv(at.scaleLow, asperity.aboutZero[0]);
+      gl.uniform3fv(at.scaleMiddle, asperity.aboutZero[1]);
+      gl.uniform3fv(at.scaleHigh, asperity.aboutZero[2]);
+      gl.uniform3fv(at.heat, asperity.heatLinear);
       gl.uniform3fv(at.colours, [0.40, 0.58, 0.78, 0.80, 0.58, 0.34, 0.26, 0.52, 0.42, 0.76, 0.46, 0.58,
                                  0.80, 0.76, 0.42, 0.38, 0.36, 0.66, 0.60, 0.80, 0.80, 0.66, 0.32, 0.24]);
-      this.bodies.forEach((b, i) => {
-        if (b.mesh === null || !b.shown) return;
+      const order = [...this.bodies.keys()].sort((one, other) => (this.bodies[one].alpha ? 1 : 0) - (this.bodies[other].alpha ? 1 : 0));
+      order.forEach((i) => {
+        const b = this.bodies[i];
+        if (b.drawing === null || !b.shown) return;
         gl.uniformMatrix4fv(at.model, false, poseMatrix(b.pose.slice(0, 3), b.pose.slice(3)));
-        gl.uniform3fv(at.low, b.mesh.low);
-        gl.uniform3fv(at.size, b.mesh.size);
-        gl.uniform3fv(at.clay, b.probe ? [0.60, 0.47, 0.30] : i % 2 === 1 ? [0.50, 0.53, 0.55] : [0.46, 0.50, 0.44]);
-        const [low, high] = b.mesh.relief;
+        gl.uniform3fv(at.low, b.drawing.low);
+        gl.uniform3fv(at.size, b.drawing.size);
+        gl.uniform3fv(at.clay, b.clay ?? (b.probe ? [0.60, 0.47, 0.30] : i % 2 === 1 ? [0.50, 0.53, 0.55] : [0.46, 0.50, 0.44]));
+        const [low, high] = b.drawing.relief;
         gl.uniform1f(at.zero, high > low ? -low / (high - low) : 0.5);
-        gl.bindVertexArray(b.mesh.vao);
-        gl.drawElements(gl.TRIANGLES, b.mesh.count, gl.UNSIGNED_INT, 0);
+        // What is seen through is drawn over what has been drawn before, also where both are at the same place.
+        gl.uniform1f(at.alpha, b.alpha ?? 1);
+        if (b.alpha) {
+          gl.enable(gl.BLEND);
+          gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+          gl.enable(gl.POLYGON_OFFSET_FILL);
+          gl.polygonOffset(-1, -8);
+        }
+        const paint = { clay: 0, relief: 1, pieces: 2, error: b.drawing.hasErrors ? 3 : 0 }[this.paint];
+        if (this.surface !== "coarse") {
+          gl.uniform1i(at.paint, paint);
+          gl.bindVertexArray(b.drawing.vao);
+          gl.drawElements(gl.TRIANGLES, b.drawing.count, gl.UNSIGNED_INT, 0);
+        }
+        gl.disable(gl.BLEND);
+        if (this.surface !== "textured") this.drawCoarse(b, at, paint);
+        gl.disable(gl.POLYGON_OFFSET_FILL);
       });
       gl.bindVertexArray(null);
+    }
+
+    // Edges lie in front of the triangles that they are of, and show faintly through the relief.
+    drawCoarse(b, at, paint) {
+      const gl = this.gl;
+      gl.bindVertexArray(b.drawing.coarseVao);
+      if (this.surface === "coarse") {
+        gl.uniform1i(at.paint, paint === 2 ? 2 : 0);
+        gl.enable(gl.POLYGON_OFFSET_FILL);
+        gl.polygonOffset(1, 1);
+        gl.drawArrays(gl.TRIANGLES, 0, b.drawing.coarsePoints);
+        gl.disable(gl.POLYGON_OFFSET_FILL);
+      }
+      gl.uniform1i(at.paint, 4);
+      const lines = (alpha) => { gl.uniform1f(at.alpha, alpha); gl.drawElements(gl.LINES, 2 * b.drawing.coarseEdges, gl.UNSIGNED_INT, 0); };
+      if (this.surface === "both") {
+        gl.enable(gl.BLEND);
+        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+        gl.depthFunc(gl.GREATER);
+        gl.depthMask(false);
+        lines(0.12);
+        gl.depthMask(true);
+        gl.depthFunc(gl.LEQUAL);
+        gl.disable(gl.BLEND);
+      }
+      lines(1);
     }
 
     shape(name, matrix, tint, shaded = 1) {
@@ -376,24 +282,25 @@
       this.drawn.arrows[name] = { from, tip: add(from, way), length: long, scale };
     }
 
-    drawParts(s) {
-      const gl = this.gl, size = this.size;
-      const shown = s.shown;
-      // Arrows and the hand are what people look for: they are seen through bodies, faintly.
-      const both = (paint, hidden = 0.28) => {
-        gl.enable(gl.BLEND);
-        gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-        gl.depthFunc(gl.GREATER);
-        gl.depthMask(false);
-        paint(hidden);
-        gl.depthMask(true);
-        gl.depthFunc(gl.LEQUAL);
-        paint(1);
-        gl.disable(gl.BLEND);
-      };
+    // Arrows and the hand are what people look for: they are seen through bodies, faintly.
+    throughBodies(paint, hidden) {
+      const gl = this.gl;
+      gl.enable(gl.BLEND);
+      gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
+      gl.depthFunc(gl.GREATER);
+      gl.depthMask(false);
+      paint(hidden);
+      gl.depthMask(true);
+      gl.depthFunc(gl.LEQUAL);
+      paint(1);
+      gl.disable(gl.BLEND);
+    }
+
+    drawContacts(s) {
+      const size = this.size, shown = s.shown;
       if (shown.contacts) {
         this.drawn.contacts = s.contacts.length;
-        both((strength) => {
+        this.throughBodies((strength) => {
           for (const c of s.contacts) {
             const heat = Math.max(0, Math.min(1, 0.5 + c.depth / 2e-4));
             // A gap is small and blue; what presses is large, the deeper the redder.
@@ -409,21 +316,27 @@
           }
         }, 0.15);
       }
-      both((strength) => {
+    }
+
+    // `s`: one hand with its probe; `all`: what is the same of all hands.
+    drawHand(s, all) {
+      const size = this.size, shown = all.shown;
+      this.throughBodies((strength) => {
         const hand = s.target.centre, probe = s.probe.centre;
-        if (shown.hand) {
-          this.shape("ball", poseMatrix(hand, [0, 0, 0, 1], 0.012 * size), [...(this.dark ? [0.95, 0.85, 0.4] : [0.55, 0.40, 0.0]), strength]);
-        }
+        const own = s.colour ? (this.dark ? s.colour.dark : s.colour.light) : null;
+        const gold = [...(own ?? (this.dark ? [0.95, 0.85, 0.4] : [0.55, 0.40, 0.0])), strength];
+        if (shown.hand) this.shape("ball", poseMatrix(hand, [0, 0, 0, 1], 0.012 * size), gold);
         if (shown.coupling && length(sub(hand, probe)) > 1e-9) {
-          this.shape("rod", along(probe, sub(hand, probe), 0.003 * size), [...(this.dark ? [0.95, 0.85, 0.4] : [0.55, 0.40, 0.0]), strength]);
+          this.shape("rod", along(probe, sub(hand, probe), 0.003 * size), gold);
         }
-        const force = this.dark ? [1, 0.42, 0.36, strength] : [0.72, 0.1, 0.08, strength];
-        const torque = this.dark ? [0.72, 0.6, 1, strength] : [0.36, 0.2, 0.72, strength];
-        if (shown.force) this.arrow("hand_force", hand, s.hand.force, s.scale.force, force, false);
-        if (shown.torque) this.arrow("hand_torque", hand, s.hand.torque, s.scale.torque, torque, true);
-        const onProbe = this.dark ? [0.45, 0.85, 0.6, strength] : [0.05, 0.45, 0.25, strength];
-        if (shown.probe_force) this.arrow("contact_force", probe, s.contact.force, s.scale.force, onProbe, false);
-      });
+        const force = [...(own ?? (this.dark ? [1, 0.42, 0.36] : [0.72, 0.1, 0.08])), strength];
+        const torque = [...(own ?? (this.dark ? [0.72, 0.6, 1] : [0.36, 0.2, 0.72])), strength];
+        const name = (arrow) => arrow + (s.name ?? "");
+        if (shown.force) this.arrow(name("hand_force"), hand, s.hand.force, all.scale.force, force, false);
+        if (shown.torque) this.arrow(name("hand_torque"), hand, s.hand.torque, all.scale.torque, torque, true);
+        const onProbe = [...(own ?? (this.dark ? [0.45, 0.85, 0.6] : [0.05, 0.45, 0.25])), strength];
+        if (shown.probe_force) this.arrow(name("contact_force"), probe, s.contact.force, all.scale.force, onProbe, false);
+      }, 0.28);
     }
   }
   asperity.Scene = Scene;

@@ -19,10 +19,11 @@ const asperity = {};
 
   asperity.loadScene = async () =>
     asperity.isExported() ? JSON.parse(element("data-scene").textContent) : ask("scene.json", "json");
+  asperity.loadSession = async () => ask("session.json", "json");
   asperity.loadMesh = async (i) => readMesh(
     asperity.isExported() ? decode64(element(`data-mesh-${i}`).textContent) : await ask(`mesh/${i}`, "arrayBuffer"));
-  asperity.loadRows = async () =>
-    asperity.isExported() ? decode64(element("data-rows").textContent) : ask("rows", "arrayBuffer");
+  asperity.loadRows = async (i) =>
+    asperity.isExported() ? decode64(element(`data-rows-${i}`).textContent) : ask(`rows/${i}`, "arrayBuffer");
   asperity.tell = (what) =>
     fetch(`do?${what}`, { method: "POST", headers: { ...headers, "X-Asperity": "1" } }).catch(() => undefined);
 
@@ -30,15 +31,21 @@ const asperity = {};
   function readMesh(bytes) {
     const head = new Uint32Array(bytes, 0, 4);
     if (head[0] !== 0x4d505341) throw new Error("a mesh that this page cannot read");
-    const [, points, patches] = head;
-    const range = new Float32Array(bytes, 16, 8);
-    const shape = new Uint32Array(bytes, 48, 2 * patches);
-    let at = 48 + 8 * patches;
+    const [, points, patches, vertices] = head;
+    const range = new Float32Array(bytes, 16, 10);
+    const shape = new Uint32Array(bytes, 56, 2 * patches);
+    let at = 56 + 8 * patches;
+    const corners = new Float32Array(bytes, at, 3 * vertices);
+    at += 12 * vertices;
+    const triangles = new Uint32Array(bytes, at, 3 * patches);
+    at += 12 * patches;
     const places = new Uint16Array(bytes, at, 4 * points);
     at += 8 * points;
     const normals = new Int8Array(bytes, at, 4 * points);
-    return { points, low: range.slice(0, 3), high: range.slice(3, 6), relief: range.slice(6, 8), places, normals,
-             indices: indicesOf(shape, patches) };
+    at += 4 * points;
+    const errors = range[8] >= 0 ? new Uint16Array(bytes, at, points) : null;
+    return { points, low: range.slice(0, 3), high: range.slice(3, 6), relief: range.slice(6, 8), places, normals, errors,
+             shape, corners, triangles, indices: indicesOf(shape, patches) };
   }
 
   // Two triangles for each cell of a patch; the last row of a patch has come together in one point.
@@ -129,7 +136,9 @@ const asperity = {};
       const list = new Float32Array(bytes.slice(at, at + 32 * contacts));
       at += 32 * contacts;
       const poses = new Float32Array(bytes.slice(at, at + 28 * bodies));
-      onFrame({ rows, contacts: list, poses, dropped, paused: (flags & 1) !== 0, over: (flags & 2) !== 0,
+      at += 28 * bodies;
+      const probe = Array.from(new Float32Array(bytes.slice(at, at + 28)));
+      onFrame({ rows, contacts: list, poses, probe, dropped, paused: (flags & 1) !== 0, over: (flags & 2) !== 0,
                 speed: head.getFloat64(48, true), restarted });
       if ((flags & 2) !== 0 && rows === 0) return;
       await new Promise((drawn) => requestAnimationFrame(drawn));

@@ -43,6 +43,11 @@ struct model_picture {
   shown_values values;
 };
 
+/// Whether a mesh can be what the model was baked from. @param name of the mesh, for messages
+/// @return invalid_argument where it is empty, not finite, or of another size or place than the model
+[[nodiscard]] result<void> check_original(const textured_model& model, const triangle_mesh& original,
+                                          const std::string& name);
+
 /// Draws the page. The same model and options give the same bytes on one machine; fonts differ between machines.
 /// @return invalid_argument where the original is empty, not finite, or of another size or place than the model |
 /// cancelled | io_failed
