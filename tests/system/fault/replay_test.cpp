@@ -136,16 +136,21 @@ TEST_F(replay, ends_where_the_device_was_disarmed) {
 
 TEST_F(replay, ends_as_an_interrupted_session_did) {
   const arguments away{"--probe-pose", "0 0 0.5 0 0 0 1", "--contacts", "window"};
-  process_options options;
-  options.interrupt_after_s = 0.4;
   arguments first =
       felt_with("simulated", {"--seconds", "3000", "--record", path("then.csv"), "--record-device", path("then.dev")});
   first.insert(first.end(), away.begin(), away.end());
-  EXPECT_EQ(run(first, options).exit_status, 130);
-  const auto recording = asperity::decode(read("then.dev"));
+  // On a busy machine the models may not be loaded yet when the signal comes: a later one finds the session.
+  process_options options;
+  options.interrupt_after_s = 0.4;
+  auto recording = asperity::decode("");
+  for (int tries = 0; tries < 7 && (!recording || recording->writes_before_end == 0); ++tries) {
+    EXPECT_EQ(run(first, options).exit_status, 130);
+    recording = asperity::decode(read("then.dev"));
+    *options.interrupt_after_s *= 2.0;
+  }
   ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_GT(recording->writes_before_end, 0U);
   EXPECT_EQ(recording->end, recorded_end::interrupted);
-  if (recording->writes_before_end == 0) GTEST_SKIP() << "the signal came before the first tick";
   arguments second = again(path("then.dev"), {"--record", path("now.csv")});
   second.insert(second.end(), away.begin(), away.end());
   EXPECT_EQ(expect_document(second, "asperity.run/1")["interrupted"], false);
