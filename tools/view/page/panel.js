@@ -31,7 +31,7 @@
     element("push").setAttribute("aria-pressed", "true");
     say("asking");
     try {
-      const answer = await tell(`press=${element("axis").value.slice(1)},${element("axis").value[0]}${element("newtons").value}`);
+      const answer = await tell(`press=${element("axis").value[1]},${element("axis").value[0] === "-" ? "-" : ""}${element("newtons").value}`);
       held.name = answer.press;
       if (panel.held !== held) tell(`release=${held.name}`).catch(() => {}); // let go meanwhile
       else panel.beat();
