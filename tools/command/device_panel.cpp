@@ -7,6 +7,7 @@
 #include <memory>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "asperity/control/real_time_thread.hpp"
 #include "asperity/core/printable.hpp"
@@ -67,7 +68,12 @@ struct shown_device {
       motion.kind = motion_kind::free;
       motion.amplitude_m = 0.02;
       motion.frequency_hz = 0.5;
-      device.emplace(simulated_device({.seed = options.seed, .motion = motion}));
+      // So that buttons can be seen too: the first one, for half of every two seconds of the first minute.
+      std::vector<scripted_press> presses;
+      for (std::int64_t s = 1; s < 60; s += 2) {
+        presses.push_back({.buttons = 1U, .from_ns = s * 1'000'000'000, .until_ns = (s + 1) * 1'000'000'000});
+      }
+      device.emplace(simulated_device({.seed = options.seed, .motion = motion, .presses = std::move(presses)}));
       return device->open();
     }
     {
