@@ -309,16 +309,16 @@ TEST_F(documents, devices) {
   EXPECT_EQ(d["devices"][0]["maturity"], "simulated");
 }
 
-#ifdef ASPERITY_HAS_VIEW
 TEST_F(documents, a_panel_of_a_device) {
-  const json d = expect_document({"devices", "--view", "0", "--seconds", "0.2"}, "asperity.devices/1");
+  const arguments shown{"devices", "--view", "0", "--seconds", "0.2"};
+  if (run(shown).err.find("no live page") != std::string::npos) GTEST_SKIP() << "this build has no live page";
+  const json d = expect_document(shown, "asperity.devices/1");
   expect_keys(d["panel"], {"device", "ticks", "lost_periods", "longest_gap", "rejected_samples", "fault", "most_force",
                            "largest_force", "longest_without_beat", "press_count", "presses", "armed_at_end"});
   EXPECT_EQ(d["panel"]["device"], "simulated");
   EXPECT_EQ(d["panel"]["largest_force"], 0.0);
   EXPECT_FALSE(d["panel"]["armed_at_end"]);
 }
-#endif
 
 TEST_F(documents, bench) {
   const json d = expect_document({"bench", "--probe", pin(), "--fixed", pin(), "--poses", "50"}, "asperity.bench/1");

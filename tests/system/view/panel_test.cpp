@@ -171,8 +171,7 @@ TEST_F(panel, an_older_press_is_never_taken_up_again) {
   b.hold(300 * ms);
   ASSERT_TRUE(b.loop->button().holds());
   b.wish = old;
-  EXPECT_LE(b.hold(10 * ms), 0.5);
-  for (int i = 0; i < 300; ++i) b.tick();
+  b.hold(70 * ms);  // long enough for the way to zero, and for an old press to have begun again
   EXPECT_EQ(b.hold(300 * ms), 0.0);
 }
 
