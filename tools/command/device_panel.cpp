@@ -70,8 +70,10 @@ struct shown_device {
       motion.frequency_hz = 0.5;
       // So that buttons can be seen too: the first one, for half of every two seconds of the first minute.
       std::vector<scripted_press> presses;
+      const std::int64_t begin_ns = clock_now_ns(), second_ns = 1'000'000'000;
       for (std::int64_t s = 1; s < 60; s += 2) {
-        presses.push_back({.buttons = 1U, .from_ns = s * 1'000'000'000, .until_ns = (s + 1) * 1'000'000'000});
+        presses.push_back(
+            {.buttons = 1U, .from_ns = begin_ns + s * second_ns, .until_ns = begin_ns + (s + 1) * second_ns});
       }
       device.emplace(simulated_device({.seed = options.seed, .motion = motion, .presses = std::move(presses)}));
       return device->open();

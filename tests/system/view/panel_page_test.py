@@ -210,8 +210,8 @@ class Page(unittest.TestCase):
             self.assertAlmostEqual(1e3 * one, float(other), delta=0.006)
         self.assertGreater(b.value("asperity.panel.rate"), 300)
         self.assertGreater(b.value("asperity.panel.jitter"), 0)
-        b.wait("document.getElementById('buttons').textContent === '1 pressed'")
-        b.wait("document.getElementById('buttons').textContent === 'none pressed'")
+        b.wait("document.getElementById('buttons').textContent === '1 pressed'", 10)
+        b.wait("document.getElementById('buttons').textContent === 'none pressed'", 10)
         self.assertIn("Hz", b.value("document.getElementById('readout').textContent"))
         self.assertEqual(p.state()["force"], [0, 0, 0])
 
