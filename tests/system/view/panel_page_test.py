@@ -123,13 +123,19 @@ class Hostile(unittest.TestCase):
 
     def test_one_holds_it_and_the_past_is_over(self):
         p = self.panel
-        for _ in range(8):  # a busy machine may be late with a beat
+        refused = None
+        for _ in range(20):  # a busy machine may be late with a beat, which ends a press
             name = p.press()
             most, number = p.hold(name, 0.4)
-            self.assertEqual(p.ask("/do?press=y,0.5")[0] if number > 8 else 409, 409)
-            if most > 0.4:
-                break
-        self.assertGreater(most, 0.4)
+            begun = time.monotonic()
+            if most > 0.4 and p.ask(f"/do?beat={name},{number}")[0] == 204:
+                status, said = p.ask("/do?press=y,0.5")
+                if time.monotonic() - begun < 0.08:
+                    refused = (status, "another page" in said)
+                    break
+            self.assertTrue(rests(p))
+            time.sleep(0.3)
+        self.assertEqual(refused, (409, True))
         self.assertEqual(p.ask(f"/do?beat={name},{number - 1}")[0] in (400, 410), True, "an old beat")
         self.assertTrue(rests(p))
         self.assertEqual(p.ask(f"/do?beat={name},{number + 5}")[0], 410)
@@ -308,7 +314,8 @@ class Page(unittest.TestCase):
         self.assertEqual(p.state()["force"], [0, 0, 0], "it does not come back by itself")
         found = p.end()
         self.assertEqual(found["presses"][-1]["ended"], "lost beats")
-        self.assertLessEqual(found["presses"][-1]["beat_to_zero"], 0.2)
+        # A tick of the loop that comes late comes late for this, too.
+        self.assertLessEqual(found["presses"][-1]["beat_to_zero"], 0.2 + max(0.0, found["longest_gap"] - 0.02))
         self.assertLessEqual(found["longest_without_beat"], 0.2)
 
     def test_ctrl_c_while_it_is_held(self):
