@@ -1,6 +1,7 @@
 // asperity devices: what a session can be felt with.
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -9,10 +10,13 @@
 #include "can_devices.hpp"
 #endif
 #include "cli.hpp"
+#include "device_document.hpp"
+#include "device_panel.hpp"
 #include "driver_options.hpp"
 #include "gpu_devices.hpp"
 #include "known_devices.hpp"
 #include "model_report.hpp"
+#include "options.hpp"
 #include "text.hpp"
 
 namespace asperity::command {
@@ -26,6 +30,8 @@ json axes(axis_mask mask) {
   }
   return out;
 }
+
+}  // namespace
 
 json to_json(const device_capabilities& c) {
   return {{"name", c.name},
@@ -43,6 +49,8 @@ json to_json(const device_capabilities& c) {
           {"moving_mass", c.moving_mass_kg},
           {"device_side_watchdog", c.device_side_watchdog}};
 }
+
+namespace {
 
 std::string what_it_does(const device_capabilities& c) {
   if (c.actuated == no_axes) return "measures, puts out nothing";
@@ -130,17 +138,62 @@ result<answer> with_gpus(answer devices) {
 
 }  // namespace
 
+namespace {
+
+struct devices_command {
+  bool gpus = false;
+  std::optional<std::string> view;
+  panel_command panel;  // its drivers are those of the list, too
+};
+
+result<answer> show(devices_command options, const common_options& common) {
+  panel_command& panel = options.panel;
+  if (!options.view) {
+    if (panel.device != panel_command().device || panel.view_address != panel_command().view_address || panel.seconds ||
+        !panel.firmware.empty()) {
+      return error{error_code::invalid_argument,
+                   "--device, --firmware, --seconds and --view-address are of the panel of a device: add --view"};
+    }
+    result<answer> devices = list_devices(panel.drivers);
+    return options.gpus && devices ? with_gpus(std::move(devices).value()) : devices;
+  }
+  if (options.gpus)
+    return error{error_code::invalid_argument, "--gpu lists GPUs and --view shows a device: leave one out"};
+#ifdef ASPERITY_HAS_VIEW
+  panel.view = *options.view;
+  return show_device(panel, common);
+#else
+  static_cast<void>(common);
+  return error{error_code::unsupported,
+               "--view: this build has no live page, which needs libcivetweb-dev; build with it, or leave --view out"};
+#endif
+}
+
+}  // namespace
+
 void add_devices(command_line& line) {
-  const auto gpus = std::make_shared<bool>(false);
-  const auto choice = std::make_shared<driver_choice>();
-  CLI::App& sub =
-      line.add("devices", "List the devices that a session can be felt with, or the GPUs that can calculate",
-               [gpus, choice](const common_options&) -> result<answer> {
-                 result<answer> devices = list_devices(*choice);
-                 return *gpus && devices ? with_gpus(std::move(devices).value()) : devices;
-               });
-  sub.add_flag("--gpu", *gpus, "List the GPUs that --backend gl-compute and gl-occlusion can use");
-  add_driver_options(sub, *choice);
+  const auto o = std::make_shared<devices_command>();
+  CLI::App& sub = line.add("devices",
+                           "List the devices that a session can be felt with, or the GPUs that can calculate, or show "
+                           "one device on a page",
+                           [o](const common_options& common) { return show(*o, common); });
+  sub.add_flag("--gpu", o->gpus, "List the GPUs that --backend gl-compute and gl-occlusion can use");
+  sub.add_option("--view", o->view,
+                 "Show a device on a page of a browser, at this port or 8765: pose, buttons, rate, faults, and a small "
+                 "force while a button of the page is held")
+      ->expected(0, 1)
+      ->type_name("[PORT]");
+  sub.add_option("--view-address", o->panel.view_address,
+                 "Address of this machine at which the page is; at another one than the loopback no force is offered")
+      ->capture_default_str();
+  sub.add_option("--device", o->panel.device,
+                 "Device of the page: simulated, or the identity, path, driver or part of the name of one on the list")
+      ->capture_default_str();
+  sub.add_option("--firmware", o->panel.firmware, "Your copy of the firmware of a Novint Falcon");
+  sub.add_option("--seconds", o->panel.seconds, "How long the page is there; by default until Ctrl-C")
+      ->check(positive_number_error, "NUMBER > 0")
+      ->check(CLI::Range(1e-3, 86400.0));
+  add_driver_options(sub, o->panel.drivers);
 }
 
 }  // namespace asperity::command

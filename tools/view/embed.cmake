@@ -1,4 +1,5 @@
-# embed.cmake: writes the files FILES (with commas between) of the folder FROM as strings into the source file TO.
+# embed.cmake: writes the files FILES (with commas between) of the folder FROM as strings into the source file TO, where
+# the function NAME returns them. The first of them is the page itself.
 set(_out "#include \"view/page_files.hpp\"\n\nnamespace asperity::view {\nnamespace {\n\nconstexpr page_file files[] = {\n")
 string(REPLACE "," ";" FILES "${FILES}")
 foreach(_name IN LISTS FILES)
@@ -14,10 +15,10 @@ foreach(_name IN LISTS FILES)
     set(_type "text/javascript; charset=utf-8")
   endif()
   set(_path "/${_name}")
-  if(_name STREQUAL "index.html")
+  if(_name MATCHES "\\.html$")
     set(_path "/")
   endif()
   string(APPEND _out "    {\"${_path}\", \"${_type}\", {\"${_bytes}\", ${_size}}},\n")
 endforeach()
-string(APPEND _out "};\n\n}  // namespace\n\nstd::span<const page_file> page_files() noexcept { return files; }\n\n}  // namespace asperity::view\n")
+string(APPEND _out "};\n\n}  // namespace\n\nstd::span<const page_file> ${NAME}() noexcept { return files; }\n\n}  // namespace asperity::view\n")
 file(WRITE ${TO} "${_out}")

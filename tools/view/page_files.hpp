@@ -18,6 +18,9 @@ struct page_file {
 /// The page itself comes first, its scripts in the order in which they build on each other.
 [[nodiscard]] std::span<const page_file> page_files() noexcept;
 
+/// The page of a device, and what it has beside the files of the other page.
+[[nodiscard]] std::span<const page_file> panel_files() noexcept;
+
 /// The page with everything that it shows, as one file that needs no server and no network.
 [[nodiscard]] std::string export_page(const page_content& content);
 

@@ -58,6 +58,10 @@ const char* reason_of(int code) {
       return "Not Found";
     case 405:
       return "Method Not Allowed";
+    case 409:
+      return "Conflict";
+    case 410:
+      return "Gone";
     default:
       return "Service Unavailable";
   }
@@ -157,6 +161,7 @@ struct page_server::inside {
   page_content content;
   feed* live = nullptr;
   gallery* models = nullptr;
+  panel_link* panel = nullptr;
   std::string token;
   std::vector<std::string> hosts;  // whose page it is; empty where the token says that
   std::string url;
@@ -183,11 +188,17 @@ struct page_server::inside {
     if (method == "POST")
       return may_look(to) ? command(to, path, query) : refuse(to, 403, "the token is missing or wrong");
     if (method != "GET") return refuse(to, 405, "GET, or POST to /do");
+    if (panel != nullptr) {
+      for (const page_file& f : panel_files()) {
+        if (path == f.path) return answer(to, 200, f.type, f.bytes);
+      }
+    }
     for (const page_file& f : page_files()) {
       if (path == f.path) return answer(to, 200, f.type, f.bytes);
     }
     if (!is_data(path)) return refuse(to, 404, "there is no such page");
     if (!may_look(to)) return refuse(to, 403, "the token is missing or wrong");
+    if (path == "/panel.json" || path == "/panel-state") return of_panel(to, path, query);
     if (path == "/scene.json") return answer(to, 200, "application/json", content.document);
     if (path == "/frame") return frame(to, query);
     if (path == "/session.json") return led(to);
@@ -200,8 +211,8 @@ struct page_server::inside {
 
  private:
   static bool is_data(std::string_view path) {
-    return path == "/scene.json" || path == "/frame" || path == "/session.json" || path.starts_with("/rows/") ||
-           path.starts_with("/mesh/");
+    return path == "/scene.json" || path == "/frame" || path == "/session.json" || path == "/panel.json" ||
+           path == "/panel-state" || path.starts_with("/rows/") || path.starts_with("/mesh/");
   }
 
   // A page of somebody else's, in the same browser, reaches this address too: by name, or by a name of its own that it
@@ -284,6 +295,21 @@ struct page_server::inside {
     return answer(to, 200, "application/json", document.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   }
 
+  int of_panel(mg_connection* to, std::string_view path, std::string_view query) {
+    if (panel == nullptr) return refuse(to, 404, "this page is of no device");
+    if (path == "/panel.json") return answer(to, 200, "application/json", panel->description());
+    const auto after = number_of<std::uint64_t>(query, "after=");
+    if (!after) return refuse(to, 400, "ask for /panel-state?after=NUMBER");
+    return answer(to, 200, "application/json", panel->state(*after));
+  }
+
+  int tell_panel(mg_connection* to, std::string_view query) {
+    const panel_link::told said = panel->ask(query);
+    // A page beats again and again: a beat that is refused costs no connection.
+    return said.code < 400 ? answer(to, said.code, "application/json", said.body)
+                           : answer(to, said.code, "text/plain; charset=utf-8", said.body + '\n');
+  }
+
   int choose(mg_connection* to, std::string_view query) {
     if (query == "leave") {
       models->leave();
@@ -304,6 +330,7 @@ struct page_server::inside {
     if (path != "/do" || header_of(to, "X-Asperity").empty())
       return refuse(to, 404, "POST is for /do, with X-Asperity");
     if (models != nullptr) return choose(to, query);
+    if (panel != nullptr) return tell_panel(to, query);
     if (live == nullptr) return refuse(to, 404, "there is no session to pause");
     if (query == "pause" || query == "resume") {
       live->forget_steps();
@@ -353,7 +380,7 @@ bool is_loopback(std::string_view address) noexcept {
 }
 
 result<page_server> page_server::start(const server_settings& settings, page_content content, feed* live,
-                                       gallery* models) {
+                                       gallery* models, panel_link* panel) {
   if (settings.token.empty() && !is_loopback(settings.address)) {
     return error{error_code::invalid_argument, settings.address + " is open to other machines: it needs a token"};
   }
@@ -361,6 +388,7 @@ result<page_server> page_server::start(const server_settings& settings, page_con
   self->content = std::move(content);
   self->live = live;
   self->models = models;
+  self->panel = panel;
   self->token = settings.token;
   const bool six = settings.address.find(':') != std::string::npos;
   const std::string host = six ? '[' + settings.address + ']' : settings.address;
@@ -395,7 +423,9 @@ result<page_server> page_server::start(const server_settings& settings, page_con
   std::array<mg_server_port, 1> ports{};
   if (mg_get_server_ports(self->context, 1, ports.data()) == 1) self->port = static_cast<std::uint16_t>(ports[0].port);
   const std::string port = std::to_string(self->port);
-  if (self->token.empty()) self->hosts = {host + ':' + port, "localhost:" + port, "127.0.0.1:" + port};
+  // A force is asked for by a page of this address alone, whatever else it knows.
+  if (self->token.empty() || (panel != nullptr && is_loopback(settings.address)))
+    self->hosts = {host + ':' + port, "localhost:" + port, "127.0.0.1:" + port};
   self->url = "http://" + host + ':' + port + '/' + (self->token.empty() ? "" : "#token=" + self->token);
   return page_server(std::move(self));
 }

@@ -8,6 +8,7 @@
 #include "asperity/core/status.hpp"
 #include "view/feed.hpp"
 #include "view/gallery.hpp"
+#include "view/panel_link.hpp"
 #include "view/scene_document.hpp"
 
 namespace asperity::view {
@@ -40,9 +41,10 @@ class page_server {
  public:
   /// @param live null where nothing happens; otherwise it outlives the server
   /// @param models null but for page_mode::gallery; otherwise it outlives the server
+  /// @param panel null but for the page of a device, which takes the place of the other; otherwise it outlives the server
   /// @return invalid_argument (another address than the loopback without a token) | io_failed (the port is taken)
   [[nodiscard]] static result<page_server> start(const server_settings& settings, page_content content, feed* live,
-                                                 gallery* models = nullptr);
+                                                 gallery* models = nullptr, panel_link* panel = nullptr);
 
   page_server(page_server&&) noexcept;
   page_server& operator=(page_server&&) = delete;

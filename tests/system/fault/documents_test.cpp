@@ -309,6 +309,21 @@ TEST_F(documents, devices) {
   EXPECT_EQ(d["devices"][0]["maturity"], "simulated");
 }
 
+TEST_F(documents, a_panel_of_a_device) {
+  const outcome done = run({"devices", "--view", "0", "--seconds", "0.2", "--json"});
+  if (done.err.find("no live page") != std::string::npos) GTEST_SKIP() << "this build has no live page";
+  EXPECT_EQ(done.exit_status, 0);
+  EXPECT_EQ(without_notes(done.err), "");  // the note has the address
+  const json d = json::parse(done.out, nullptr, false);
+  ASSERT_TRUE(d.is_object()) << done.out;
+  EXPECT_EQ(d["schema"], "asperity.devices/1");
+  expect_keys(d["panel"], {"device", "ticks", "lost_periods", "longest_gap", "rejected_samples", "fault", "most_force",
+                           "largest_force", "longest_without_beat", "press_count", "presses", "armed_at_end"});
+  EXPECT_EQ(d["panel"]["device"], "simulated");
+  EXPECT_EQ(d["panel"]["largest_force"], 0.0);
+  EXPECT_FALSE(d["panel"]["armed_at_end"]);
+}
+
 TEST_F(documents, bench) {
   const json d = expect_document({"bench", "--probe", pin(), "--fixed", pin(), "--poses", "50"}, "asperity.bench/1");
   expect_keys(d["seconds"],
