@@ -35,7 +35,7 @@ def main():
     if with_room != without:
         sys.exit("the answers differ")
     if not os.path.exists(HUGE) or "[never]" in open(HUGE, encoding="ascii").read():
-        print("skipped: this kernel has no large pages")
+        print("SKIPPED: this kernel has no large pages")
         sys.exit(SKIPPED)
     if few * 5 > many:
         sys.exit("a prepared heap saves fewer than four of five page faults")

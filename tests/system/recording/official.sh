@@ -5,7 +5,7 @@ set -euo pipefail
 work=$1 modules=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 if ! command -v node > /dev/null || [[ ! -d $modules/@mcap/core ]]; then
-  echo "skipped: the official reader: there is no Node.js, or no @mcap/core in $modules (./dev interop fetches it)"
+  echo "SKIPPED: there is no Node.js, or no @mcap/core in $modules (./dev interop fetches it)"
   exit 77
 fi
 rows=$(($(wc -l < "$work/s.csv") - 1))
