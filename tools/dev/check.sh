@@ -186,7 +186,7 @@ check_tidy() {
   {
     local status=0
     sed -n 's|^ *"file": "\(.*\)",\{0,1\}$|\1|p' build/tidy/compile_commands.json |
-      grep -E "^$PWD/(build/tidy/)?(tools|examples|backends|hal)/" | grep -v -e verify_interface -e /page_files.cpp > build/check/tidy.sources
+      grep -E "^$PWD/(build/tidy/)?(tools|examples|backends|hal)/" | grep -v -e verify_interface -e /page_files.cpp -e /panel_files.cpp > build/check/tidy.sources
     [[ -s build/check/tidy.sources ]] || { say "no sources were found to read" && status=1; }
     {
       say "clang-tidy --quiet build/check/core.cpp -- -std=c++20 -Iinclude"
