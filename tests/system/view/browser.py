@@ -22,6 +22,22 @@ def find():
     return program, None
 
 
+CONTRAST = r"""(() => {
+  const light = (c) => { const [r, g, b] = c.map((v) => { v /= 255; return v <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; });
+    return 0.2126 * r + 0.7152 * g + 0.0722 * b; };
+  const parse = (t) => { const n = t.match(/[\d.]+/g).map(Number); return { rgb: n.slice(0, 3), a: n.length > 3 ? n[3] : 1 }; };
+  const behind = (e) => { for (; e; e = e.parentElement) { const c = parse(getComputedStyle(e).backgroundColor); if (c.a > 0.99) return c.rgb; } return [255, 255, 255]; };
+  const bad = [];
+  for (const e of document.querySelectorAll(WANTED)) {
+    if (e.textContent.trim() === '' || e.offsetParent === null || e.disabled) continue;
+    const [a, b] = [light(parse(getComputedStyle(e).color).rgb), light(behind(e))];
+    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+    if (ratio < 4.5) bad.push(e.tagName + ' ' + e.textContent.trim().slice(0, 20) + ' ' + ratio.toFixed(2));
+  }
+  return bad;
+})()"""
+
+
 class Browser:
     """One page at a time; errors of its scripts are kept in `complaints`."""
 
@@ -126,6 +142,10 @@ class Browser:
 
     def mouse(self, kind, x, y, **more):
         self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def too_little_contrast(self, elements):
+        """The texts of these elements, a selector, that stand out too little from what is behind them (AA)."""
+        return self.value(CONTRAST.replace("WANTED", json.dumps(elements)))
 
     def picture(self, file):
         shot = base64.b64decode(self.call("Page.captureScreenshot", format="png")["data"])
