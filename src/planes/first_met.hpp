@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/math.hpp"
@@ -55,13 +56,18 @@ class first_met {
 
   /// A new group of a slope; null where there are too many, and where the slope has no direction. @rt safe
   [[nodiscard]] group* add_group(std::uint32_t body, const vec3& slope_w) noexcept {
+    const std::optional<group> made = next_group(body, slope_w);
+    return made && groups_.push_back(*made) ? &groups_.back() : nullptr;
+  }
+  /// The one that add_group() would add; nothing where it would add none. @rt safe
+  [[nodiscard]] std::optional<group> next_group(std::uint32_t body, const vec3& slope_w) const noexcept {
     const double squared = glm::dot(slope_w, slope_w);
-    if (!(squared > 0.01)) return nullptr;
+    if (!(squared > 0.01) || groups_.size() == groups_.capacity()) return std::nullopt;
     group made{.body = body, .axis_w = slope_w / std::sqrt(squared)};
     made.u_w = any_orthogonal(made.axis_w);
     made.v_w = glm::cross(made.axis_w, made.u_w);
     made.largest_m.fill(-std::numeric_limits<float>::infinity());
-    return groups_.push_back(made) ? &groups_.back() : nullptr;
+    return made;
   }
 
   /// How much deeper each motion takes a patch.

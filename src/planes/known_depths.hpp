@@ -31,22 +31,21 @@ class known_depths {
       detail::reserve_resident(l->leaves, leaves);
       detail::reserve_resident(l->most_m, leaves * sample_tree::leaf_samples);
     }
+    detail::reserve_resident(brought_m_, leaves);
     detail::reserve_resident(asked_m_, leaves * sample_tree::leaf_samples);
     detail::reserve_resident(asked_, leaves);
   }
 
-  /// Begins a tick with these leaves. Leaves come in the order of body, whose samples they are and sample, as
-  /// plane_finder lists them; what comes in another order is not known.
-  /// @param grows_m of a patch and of the largest of its bounds: how much deeper its samples can be than in the tick
-  /// before   @rt safe
-  template <class Grows>
-  void begin(const near_samples& found, Grows&& grows_m) noexcept {
+  /// Begins a tick with these leaves: brings the bounds of the tick before, which grow() brings up to date. Leaves come in
+  /// the order of body, whose samples they are and sample, as plane_finder lists them; what comes in another order is not
+  /// known.   @rt safe
+  void begin(const near_samples& found) noexcept {
     std::swap(now_, before_);
     now_.leaves.clear();
     now_.most_m.clear();
+    brought_m_.clear();
     std::size_t last = 0;  // leaf of before_
     for (const near_patch& patch : found.patches()) {
-      const std::size_t first = now_.most_m.size();
       float most_m = -std::numeric_limits<float>::infinity();
       for (const near_leaf& leaf : found.leaves_of(patch)) {
         const std::size_t count = std::min<std::size_t>(leaf.count, now_.most_m.capacity() - now_.most_m.size());
@@ -63,9 +62,16 @@ class known_depths {
           most_m = std::max(most_m, before_.most_m[from + i]);
         }
       }
-      const float grown_m = static_cast<float>(grows_m(patch, static_cast<double>(most_m))) + rounding_m;
-      for (std::size_t i = first; i < now_.most_m.size(); ++i) now_.most_m[i] += grown_m;
+      brought_m_.push_back(most_m);
     }
+  }
+  /// The largest bound that begin() brought for a patch, m; -infinity: none.
+  [[nodiscard]] double brought_m(std::size_t patch) const noexcept { return static_cast<double>(brought_m_[patch]); }
+  /// The samples of a patch can be deeper by so much than in the tick before. From several threads, for patches of their
+  /// own.   @rt safe
+  void grow(const near_patch& patch, double by_m) noexcept {
+    const float grown_m = static_cast<float>(by_m) + rounding_m;
+    for (float& m : part_of(patch, now_.most_m)) m += grown_m;
   }
 
   /// Nothing is known of a body's samples any more: another one is in its place. @rt safe
@@ -102,16 +108,16 @@ class known_depths {
   };
 
   /// Ends the tick: from here on questions are for poses near by, and bounds those of the pose that was asked for last.
-  /// @param placed a patch's middle and arm   @rt safe
-  template <class Placed>
-  void ask(const near_samples& found, Placed&& placed) noexcept {
+  /// Each patch is then placed, see ask_of().   @rt safe
+  void ask(const near_samples& found) noexcept {
     asked_m_.assign(now_.most_m.begin(), now_.most_m.end());
-    asked_.clear();
-    for (const near_patch& patch : found.patches()) {
-      asked_.push_back(placed(patch));
-      asked_.back().asked_y = asked_.back().middle_y;
-      close(asked_.back(), patch);
-    }
+    asked_.resize(found.patches().size());
+  }
+  /// @param at its middle and arm. From several threads, for patches of their own.   @rt safe
+  void ask_of(std::size_t patch, const near_patch& of, const asked_patch& at) noexcept {
+    asked_[patch] = at;
+    asked_[patch].asked_y = at.middle_y;
+    close(asked_[patch], of);
   }
   [[nodiscard]] std::span<asked_patch> asked() noexcept { return asked_; }
   /// The bounds of a leaf's samples, of a patch that is open.
@@ -135,7 +141,7 @@ class known_depths {
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(now_.leaves, now_.most_m, before_.leaves, before_.most_m, asked_m_, asked_);
+    return asperity::heap_bytes(now_.leaves, now_.most_m, before_.leaves, before_.most_m, brought_m_, asked_m_, asked_);
   }
 
  private:
@@ -176,6 +182,7 @@ class known_depths {
   }
 
   list now_, before_;
+  std::vector<float> brought_m_;  // per patch
   std::vector<float> asked_m_;
   std::vector<asked_patch> asked_;
 };

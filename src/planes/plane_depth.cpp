@@ -16,6 +16,7 @@
 #include "planes/leaf_reader.hpp"
 #include "planes/plane_materials.hpp"
 #include "planes/plane_watch.hpp"
+#include "planes/tick_team.hpp"
 
 namespace asperity {
 namespace {
@@ -64,6 +65,40 @@ class readers {
   std::optional<leaf_reader> of_probe_, of_fixed_;
 };
 
+// Readers of a pose, a pair for each thread of a team.
+class readers_of_threads {
+ public:
+  readers_of_threads(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w,
+                     const plane_materials& materials) noexcept
+      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), materials_(&materials) {}
+
+  [[nodiscard]] readers& of(unsigned thread) noexcept {
+    std::optional<readers>& out = readers_[thread];
+    if (!out) out.emplace(*bodies_, *at_, c_a_w_, *materials_);
+    return *out;
+  }
+  [[nodiscard]] depth_work work() const noexcept {
+    depth_work sum;
+    for (const std::optional<readers>& r : readers_) {
+      if (!r) continue;
+      sum.bounded += r->work().bounded;
+      sum.quick += r->work().quick;
+      sum.exact += r->work().exact;
+    }
+    return sum;
+  }
+
+ private:
+  const field_scene* bodies_;
+  const scene_pose* at_;
+  vec3 c_a_w_;
+  const plane_materials* materials_;
+  std::array<std::optional<readers>, tick_team::most_threads> readers_;
+};
+
+// Patches of a task where each takes little, and where each may take much.
+constexpr std::size_t many_patches = 32, few_patches = 4;
+
 // Brings what is known of a patch to the pose that is asked for, turned by so much from the tick's. Returns how much
 // deeper its samples can be there than at the tick's pose.
 double come_to(known_depths::asked_patch& asked, const near_patch& patch, const leaf_reader& there,
@@ -93,7 +128,7 @@ double share_of_push(const std::optional<surface_pair>& on, const std::optional<
 }  // namespace
 
 plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
-                         std::shared_ptr<known_branches> branches)
+                         std::shared_ptr<known_branches> branches, std::shared_ptr<tick_team> team)
     : bodies_(std::move(bodies)),
       centre_of_mass_a_(of.probe->mass.centre_of_mass),
       reach_m_(reach_m),
@@ -103,6 +138,7 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
       branches_(std::move(branches)),
+      team_(std::move(team)),
       materials_(std::make_unique<plane_materials>(of, most)),
       asked_at_(std::make_unique<vec6>()) {
   for (way& w : ways_) w.sinking_m = facing::sinking_m(of);
@@ -110,7 +146,7 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
 }
 
 plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t most,
-                         std::shared_ptr<known_branches> branches)
+                         std::shared_ptr<known_branches> branches, std::shared_ptr<tick_team> team)
     : bodies_(first.fields),
       centre_of_mass_a_(first.bodies.probe->mass.centre_of_mass),
       reach_m_(reach_m),
@@ -120,6 +156,7 @@ plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t m
       met_(std::make_unique<first_met>(trials_within(reach_m))),
       known_(std::make_unique<known_depths>(most)),
       branches_(std::move(branches)),
+      team_(std::move(team)),
       materials_(std::make_unique<plane_materials>(first, most)),
       asked_at_(std::make_unique<vec6>()) {
   reserve(most);
@@ -131,8 +168,10 @@ plane_depth::plane_depth(const plane_scene& first, double reach_m, std::size_t m
 }
 
 void plane_depth::reserve(std::size_t most) {
+  if (team_ && team_->threads() > 1) parts_.resize(std::size_t{4} * team_->threads());
   detail::reserve_resident(reported_, most);
   detail::reserve_resident(order_, most);
+  detail::reserve_resident(has_plane_, most);
   for (const field_sample& s : bodies_->probe->samples.samples()) {
     farthest_m_ = std::max(farthest_m_, glm::distance(vec3(s.position_b), centre_of_mass_a_));
   }
@@ -171,45 +210,62 @@ const placed_scene* plane_depth::placed() const noexcept { return placed_; }
 
 status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
-  readers reading(*bodies_, at, c_a_w, *materials_);
-  const auto reader_of = [&](const near_patch& patch) noexcept -> const leaf_reader& {
-    return reading.of(patch, ways_[patch.body].sinking_m);
+  readers_of_threads reading(*bodies_, at, c_a_w, *materials_);
+  const auto reader_of = [&](const near_patch& patch, unsigned thread) noexcept -> const leaf_reader& {
+    return reading.of(thread).of(patch, ways_[patch.body].sinking_m);
   };
+  const std::span<const near_patch> patches = found.patches();
   reported_.clear();
   met_->clear();
   told_m_ = std::min(reach_m_, at.gaps_m);
   learn_ways(at, found);
-  known_->begin(found, [&](const near_patch& patch, double most_m) noexcept {
-    const leaf_reader& reader = reader_of(patch);
-    const way& w = ways_[patch.body];
-    const vec3 now_y = reader.in_field(patch.ball.centre_b);
-    const vec3 before_y = (patch.of_probe ? w.before_ba : w.before_ab) * patch.ball.centre_b;
-    const patch_way gone{now_y - before_y, w.chord * patch.ball.radius_m};
-    const double at_most_m = steepest_depth * gone.most_m();
-    // Slopes are asked for where they can spare readings.
-    if (!(most_m + at_most_m > -told_m_)) return at_most_m;
-    const double far_m = patch.ball.radius_m + gone.most_m();
-    return reader.slopes_about(patch, now_y, far_m).growth_m(gone, far_m);
+  known_->begin(found);
+  share_items(team_.get(), patches.size(), many_patches, [&](std::size_t p, unsigned thread) noexcept {
+    known_->grow(patches[p], growth_m(patches[p], reader_of(patches[p], thread), known_->brought_m(p)));
   });
   // What may be near is read first: it hides what lies behind it.
-  sort_by_depth(found.patches());
-  for (const std::uint32_t i : order_) {
-    const near_patch& patch = found.patches()[i];
-    read(patch, found.leaves_of(patch), reader_of(patch), out.subspan(patch.first_leaf, patch.leaf_count));
+  sort_by_depth(patches);
+  has_plane_.resize(patches.size());
+  // Several patches are looked through at a time; what they have is compared in their order, so that what is told
+  // does not depend on how many. The first ones hide most of what comes later: few at a time, then more.
+  const std::size_t most_at_a_time = team_ ? std::size_t{few_patches} * 4 * team_->threads() : 1;
+  std::size_t at_a_time = team_ ? few_patches : 1;
+  for (std::size_t begin = 0; begin < order_.size();) {
+    const std::size_t count = std::min(at_a_time, order_.size() - begin);
+    const auto leaves_out = [&](const near_patch& patch) noexcept {
+      return out.subspan(patch.first_leaf, patch.leaf_count);
+    };
+    share_items(team_.get(), count, few_patches, [&](std::size_t i, unsigned thread) noexcept {
+      const near_patch& patch = patches[order_[begin + i]];
+      has_plane_[order_[begin + i]] =
+          look_through(patch, found.leaves_of(patch), reader_of(patch, thread), count == 1, leaves_out(patch)) ? 1 : 0;
+    });
+    for (std::size_t i = begin; i < begin + count; ++i) {
+      const near_patch& patch = patches[order_[i]];
+      if (has_plane_[order_[i]] != 0) keep_what_matters(patch, reader_of(patch, 0), leaves_out(patch));
+    }
+    begin += count;
+    at_a_time = std::min(2 * at_a_time, most_at_a_time);
   }
   if (come_) stand_back(found, way_ahead(at.T_wa), out);
   before_wa_ = at.T_wa;
   went_ = true;
   if (materials_->any()) materials_->hold_back(found, out);
-  for (const near_plane& p : out) {
-    if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (has_plane_[i] == 0) continue;
+    for (const near_plane& p : out.subspan(patches[i].first_leaf, patches[i].leaf_count)) {
+      if (p.plane.depth_m > -told_m_ && reported_.size() < reported_.capacity()) reported_.push_back(p.plane);
+    }
   }
   teach(found);
-  known_->ask(found, [&](const near_patch& patch) noexcept {
-    const leaf_reader& reader = reader_of(patch);
-    const vec3 r_w = reader.from_centre_of_mass_w(patch.ball.centre_b);
-    return known_depths::asked_patch{.middle_y = reader.in_field(patch.ball.centre_b),
-                                     .arm_m = std::sqrt(glm::dot(r_w, r_w)) + patch.ball.radius_m};
+  known_->ask(found);
+  share_items(team_.get(), patches.size(), many_patches, [&](std::size_t p, unsigned thread) noexcept {
+    const leaf_reader& reader = reader_of(patches[p], thread);
+    const sample_ball& ball = patches[p].ball;
+    const vec3 r_w = reader.from_centre_of_mass_w(ball.centre_b);
+    known_->ask_of(
+        p, patches[p],
+        {.middle_y = reader.in_field(ball.centre_b), .arm_m = std::sqrt(glm::dot(r_w, r_w)) + ball.radius_m});
   });
   *asked_at_ = {};
   work_ = reading.work();
@@ -234,6 +290,18 @@ void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) no
     const quat turn = glm::conjugate(w.before_ba.rotation) * w.T_ba.rotation;
     w.chord = 2.0 * std::sqrt(turn.x * turn.x + turn.y * turn.y + turn.z * turn.z);
   }
+}
+
+double plane_depth::growth_m(const near_patch& patch, const leaf_reader& reader, double most_m) const noexcept {
+  const way& w = ways_[patch.body];
+  const vec3 now_y = reader.in_field(patch.ball.centre_b);
+  const vec3 before_y = (patch.of_probe ? w.before_ba : w.before_ab) * patch.ball.centre_b;
+  const patch_way gone{now_y - before_y, w.chord * patch.ball.radius_m};
+  const double at_most_m = steepest_depth * gone.most_m();
+  // Slopes are asked for where they can spare readings.
+  if (!(most_m + at_most_m > -told_m_)) return at_most_m;
+  const double far_m = patch.ball.radius_m + gone.most_m();
+  return reader.slopes_about(patch, now_y, far_m).growth_m(gone, far_m);
 }
 
 vec6 plane_depth::way_ahead(const pose& T_wa) const noexcept {
@@ -307,27 +375,36 @@ void plane_depth::sort_by_depth(std::span<const near_patch> patches) noexcept {
   for (std::size_t i = 0; i < patches.size(); ++i) order_[first[bin_of(patches[i])]++] = static_cast<std::uint32_t>(i);
 }
 
-void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
-                       std::span<near_plane> out) noexcept {
-  // Gaps up to this are reported whatever lies before them.
-  const double back_m = ways_[patch.body].back_m;
-  const double always_m = std::min(reach_m_ / 9.0, told_m_ / 5.0) - back_m;
-  // What stands back is read a little further than it is told, so that it comes forward as the probe leaves it.
-  const double least_m = back_m > 0.0 ? back_m - 1.25 * told_m_ : -told_m_;
-  // The pose alone decides which patches have a plane, and only these are compared with others. So it decides which
-  // planes are reported; a patch without a plane may be listed or not.
-  const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
-  first_met::group* group = met_->find_group(patch.body, slope_w);
-  first_met::depths moved;
-  const auto move = [&]() noexcept {
-    if (group != nullptr) met_->moved(*group, slope_w, reader.from_centre_of_mass_w(patch.ball.centre_b), moved);
-  };
-  move();
-  const auto least_that_matters_m = [&]() noexcept {
+struct plane_depth::told_from {
+  double always_m;  // gaps up to this are reported whatever lies before them
+  double least_m;   // and none beyond this
+
+  // Above which depth a leaf's plane is told.
+  [[nodiscard]] double above_m(const first_met::group* group, const first_met::depths& moved) const noexcept {
     if (group == nullptr) return least_m;
     return std::max(least_m, std::min(-always_m, first_met::least_that_matters_m(*group, moved)));
-  };
-  double above_m = least_that_matters_m();
+  }
+};
+
+plane_depth::told_from plane_depth::told_of(const near_patch& patch) const noexcept {
+  const double back_m = ways_[patch.body].back_m;
+  // What stands back is read a little further than it is told, so that it comes forward as the probe leaves it.
+  return {.always_m = std::min(reach_m_ / 9.0, told_m_ / 5.0) - back_m,
+          .least_m = back_m > 0.0 ? back_m - 1.25 * told_m_ : -told_m_};
+}
+
+bool plane_depth::look_through(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
+                               bool alone, std::span<near_plane> out) const noexcept {
+  const told_from told = told_of(patch);
+  const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
+  const first_met::group* group = met_->find_group(patch.body, slope_w);
+  first_met::depths moved;
+  if (group != nullptr) {
+    met_->moved(*group, slope_w, reader.from_centre_of_mass_w(patch.ball.centre_b), moved);
+  }
+  std::optional<first_met::group> with_own;  // what is met first of the group and of this patch's leaves
+  double above_m = told.above_m(group, moved);
+  bool any = false;
   const auto most_of_patch_m = leaf_reader::rounded_up(patch.in_other.most_m);
   for (std::size_t i = 0; i < leaves.size(); ++i) {
     const near_leaf& leaf = leaves[i];
@@ -350,55 +427,110 @@ void plane_depth::read(const near_patch& patch, std::span<const near_leaf> leave
     }
     out[i] = reader.deepest(leaf, near, above_m, known);
     if (!(out[i].plane.depth_m > above_m)) continue;
+    any = true;
+    if (group != nullptr) {
+      if (!with_own) with_own = *group;
+    } else if (alone) {
+      // Of several patches at a time another one may have a group for this direction first.
+      if (!with_own && (with_own = met_->next_group(patch.body, slope_w))) {
+        met_->moved(*with_own, slope_w, reader.from_centre_of_mass_w(patch.ball.centre_b), moved);
+      }
+    }
+    if (!with_own) continue;
+    first_met::add(*with_own, moved, out[i].plane.depth_m);
+    above_m = told.above_m(&*with_own, moved);
+  }
+  return any;
+}
+
+void plane_depth::keep_what_matters(const near_patch& patch, const leaf_reader& reader,
+                                    std::span<near_plane> out) noexcept {
+  // The pose alone decides which patches have a plane, and only these are compared with others. So it decides which
+  // planes are reported; a patch without a plane may be listed or not.
+  const told_from told = told_of(patch);
+  const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
+  first_met::group* group = met_->find_group(patch.body, slope_w);
+  first_met::depths moved;
+  const auto move = [&]() noexcept {
+    if (group != nullptr) met_->moved(*group, slope_w, reader.from_centre_of_mass_w(patch.ball.centre_b), moved);
+  };
+  move();
+  for (near_plane& p : out) {
+    if (!(p.plane.depth_m > told.above_m(group, moved))) {
+      p.plane.depth_m = -std::numeric_limits<double>::infinity();
+      continue;
+    }
     if (group == nullptr) {
       group = met_->add_group(patch.body, slope_w);
       move();
     }
-    if (group == nullptr) continue;
-    first_met::add(*group, moved, out[i].plane.depth_m);
-    above_m = least_that_matters_m();
+    if (group != nullptr) first_met::add(*group, moved, p.plane.depth_m);
   }
 }
 
 status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
                               const vec6& moved, double above_m, plane_list& out) const noexcept {
-  readers reading(*bodies_, at, at.T_wa * centre_of_mass_a_, *materials_);
+  readers_of_threads reading(*bodies_, at, at.T_wa * centre_of_mass_a_, *materials_);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
   const double slid_m = std::sqrt(glm::dot(step.linear, step.linear));
   const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
-  for (std::size_t p = 0; p < found.patches().size(); ++p) {
+  const std::span<const near_patch> patches = found.patches();
+  const auto look = [&](std::size_t p, unsigned thread, plane_list& to) noexcept {
     known_depths::asked_patch& asked = known_->asked()[p];
-    // Most patches are too far away for any motion of this length.
-    asked.since_m +=
-        static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
-    const near_patch& patch = found.patches()[p];
+    const near_patch& patch = patches[p];
     const way& of = ways_[patch.body];
-    if (of.away) continue;
     const double deeper_m = above_m + of.back_m;
-    if (!(static_cast<double>(asked.most_m + asked.since_m) > deeper_m)) continue;
-    const leaf_reader& reader = reading.of(patch, of.sinking_m);
+    // Most patches are too far away for any motion of this length.
+    if (of.away || !(static_cast<double>(asked.most_m + asked.since_m) > deeper_m)) return;
+    const leaf_reader& reader = reading.of(thread).of(patch, of.sinking_m);
     const double least_m = std::max(deeper_m, come_to(asked, patch, reader, moved.angular) - told_m_ + of.back_m);
-    if (!(static_cast<double>(asked.most_m) > least_m)) continue;
+    if (!(static_cast<double>(asked.most_m) > least_m)) return;
     known_->open(asked, patch);
     const bool has_map = materials_->has_map(patch.body);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
       reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i), [&](support_plane plane) noexcept {
         plane.depth_m -= of.back_m;
         if (has_map) plane.depth_m -= materials_->back_m(found.leaves()[i], patch.of_probe, plane);
-        if (plane.depth_m > above_m) keep_deepest(plane, out);
+        if (plane.depth_m > above_m) keep_deepest(plane, to);
       });
     }
     known_->close(asked, patch);
+  };
+  const auto come_and_look = [&](std::size_t p, unsigned thread, plane_list& to) noexcept {
+    known_depths::asked_patch& asked = known_->asked()[p];
+    asked.since_m +=
+        static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
+    look(p, thread, to);
+  };
+  const std::size_t parts = parts_.size();
+  if (parts <= 1) {
+    for (std::size_t p = 0; p < patches.size(); ++p) come_and_look(p, 0, out);
+    return out.dropped() > 0 ? status::capacity_reached : status::ok;
   }
+  share(team_.get(), parts, [&](std::size_t part, unsigned thread) noexcept {
+    parts_[part].clear();
+    const std::size_t begin = patches.size() * part / parts, end = patches.size() * (part + 1) / parts;
+    for (std::size_t p = begin; p < end; ++p) come_and_look(p, thread, parts_[part]);
+  });
+  bool all = true;
+  for (const plane_list& part : parts_) {
+    all = all && part.dropped() == 0;
+    for (const support_plane& p : part) keep_deepest(p, out);
+  }
+  if (all && out.dropped() == 0) return status::ok;
+  // Which planes make room for deeper ones depends on their order: one thread takes them in that of the patches.
+  out.clear();
+  for (std::size_t p = 0; p < patches.size(); ++p) look(p, 0, out);
   return out.dropped() > 0 ? status::capacity_reached : status::ok;
 }
 
 std::size_t plane_depth::heap_bytes() const noexcept {
-  return asperity::heap_bytes(reported_, order_, ways_) + sizeof(plane_watch) + watch_->heap_bytes() +
-         sizeof(plane_materials) + materials_->heap_bytes() + sizeof(first_met) + sizeof(known_depths) + sizeof(vec6) +
-         known_->heap_bytes() + (branches_ ? sizeof(known_branches) + branches_->heap_bytes() : 0) +
-         sizeof(field_scene) + bodies_->heap_bytes();
+  return asperity::heap_bytes(reported_, order_, has_plane_, ways_, parts_) + sizeof(plane_watch) +
+         watch_->heap_bytes() + sizeof(plane_materials) + materials_->heap_bytes() + sizeof(first_met) +
+         sizeof(known_depths) + sizeof(vec6) + known_->heap_bytes() +
+         (branches_ ? sizeof(known_branches) + branches_->heap_bytes() : 0) + sizeof(field_scene) +
+         bodies_->heap_bytes();
 }
 
 }  // namespace asperity

@@ -16,15 +16,16 @@
 #include "planes/body_tree.hpp"
 #include "planes/known_branches.hpp"
 #include "planes/passage.hpp"
+#include "planes/tick_team.hpp"
 
 namespace asperity {
 namespace {
 
 // Up to which gap balls are looked into. Within reach all are. Where nothing is, the walk goes on for the clearance: to
 // three reaches, so that three times as fast a hand is not held back, and no further than the nearest that it has left.
-double looks_to_m(const near_samples& found, double reach_m) noexcept {
+double looks_to_m(double most_left_m, double reach_m) noexcept {
   constexpr double free_reaches = 3.0;
-  return std::clamp(-found.most_left_m(), reach_m, free_reaches * reach_m);
+  return std::clamp(-most_left_m, reach_m, free_reaches * reach_m);
 }
 
 // None of these samples is deeper.
@@ -35,17 +36,18 @@ double most_near(std::span<const field_sample> of_x, const body_field& in_y, con
 }
 
 // Samples of X in the field of Y; T_yx takes X's frame to Y's. What is known of X's balls spares looks at them.
+// @param left_m what other bodies have that is not listed
 void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, const near_patch& whose, double reach_m,
-          branch_bounds* known, near_samples& out) noexcept {
+          double left_m, branch_bounds* known, near_samples& out) noexcept {
   using answer = sample_tree::branch_answer;
   near_patch patch = whose;
   const auto leave = [&](double most_m) noexcept {
-    out.leave(most_m);
+    left_m = std::max(left_m, most_m);
     return answer::away;
   };
   of_x.walk(
       [&](const sample_tree::branch& b) noexcept {
-        const double enough_m = looks_to_m(out, reach_m);
+        const double enough_m = looks_to_m(left_m, reach_m);
         if (known != nullptr && !(known->most_m(b.number) > -enough_m)) return leave(known->most_m(b.number));
         out.look_at();
         const sample_ball ball = b.ball();
@@ -66,7 +68,7 @@ void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, con
         }
         if (known != nullptr) known->note(b.number, most_m);
         if (!(most_m > -reach_m)) return leave(most_m);
-        out.leave(-reach_m);
+        left_m = std::max(left_m, -reach_m);
         patch.ball = ball;
         patch.branch = b.number;
         static_cast<void>(out.begin(patch));
@@ -76,6 +78,7 @@ void list(const sample_tree& of_x, const body_field& in_y, const pose& T_yx, con
         static_cast<void>(
             out.add({.first = samples.data(), .count = static_cast<std::uint32_t>(samples.size()), .ball = ball}));
       });
+  out.leave(left_m);
 }
 
 // No sample of X is deeper in Y.
@@ -110,8 +113,12 @@ double largest_at_border_m(const detail::coarse_grid& grid) noexcept {
 }  // namespace
 
 plane_finder::plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m,
-                           std::shared_ptr<known_branches> known)
-    : bodies_(std::move(bodies)), known_(std::move(known)), probe_(around(*bodies_->probe)), reach_m_(reach_m) {
+                           std::shared_ptr<known_branches> known, shared_work with)
+    : bodies_(std::move(bodies)),
+      known_(std::move(known)),
+      with_(std::move(with)),
+      probe_(around(*bodies_->probe)),
+      reach_m_(reach_m) {
   const std::vector<field_body_ptr>& fixed = bodies_->fixed;
   fixed_.reserve(fixed.size());
   for (std::size_t b = 0; b < fixed.size(); ++b) {
@@ -146,8 +153,10 @@ body_facts facts_of(const field_body& body, double probe_diagonal_m, double diag
   return {s.centre_b, s.radius_m, field_reach::of(body.field).half_m, std::min(probe_diagonal_m, diagonal_m)};
 }
 
-plane_finder::plane_finder(const plane_scene& first, double reach_m, std::shared_ptr<known_branches> known)
+plane_finder::plane_finder(const plane_scene& first, double reach_m, std::shared_ptr<known_branches> known,
+                           shared_work with)
     : known_(std::move(known)),
+      with_(std::move(with)),
       probe_{first.probe.centre_b, first.probe.radius_m},
       fixed_(first.of.size()),
       reach_m_(reach_m) {
@@ -178,7 +187,7 @@ status plane_finder::find(const scene_pose& at, near_samples& out) noexcept {
     return out.dropped() > 0 ? status::capacity_reached : status::ok;
   }
   // No clearance makes the look at a body go on beyond this; the order of bodies is that of their slots.
-  const double farthest_m = looks_to_m(out, reach_m);
+  const double farthest_m = looks_to_m(out.most_left_m(), reach_m);
   near_.clear();
   const auto is_moved = [&](std::uint32_t b) noexcept {
     return std::find(at.moved.begin(), at.moved.end(), b) != at.moved.end();
@@ -198,7 +207,7 @@ void plane_finder::look_into(std::uint32_t b, const scene_pose& at, const vec3& 
                              near_samples& out) noexcept {
   const sphere& body = fixed_[b];
   const vec3 body_w = at.T_wb[b] * body.centre_b;
-  const double enough_m = looks_to_m(out, reach_m);
+  const double enough_m = looks_to_m(out.most_left_m(), reach_m);
   if (!may_be_within(enough_m, probe_w, probe_.radius_m, body_w, body.radius_m)) {
     out.leave(probe_.radius_m + body.radius_m - glm::distance(probe_w, body_w));
     return;
@@ -212,8 +221,23 @@ void plane_finder::look_into(std::uint32_t b, const scene_pose& at, const vec3& 
     return;
   }
   const auto known = known_ ? known_->of(b, at, *bodies_) : known_branches::pair_bounds{};
-  list(A.samples, B.field, T_ba, {.body = b, .of_probe = true}, reach_m, known.of_probe, out);
-  list(B.samples, A.field, T_ab, {.body = b, .of_probe = false}, reach_m, known.of_fixed, out);
+  const double left_m = out.most_left_m();
+  const auto of_probe = [&](near_samples& to) noexcept {
+    list(A.samples, B.field, T_ba, {.body = b, .of_probe = true}, reach_m, left_m, known.of_probe, to);
+  };
+  const auto of_fixed = [&](near_samples& to) noexcept {
+    list(B.samples, A.field, T_ab, {.body = b, .of_probe = false}, reach_m, left_m, known.of_fixed, to);
+  };
+  if (!with_.team) {
+    of_probe(out);
+    of_fixed(out);
+    return;
+  }
+  // Neither walk knows what the other one finds, with one thread too: what they list does not depend on it.
+  near_samples& beside = *with_.beside;
+  beside.clear();
+  with_.team->run(2, [&](std::size_t task, unsigned) noexcept { task == 0 ? of_probe(out) : of_fixed(beside); });
+  out.append(beside);
 }
 
 }  // namespace asperity

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 #include "planes/known_branches.hpp"
+#include "planes/renderer_team.hpp"
+#include "planes/tick_team.hpp"
 
 namespace asperity {
 
@@ -36,17 +39,27 @@ result<void> check_reach(double reach_m) {
   return error{error_code::invalid_argument, "renderer settings: reach_m must be a finite length, or 0 for automatic"};
 }
 
+result<void> check_threads(unsigned threads) {
+  if (threads >= 1 && threads <= tick_team::most_threads) return {};
+  return error{error_code::invalid_argument, "renderer settings: threads must be from 1 to " +
+                                                 std::to_string(tick_team::most_threads) + ", and is " +
+                                                 std::to_string(threads)};
+}
+
 result<plane_renderer> make_plane_renderer(scene bodies, std::shared_ptr<const field_scene> made,
                                            const plane_renderer_settings& settings) {
   if (const result<void> ok = check_field_scene(bodies, made.get()); !ok) return ok.error();
   if (const result<void> ok = check_reach(settings.reach_m); !ok) return ok.error();
   if (const result<void> ok = check(settings.springs); !ok) return ok.error();
+  if (const result<void> ok = check_threads(settings.threads); !ok) return ok.error();
   if (const result<void> ok = check_maps(bodies); !ok) return ok.error();
   const double reach_m = settings.reach_m > 0.0 ? settings.reach_m : usual_reach_m(bodies);
   auto known = std::make_shared<known_branches>(*made, bodies.probe->mass.centre_of_mass);
-  plane_depth depth(made, bodies, reach_m, settings.limits.readings(), known);
-  return plane_renderer(std::move(bodies), plane_finder(std::move(made), reach_m, std::move(known)), std::move(depth),
-                        plane_springs(settings.springs), settings.limits);
+  auto with = shared_work_of(settings);
+  plane_depth depth(made, bodies, reach_m, settings.limits.readings(), known, with.team);
+  plane_finder finder(std::move(made), reach_m, std::move(known), std::move(with));
+  return plane_renderer(std::move(bodies), std::move(finder), std::move(depth), plane_springs(settings.springs),
+                        settings.limits);
 }
 
 result<plane_renderer> make_plane_renderer(scene bodies, const plane_renderer_settings& settings) {

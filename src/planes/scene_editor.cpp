@@ -10,6 +10,7 @@
 #include "model/material_places.hpp"
 #include "planes/body_tree.hpp"
 #include "planes/known_branches.hpp"
+#include "planes/renderer_team.hpp"
 
 namespace asperity {
 namespace {
@@ -210,6 +211,7 @@ std::shared_ptr<const plane_scene> scene_editor::prepare() {
 result<plane_renderer> make_plane_renderer(scene_editor& editor, const plane_renderer_settings& settings) {
   if (const result<void> ok = check_reach(settings.reach_m); !ok) return ok.error();
   if (const result<void> ok = check(settings.springs); !ok) return ok.error();
+  if (const result<void> ok = check_threads(settings.threads); !ok) return ok.error();
   std::shared_ptr<const plane_scene> first = editor.prepare();
   double reach_m = settings.reach_m;
   if (!(reach_m > 0.0)) {
@@ -222,8 +224,9 @@ result<plane_renderer> make_plane_renderer(scene_editor& editor, const plane_ren
   }
   auto known =
       std::make_shared<known_branches>(*first->fields, first->bodies.probe->mass.centre_of_mass, first->most_balls);
-  plane_finder finder(*first, reach_m, known);
-  plane_depth depth(*first, reach_m, settings.limits.readings(), std::move(known));
+  auto with = shared_work_of(settings);
+  plane_depth depth(*first, reach_m, settings.limits.readings(), known, with.team);
+  plane_finder finder(*first, reach_m, std::move(known), std::move(with));
   return plane_renderer(std::move(first), std::move(finder), std::move(depth), plane_springs(settings.springs),
                         settings.limits);
 }

@@ -65,6 +65,9 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
   const time_summary rubbing_probe = summarise(m.rubbing_probe_s);
   const time_summary planes_far_tick = summarise(m.planes_far_tick_s);
   const time_summary soft_far_tick = summarise(m.soft_far_tick_s);
+  const time_summary follow = summarise(m.follow_s);
+  const std::optional<time_summary> shared =
+      m.follow_shared_s.empty() ? std::nullopt : std::optional(summarise(m.follow_shared_s));
   const auto mean_of = [&](std::uint32_t depth_work::*part) {
     double sum = 0.0;
     for (const depth_work& w : m.planes_work) sum += static_cast<double>(w.*part);
@@ -92,6 +95,7 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                     {"leaves_bounded", mean_of(&depth_work::bounded)},
                     {"read_quickly", mean_of(&depth_work::quick)},
                     {"read_exactly", mean_of(&depth_work::exact)}}},
+                  {"threads", options.motion.threads},
                   {"time_is", "cpu"},
                   {"seconds",
                    {{"collision_query", to_json(query)},
@@ -99,6 +103,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                     {"contact_central", to_json(central)},
                     {"tick_planes", to_json(planes_tick)},
                     {"every_sample", to_json(every_sample)},
+                    {"follow_on_wall", to_json(follow)},
+                    {"follow_shared_on_wall", shared ? to_json(*shared) : json()},
                     {"probe_on_planes", to_json(probe)},
                     {"probe_rubbing_on_planes", to_json(rubbing_probe)},
                     {"tick_least_motion", to_json(least_motion_tick)},
@@ -107,6 +113,8 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                   {"ratios",
                    {{"contact_central_to_soft", central.p50_s / soft.p50_s},
                     {"every_sample_to_tick_planes", every_sample.p50_s / planes_tick.p50_s},
+                    {"follow_to_follow_shared", shared ? json(follow.p50_s / shared->p50_s) : json()},
+                    {"follow_to_follow_shared_p99", shared ? json(follow.p99_s / shared->p99_s) : json()},
                     {"tick_planes_p99_to_p50", planes_tick.p99_s / planes_tick.p50_s},
                     {"tick_planes_with_far_bodies", planes_far_tick.p50_s / planes_tick.p50_s},
                     {"tick_soft_with_far_bodies", soft_far_tick.p50_s / soft_tick.p50_s},
@@ -140,6 +148,12 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                                               brief(mean_of(&depth_work::quick)) + " read quickly, " +
                                               brief(mean_of(&depth_work::exact)) + " exactly; " +
                                               brief(mean_of(&depth_work::bounded)) + " leaves bounded");
+  out.text += row("tick that follows", to_text(follow) + " on the wall");
+  out.text +=
+      row("shared by " + std::to_string(options.motion.threads) + " threads",
+          shared ? to_text(*shared) + " on the wall  (one thread takes " + ratio_text(follow.p50_s / shared->p50_s) +
+                       " p50, " + ratio_text(follow.p99_s / shared->p99_s) + " p99)"
+                 : std::string("not measured: this machine has fewer processors"));
   out.text += row("device tick: probe",
                   to_text(probe) + " on " + brief(planes_held) + " planes; with friction " + to_text(rubbing_probe));
   out.text +=
@@ -235,6 +249,9 @@ void add_bench(command_line& line) {
       ->default_str(std::to_string(o->motion.poses));
   sub.add_option("--seed", o->motion.seed, "Seed of the path")
       ->check(whole_number_error, "WHOLE NUMBER")
+      ->capture_default_str();
+  sub.add_option("--threads", o->motion.threads, "Threads that share a tick of planes, beside one that works alone")
+      ->check(CLI::Range(2, 16))
       ->capture_default_str();
   auto* rivals = sub.add_flag("--rivals", o->rivals,
                               "Race with other libraries on full-resolution meshes instead, judged by the originals; "

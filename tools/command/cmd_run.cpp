@@ -2,9 +2,11 @@
 #include <cmath>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
+#include "asperity/control/real_time_thread.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
 #include "cli.hpp"
 #include "device_recorder.hpp"
@@ -201,10 +203,11 @@ std::optional<rate_check> look_at_rate(const render_options& chosen, any_rendere
                                        const control_settings& control) {
   if (chosen.backend != "cpu") return std::nullopt;
   const auto look = [&](any_renderer& with) -> std::optional<rate_check> {
-    if (touch_T_wa) return check_rate(with, placement, *touch_T_wa, control, chosen.periods);
-    const result<pose> touch = first_touch(with, placement.T_wb);
+    const result<pose> touch = touch_T_wa ? result<pose>(*touch_T_wa) : first_touch(with, placement.T_wb);
     if (!touch) return std::nullopt;
-    return check_rate(with, placement, *touch, control, chosen.periods);
+    rate_check out = check_rate(with, placement, *touch, control, chosen.periods);
+    out.threads = more_threads(chosen, std::thread::hardware_concurrency());
+    return out;
   };
   // Windows go on from those of the tick before, so a session begins with a renderer that knows of none of
   // these. The others tell the same whatever they were asked before.
@@ -254,6 +257,7 @@ result<answer> run_session(const run_command& options, const common_options& com
   render_options chosen = options.render;
   chosen.periods = periods_of(options);
   chosen.motion_scale = options.scale;
+  if (clock_of(options) == "real") chosen.set_up_helper = set_up_real_time_helper;
   result<any_renderer> feel = make_chosen_renderer(std::move(bodies).value(), chosen);
   if (!feel) return feel.error();
   const std::shared_ptr<gpu_use> gpu = gpu_use_of(*feel);
@@ -390,6 +394,11 @@ void add_run(command_line& line) {
   sub.add_option("--contact-rate", o->contact_rate_hz,
                  "Rate of the contact loop (Hz), 100 to 10000; faster than the device loop, contacts are fresher")
       ->check(loop_rate_error, "RATE")
+      ->capture_default_str();
+  sub.add_option("--threads", o->render.threads,
+                 "Threads that share a contact tick, with the same result for any number; they want processors of "
+                 "their own")
+      ->check(CLI::Range(1, 16))
       ->capture_default_str();
   sub.add_option("--coupling", o->coupling_n_per_m,
                  "Stiffness of the virtual coupling (N/m); by default what the device can show, and 500 with other "

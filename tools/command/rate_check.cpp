@@ -84,9 +84,18 @@ rate_check check_rate(any_renderer& feel, const scene_placement& placement, cons
   return out;
 }
 
-std::string advice_for(std::optional<double> kept_rate_hz) {
-  return (kept_rate_hz ? "use --contact-rate " + brief(*kept_rate_hz) + ", or" : std::string("use")) +
-         " coarser models";
+std::optional<unsigned> more_threads(const render_options& chosen, unsigned processors) {
+  constexpr unsigned others = 2, most = 4;  // the device thread and the application; beyond four little is gained
+  const unsigned could = std::min(most, processors > others ? processors - others : 1);
+  const bool more = formulation_name(chosen) == "planes" && could > chosen.threads;
+  return more ? std::optional(could) : std::nullopt;
+}
+
+std::string advice_for(std::optional<double> kept_rate_hz, std::optional<unsigned> threads) {
+  std::string options;
+  if (threads) options += "--threads " + std::to_string(*threads) + ", ";
+  if (kept_rate_hz) options += "--contact-rate " + brief(*kept_rate_hz) + ", ";
+  return "use " + options + (options.empty() ? "coarser models" : "or coarser models");
 }
 
 std::string to_text(const rate_check& checked) {
@@ -97,7 +106,7 @@ std::string to_text(const rate_check& checked) {
   if (checked.processor_p99_s <= checked.period_s) {
     return tick + "not kept, because other programs hold the processor: end some of them";
   }
-  return tick + "not kept; " + advice_for(checked.kept_rate_hz);
+  return tick + "not kept; " + advice_for(checked.kept_rate_hz, checked.threads);
 }
 
 }  // namespace asperity::command

@@ -8,6 +8,7 @@
 #include "asperity/control/contact_loop.hpp"
 #include "asperity/control/control_settings.hpp"
 #include "asperity/render/any_renderer.hpp"
+#include "render_choice.hpp"
 #include "statistics.hpp"
 
 namespace asperity::command {
@@ -22,6 +23,7 @@ struct rate_check {
   double processor_p99_s = 0.0;          ///< the same percentile of the processor's time alone
   bool kept = false;                     ///< the 99th percentile of a tick is within the period
   std::optional<double> kept_rate_hz{};  ///< where it is not: a lower rate that a processor of its own would keep
+  std::optional<unsigned> threads{};     ///< see more_threads()
 };
 
 /// The largest of the usual rates whose period is a quarter longer than this. @return nothing below 100 Hz
@@ -38,7 +40,10 @@ struct rate_check {
 [[nodiscard]] nlohmann::ordered_json to_json(const rate_check& checked);
 /// One line: what a tick takes, whether the rate is kept, and where it is not, what to do.
 [[nodiscard]] std::string to_text(const rate_check& checked);
-/// What to do where a rate is not kept: "use --contact-rate 400, or coarser models".
-[[nodiscard]] std::string advice_for(std::optional<double> kept_rate_hz);
+/// How many threads could share a tick on a machine of so many processors, beside the device thread and the
+/// application; nothing where that is no more than there are, or the contacts are not support planes.
+[[nodiscard]] std::optional<unsigned> more_threads(const render_options& chosen, unsigned processors);
+/// What to do where a rate is not kept: "use --threads 2, --contact-rate 400, or coarser models".
+[[nodiscard]] std::string advice_for(std::optional<double> kept_rate_hz, std::optional<unsigned> threads = {});
 
 }  // namespace asperity::command

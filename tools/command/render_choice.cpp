@@ -143,6 +143,9 @@ result<void> check(const render_options& options) {
                          *options.contacts);
   }
   if (const result<void> ok = check_gpu(backend, options); !ok) return ok;
+  if (options.threads > 1 && formulation_name(options) != "planes") {
+    return contradiction("--threads share a tick of support planes: leave it out, or use --contacts planes");
+  }
   if (const char* const given = given_for_grid(options); given != nullptr && !on_grid(options)) {
     return contradiction(given +
                          (formulation_name(options) != "window"

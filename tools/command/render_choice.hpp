@@ -30,7 +30,9 @@ struct render_options {
   /// Of the loops that render and use contacts, where there are any: planes are reported as far as these need, and the
   /// least motion is as soft as these can follow.
   loop_periods periods{};
-  double motion_scale = 1.0;  ///< workspace_map::scale: hands are faster in a world that is made larger
+  unsigned threads = 1;                       ///< that share a tick; of planes only
+  void (*set_up_helper)(unsigned) = nullptr;  ///< called once in each of them but the caller's
+  double motion_scale = 1.0;                  ///< workspace_map::scale: hands are faster in a world that is made larger
   /// Of the least motion, N/m. For experiments: the command line has no option for it.
   std::optional<double> contact_stiffness_n_per_m;
   /// Of windows on grids with central differences, m; 0: the backend's choice. For experiments: the

@@ -45,6 +45,8 @@ result<any_renderer> make_planes_on_cpu(scene bodies, const render_options& opti
   const double usual_m = reach_for(1e-3);
   if (reach_m > usual_m) settings.reach_m = std::min(most_m, reach_m);
   if (reach_m < usual_m) settings.reach_m = std::min(0.1 * smallest_diagonal_m(bodies), std::max(least_m, reach_m));
+  settings.threads = options.threads;
+  settings.set_up_helper = options.set_up_helper;
   return erased(make_plane_renderer(std::move(bodies), settings));
 }
 

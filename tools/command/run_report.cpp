@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <thread>
 
 #include "gpu_report.hpp"
 #include "interrupt.hpp"
@@ -45,7 +46,9 @@ std::string rate_warning(const run_command& options, const loop_times& contact, 
          (clock_of(options) == "real" ? "did not keep " : "would not keep ") + rate_text(options.contact_rate_hz) +
          (clock_of(options) == "real" ? "" : " in real time") + ": " + std::to_string(contact.over_period) + " of " +
          std::to_string(contact.seconds.size()) + " ticks took longer than " +
-         time_text(1.0 / options.contact_rate_hz) + "; " + advice_for(rate_within(measured.p99_s)) + "\n";
+         time_text(1.0 / options.contact_rate_hz) + "; " +
+         advice_for(rate_within(measured.p99_s), more_threads(options.render, std::thread::hardware_concurrency())) +
+         "\n";
 }
 
 json rates_json(const rate_report& r) {

@@ -1,10 +1,12 @@
 #include "stage_times.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <random>
 #include <span>
+#include <thread>
 #include <utility>
 
 #include "approach.hpp"
@@ -151,6 +153,14 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
   result<plane_renderer> planes = make_plane_renderer(bodies, made, plane_settings);
   if (!planes) return planes.error();
 
+  plane_renderer_settings shared_settings = plane_settings;
+  shared_settings.threads = motion.threads;
+  result<plane_renderer> follow = make_plane_renderer(bodies, made, plane_settings);
+  if (!follow) return follow.error();
+  result<plane_renderer> follow_shared = make_plane_renderer(bodies, made, shared_settings);
+  if (!follow_shared) return follow_shared.error();
+  const bool has_processors = std::thread::hardware_concurrency() >= motion.threads;
+
   const std::vector<pose> T_wb(bodies.fixed.size());
   const crowd others(bodies, *made, T_wb);
   result<plane_renderer> planes_far = make_plane_renderer(others.bodies, others.fields, plane_settings);
@@ -174,6 +184,11 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
     static_cast<void>(call());
     into.push_back(share * (cpu_seconds() - begin));
   };
+  const auto time_on_wall = [](std::vector<double>& into, auto&& call) {
+    const auto begin = std::chrono::steady_clock::now();
+    static_cast<void>(call());
+    into.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  };
   for (std::size_t i = 0; i < path.size(); ++i) {
     if (interrupted()) return error{error_code::cancelled, "interrupted: nothing was written"};
     progress.show("measuring", static_cast<double>(i) / static_cast<double>(path.size()));
@@ -190,6 +205,8 @@ result<stage_times> time_stages(const scene& bodies, const scrubbing& motion, pr
     tick found;
     time(out.planes_tick_s, 1.0, [&] { return planes->step(at_surface, found); });
     out.planes_work.push_back(found.work);
+    time_on_wall(out.follow_s, [&] { return follow->step(at_surface, found); });
+    if (has_processors) time_on_wall(out.follow_shared_s, [&] { return follow_shared->step(at_surface, found); });
     smooth.take(found, at_surface);
     rubbing.take(found, at_surface);
     out.planes_held.push_back(static_cast<double>(rubbing.contact().planes.size()));

@@ -16,6 +16,7 @@ namespace asperity::command {
 struct scrubbing {
   std::size_t poses = 2000;
   std::uint64_t seed = 1;
+  unsigned threads = 2;  ///< of ticks that are shared
 };
 
 /// How many bodies out of reach a tick is also timed with.
@@ -30,6 +31,9 @@ struct stage_times {
   std::vector<double> every_sample_s;  ///< what reading all samples that such a tick finds near would take
   /// The same ticks in a scene with far_bodies more bodies that are all out of reach.
   std::vector<double> planes_far_tick_s, soft_far_tick_s;
+  /// Time on the wall of ticks that follow the path, of one thread and of several that share them; the latter empty where
+  /// this machine has fewer processors.
+  std::vector<double> follow_s, follow_shared_s;
   double sum_of_samples = 0.0;  ///< of that reading, so that it is made
   /// What a device tick spends on the probe: eight substeps against the planes of such a tick, under the usual coupling,
   /// without friction and with a coefficient of 0.4.

@@ -62,6 +62,48 @@ struct real_time_wish {
 
 #if defined(__linux__)
 
+namespace real_time_detail {
+
+/// The device thread's class, or half of its priority.
+inline void ask_for_class(const real_time_wish& wish, bool is_device, thread_grants& got) noexcept {
+  const auto ask = [&](int device_priority) {
+    const int priority = is_device ? device_priority : device_priority / 2;
+    if (priority < 1) return EPERM;
+    sched_param p{};
+    p.sched_priority = priority;
+    // Unlike sched_setscheduler() it returns the error; the flag keeps the class from being inherited.
+    const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO | SCHED_RESET_ON_FORK, &p);
+    if (error == 0) got.priority = priority;
+    return error;
+  };
+  int error = ask(std::clamp(wish.device_priority, 1, 99));
+  rlimit limit{};
+  if (error == EPERM && getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur > 0 && limit.rlim_cur < 99) {
+    error = ask(std::min(wish.device_priority, static_cast<int>(limit.rlim_cur)));
+  }
+  got.scheduling = error == 0 ? grant::granted : grant::refused;
+  got.scheduling_error = error;
+}
+
+[[nodiscard]] inline int processors_of_process() noexcept {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : 1;
+}
+
+}  // namespace real_time_detail
+
+/// Asks for the contact thread's class for a thread that shares its ticks (plane_renderer_settings::threads), where this
+/// process has a processor for each of them beside those that wish.processors_for_contact_class counts. Not in a tick.
+/// @param helper its number, from 1 on
+[[nodiscard]] inline thread_grants ask_for_real_time_helper(unsigned helper, const real_time_wish& wish = {}) noexcept {
+  thread_grants got;
+  if (real_time_detail::processors_of_process() >= wish.processors_for_contact_class + static_cast<int>(helper)) {
+    real_time_detail::ask_for_class(wish, false, got);
+  }
+  return got;
+}
+
 /// Asks for what `wish` says for the calling thread, one of a real_session's. Not in a tick.
 /// The priority is lowered to the process's limit (RLIMIT_RTPRIO) where that is lower. Children that the thread starts
 /// do not inherit its class.
@@ -74,23 +116,7 @@ struct real_time_wish {
   const bool is_device = which == session_thread::device;
 
   if (is_device || processors >= wish.processors_for_contact_class) {
-    const auto ask = [&](int device_priority) {
-      const int priority = is_device ? device_priority : device_priority / 2;
-      if (priority < 1) return EPERM;
-      sched_param p{};
-      p.sched_priority = priority;
-      // Unlike sched_setscheduler() it returns the error; the flag keeps the class from being inherited.
-      const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO | SCHED_RESET_ON_FORK, &p);
-      if (error == 0) got.priority = priority;
-      return error;
-    };
-    int error = ask(std::clamp(wish.device_priority, 1, 99));
-    rlimit limit{};
-    if (error == EPERM && getrlimit(RLIMIT_RTPRIO, &limit) == 0 && limit.rlim_cur > 0 && limit.rlim_cur < 99) {
-      error = ask(std::min(wish.device_priority, static_cast<int>(limit.rlim_cur)));
-    }
-    got.scheduling = error == 0 ? grant::granted : grant::refused;
-    got.scheduling_error = error;
+    real_time_detail::ask_for_class(wish, is_device, got);
   }
 
   // The last processors: the first one often serves the machine's interrupts.
@@ -142,6 +168,10 @@ class memory_lock {
 
 #else
 
+[[nodiscard]] inline thread_grants ask_for_real_time_helper(unsigned, const real_time_wish& = {}) noexcept {
+  return {.scheduling = grant::unsupported, .affinity = grant::unsupported};
+}
+
 [[nodiscard]] inline thread_grants ask_for_real_time(session_thread, const real_time_wish& = {}) noexcept {
   return {.scheduling = grant::unsupported, .affinity = grant::unsupported};
 }
@@ -184,6 +214,9 @@ inline void set_up_real_time_thread(session_thread which) noexcept {
   to.processor = got.processor;
   to.affinity_error = got.affinity_error;
 }
+
+/// For plane_renderer_settings::set_up_helper: asks for the contact thread's class. What is refused is not told.
+inline void set_up_real_time_helper(unsigned helper) noexcept { static_cast<void>(ask_for_real_time_helper(helper)); }
 
 /// What set_up_real_time_thread() got for the latest thread of that kind. @pre that thread has ticked, or has ended
 [[nodiscard]] inline thread_grants latest_grants(session_thread which) noexcept {

@@ -118,6 +118,22 @@ class near_samples {
     return true;
   }
 
+  /// Adds what another list has, behind what is here. @rt safe
+  void append(const near_samples& other) noexcept {
+    if (!patches_.empty() && patches_.back().leaf_count == 0) patches_.pop_back();
+    const std::size_t first = leaves_.size(), count = std::min(other.leaves_.size(), limits_.leaves - first);
+    leaves_.insert(leaves_.end(), other.leaves_.begin(), other.leaves_.begin() + static_cast<std::ptrdiff_t>(count));
+    for (const near_patch& patch : other.patches_) {
+      if (patch.first_leaf >= count) break;
+      patches_.push_back(patch);
+      patches_.back().leaf_count = std::min(patch.leaf_count, static_cast<std::uint32_t>(count) - patch.first_leaf);
+      patches_.back().first_leaf += static_cast<std::uint32_t>(first);
+    }
+    dropped_ += other.dropped_ + (other.leaves_.size() - count);
+    looked_at_ += other.looked_at_;
+    leave(other.most_left_m_);
+  }
+
   [[nodiscard]] std::span<const near_patch> patches() const noexcept { return patches_; }
   [[nodiscard]] std::span<const near_leaf> leaves_of(const near_patch& patch) const noexcept {
     return leaves().subspan(patch.first_leaf, patch.leaf_count);

@@ -26,6 +26,7 @@ class known_branches;
 class known_depths;
 class leaf_reader;
 class plane_materials;
+class tick_team;
 struct plane_scene;
 
 /// Reads the field at every near sample and keeps the deepest of each leaf, with its slope, as a support plane. Edge
@@ -68,10 +69,12 @@ class ASPERITY_API plane_depth {
   /// @param reach_m  gaps up to this are reported, m
   /// @param most     planes that a tick may report: near_sample_limits::readings()
   /// @param branches shared with the finder, which this teaches; or nullptr
+  /// @param team     threads that share a tick's work; or nullptr
   plane_depth(std::shared_ptr<const field_scene> bodies, const scene& of, double reach_m, std::size_t most,
-              std::shared_ptr<known_branches> branches = nullptr);
+              std::shared_ptr<known_branches> branches = nullptr, std::shared_ptr<tick_team> team = nullptr);
   /// Of a scene that changes. @param first its first version
-  plane_depth(const plane_scene& first, double reach_m, std::size_t most, std::shared_ptr<known_branches> branches);
+  plane_depth(const plane_scene& first, double reach_m, std::size_t most, std::shared_ptr<known_branches> branches,
+              std::shared_ptr<tick_team> team = nullptr);
   plane_depth(plane_depth&&) noexcept;
   plane_depth& operator=(plane_depth&&) noexcept;
   ~plane_depth();
@@ -116,9 +119,18 @@ class ASPERITY_API plane_depth {
   void stand_back(const near_samples& found, const vec6& ahead, std::span<near_plane> out) noexcept;
   // The deepest first, roughly.
   void sort_by_depth(std::span<const near_patch> patches) noexcept;
-  // The planes of a patch's leaves, where they can matter.
-  void read(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
-            std::span<near_plane> out) noexcept;
+  // How much deeper the samples of a patch can be than in the tick before, where the largest bound was most_m then.
+  [[nodiscard]] double growth_m(const near_patch& patch, const leaf_reader& reader, double most_m) const noexcept;
+  // Which gaps of a patch are told.
+  struct told_from;
+  [[nodiscard]] told_from told_of(const near_patch& patch) const noexcept;
+  // The planes of a patch's leaves that can matter by what is known so far. From several threads, for patches of their
+  // own.
+  // @param alone no other patch is looked through at the same time   @return whether there is one
+  bool look_through(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader, bool alone,
+                    std::span<near_plane> out) const noexcept;
+  // Leaves those of them that matter beside what earlier patches have.
+  void keep_what_matters(const near_patch& patch, const leaf_reader& reader, std::span<near_plane> out) noexcept;
   // The patches' bounds, as sharp as this tick made them.
   void teach(const near_samples& found) noexcept;
 
@@ -127,7 +139,8 @@ class ASPERITY_API plane_depth {
   double reach_m_;
   double told_m_;  // of the last measure(): no gap beyond this is told
   std::vector<support_plane> reported_;
-  std::vector<std::uint32_t> order_;  // of patches
+  std::vector<std::uint32_t> order_;     // of patches
+  std::vector<std::uint8_t> has_plane_;  // each patch, one at least
   // How the probe has moved from the tick before, seen from each body.
   struct way {
     pose T_ba{}, before_ba{}, before_ab{};
@@ -149,6 +162,8 @@ class ASPERITY_API plane_depth {
   std::unique_ptr<first_met> met_;
   std::unique_ptr<known_depths> known_;
   std::shared_ptr<known_branches> branches_;
+  std::shared_ptr<tick_team> team_;
+  mutable std::vector<plane_list> parts_;  // of planes_at(), of several threads
   std::unique_ptr<plane_materials> materials_;
   std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
   double probe_half_m_ = 0.0;

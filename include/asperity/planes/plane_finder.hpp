@@ -18,6 +18,7 @@ namespace asperity {
 class known_branches;
 struct body_facts;
 struct plane_scene;
+class tick_team;
 
 /// Lists the patches of samples whose depth may be more than -reach, with a bound of it: of the probe in each fixed
 /// body's field, and of each fixed body in the probe's. Bodies that are too far away as a whole are known by a sphere
@@ -30,13 +31,19 @@ class ASPERITY_API plane_finder {
   using found_type = near_samples;
   using placed_type = plane_scene;
 
+  /// Threads that share a tick's work, and room for what one of them finds.
+  struct shared_work {
+    std::shared_ptr<tick_team> team;  ///< null: the calling thread alone
+    std::shared_ptr<near_samples> beside;
+  };
+
   /// @param reach_m gaps up to this are reported, m
   /// @param known   of the renderer's ticks, shared with its depth backend, which knows more; or nullptr
   plane_finder(std::shared_ptr<const field_scene> bodies, double reach_m,
-               std::shared_ptr<known_branches> known = nullptr);
+               std::shared_ptr<known_branches> known = nullptr, shared_work with = {});
 
   /// Of a scene that changes. @param first its first version
-  plane_finder(const plane_scene& first, double reach_m, std::shared_ptr<known_branches> known);
+  plane_finder(const plane_scene& first, double reach_m, std::shared_ptr<known_branches> known, shared_work with = {});
 
   /// Goes on with another version of the scene, which outlives its use here. @pre as many slots   @rt safe
   void take(const plane_scene& next) noexcept;
@@ -48,7 +55,10 @@ class ASPERITY_API plane_finder {
   /// Fixed bodies that the last find() looked into.
   [[nodiscard]] std::size_t near_bodies() const noexcept { return near_bodies_; }
   /// Without the bodies, which others share.
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(fixed_, near_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    const std::size_t beside = with_.beside ? sizeof(near_samples) + with_.beside->heap_bytes() : 0;
+    return asperity::heap_bytes(fixed_, near_) + beside;
+  }
 
  private:
   friend ASPERITY_API body_facts facts_of(const field_body&, double, double);
@@ -64,6 +74,7 @@ class ASPERITY_API plane_finder {
 
   std::shared_ptr<const field_scene> bodies_;
   std::shared_ptr<known_branches> known_;
+  shared_work with_;
   sphere probe_;
   std::vector<sphere> fixed_;
   const plane_scene* placed_ = nullptr;

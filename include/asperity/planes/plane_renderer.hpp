@@ -26,6 +26,13 @@ struct plane_renderer_settings {
   double reach_m = 0.0;
   plane_spring_settings springs{};
   near_sample_limits limits{};
+  /// Threads that share the work of a tick, the one that calls step() among them: 1 to 16. What a tick answers is the
+  /// same to the bit for any number. The others wait for the next tick's work busily for some tenths of a millisecond,
+  /// so they want processors of their own; see docs/how-to/share-a-tick.md.
+  unsigned threads = 1;
+  /// Called once in each of the other threads, with its number from 1 on: the place to ask for a scheduling class; as
+  /// set_up_real_time_helper(). May be null.
+  void (*set_up_helper)(unsigned) = nullptr;
 };
 
 /// The gaps that a contact loop of this period has to know, m: 3 v T for a hand of v = 0.6 m/s. With 2 v T a fast
@@ -41,6 +48,9 @@ struct plane_renderer_settings {
 
 /// Says whether gaps can be reported up to this, m: finite, and not negative.
 [[nodiscard]] ASPERITY_API result<void> check_reach(double reach_m);
+
+/// Says whether so many threads can share a tick.
+[[nodiscard]] ASPERITY_API result<void> check_threads(unsigned threads);
 
 /// The plane renderer for bodies that were made before, by make_field_scene(): several renderers can share them.
 /// @pre made are of these bodies, in their order

@@ -158,6 +158,20 @@ TEST(rate_check, judges_by_the_99th_percentile) {
   EXPECT_EQ(rate_within(8e-3), 100.0);
   EXPECT_EQ(rate_within(8.1e-3), std::nullopt);
   EXPECT_EQ(advice_for(std::nullopt), "use coarser models");
+  EXPECT_EQ(advice_for(std::nullopt, 2), "use --threads 2, or coarser models");
+  EXPECT_EQ(advice_for(400.0, 3), "use --threads 3, --contact-rate 400, or coarser models");
+}
+
+TEST(rate_check, offers_threads_where_there_are_processors_for_them) {
+  render_options planes{.usual_contacts = "planes"};
+  for (const unsigned few : {0U, 1U, 2U, 3U}) EXPECT_EQ(more_threads(planes, few), std::nullopt) << few;
+  EXPECT_EQ(more_threads(planes, 4), 2U);
+  EXPECT_EQ(more_threads(planes, 64), 4U);
+  planes.threads = 3;
+  EXPECT_EQ(more_threads(planes, 5), std::nullopt);
+  EXPECT_EQ(more_threads(planes, 6), 4U);
+  const render_options one_potential{};
+  EXPECT_EQ(more_threads(one_potential, 64), std::nullopt);
 }
 
 // A look at the speed before a session leaves no trace in it.
