@@ -163,14 +163,15 @@ TEST(rate_check, judges_by_the_99th_percentile) {
 }
 
 TEST(rate_check, offers_threads_where_there_are_processors_for_them) {
-  render_options planes{.usual_contacts = "planes"};
+  render_options planes;
+  planes.usual_contacts = "planes";
   for (const unsigned few : {0U, 1U, 2U, 3U}) EXPECT_EQ(more_threads(planes, few), std::nullopt) << few;
   EXPECT_EQ(more_threads(planes, 4), 2U);
   EXPECT_EQ(more_threads(planes, 64), 4U);
   planes.threads = 3;
   EXPECT_EQ(more_threads(planes, 5), std::nullopt);
   EXPECT_EQ(more_threads(planes, 6), 4U);
-  const render_options one_potential{};
+  const render_options one_potential;
   EXPECT_EQ(more_threads(one_potential, 64), std::nullopt);
 }
 

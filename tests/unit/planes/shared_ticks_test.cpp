@@ -31,6 +31,9 @@ unsigned drawn_threads(std::mt19937_64& bits) { return 2 + static_cast<unsigned>
 TEST(TickTeam, DoesEachTaskOnceAndWaitsForAll) {
   std::mt19937_64 bits(fresh_seed("TickTeam.DoesEachTaskOnceAndWaitsForAll", "12 teams, 300 calls of each"));
   std::size_t by_helpers = 0;
+  // Who has a number, has it alone: what a thread keeps under it needs no lock.
+  std::array<std::atomic<bool>, tick_team::most_threads> has_number{};
+  std::atomic<int> shared_numbers{0};
   for (int n = 0; n < 12; ++n) {
     tick_team team(drawn_threads(bits));
     std::vector<std::uint32_t> done(400);
@@ -41,7 +44,9 @@ TEST(TickTeam, DoesEachTaskOnceAndWaitsForAll) {
       std::atomic<std::size_t> helped{0};
       // What a task writes is read without a lock: run() has to come after all of them.
       team.run(tasks, [&](std::size_t task, unsigned thread) noexcept {
+        if (has_number[thread].exchange(true)) shared_numbers.fetch_add(1);
         done[task] += mark;
+        has_number[thread].store(false);
         if (thread != 0) helped.fetch_add(1, std::memory_order_relaxed);
       });
       by_helpers += helped.load();
@@ -50,6 +55,7 @@ TEST(TickTeam, DoesEachTaskOnceAndWaitsForAll) {
       ASSERT_TRUE(mark == 0 || std::count(end_of_done, done.end(), mark) == 0) << "call " << call;
     }
   }
+  EXPECT_EQ(shared_numbers.load(), 0);
   std::printf("%zu tasks were done by helpers\n", by_helpers);
 }
 
