@@ -3,10 +3,12 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bake/halfedges.hpp"
 #include "bake/hole_fill.hpp"
 #include "bake/repair_steps.hpp"
+#include "bake/smooth_fill.hpp"
 #include "bake/winding.hpp"
 
 namespace asperity::bake {
@@ -65,16 +67,27 @@ void drop_loose_pieces(triangle_mesh& mesh, repair_report& report) {
   drop_triangles(mesh, gone);
 }
 
-void close_all_holes(triangle_mesh& mesh, repair_report& report) {
+void close_all_holes(triangle_mesh& mesh, const repair_settings& settings, repair_report& report) {
   const connectivity net = connect(mesh.triangles, mesh.positions.size());
   double budget = most_filling_steps;
   const std::size_t before = mesh.triangles.size();
-  for (const auto& hole : find_simple_holes(mesh, net)) {
-    report.add(repair_kind::hole, mesh.positions[origin_of(mesh.triangles, hole.front())], widest_distance(mesh, hole));
-    report.area_added_m2 += fill_hole(mesh, hole, budget);
+  std::vector<closed_hole> holes;
+  for (auto& border : find_simple_holes(mesh, net)) {
+    report.add(repair_kind::hole, mesh.positions[origin_of(mesh.triangles, border.front())],
+               widest_distance(mesh, border));
+    const std::size_t first = mesh.triangles.size();
+    const double area = fill_hole(mesh, border, budget);
+    holes.push_back({std::move(border), mesh.triangles.size() - first, area});
+  }
+  if (holes.empty()) return;
+  mesh.uvs.clear();
+  if (settings.smooth_holes)
+    smooth_patches(mesh, net, holes, {report.area_added_m2, settings.largest_made_up_share, settings.threads});
+  for (const closed_hole& hole : holes) {
+    report.area_added_m2 += hole.area_m2;
+    report.smooth_holes += hole.smooth ? 1U : 0U;
   }
   report.triangles_added += mesh.triangles.size() - before;
-  if (mesh.triangles.size() != before) mesh.uvs.clear();
 }
 
 result<hole_report> close_holes(triangle_mesh& mesh) {

@@ -15,6 +15,9 @@ struct repair_settings {
   /// edge at either; an open edge is split where such a vertex lies on it. At least 1e-6.
   double weld_in_diagonals = 1e-5;
   bool close_holes = true;
+  /// A hole in a smooth surface is closed by a patch that goes on smoothly, instead of over its own vertices; a hole whose
+  /// surroundings end in an edge is closed flat all the same.
+  bool smooth_holes = true;
   bool drop_inner = true;               ///< components within the material of another, which nothing can touch
   bool uncross = true;                  ///< where one component passes through itself
   double largest_made_up_share = 0.25;  ///< of the repaired surface; more is refused
@@ -49,6 +52,7 @@ struct repair_report {
   std::array<repair_action, repair_kinds> actions;
   std::size_t triangles_before = 0, triangles_after = 0;
   std::size_t triangles_added = 0;  ///< made up: of closed holes and resolved crossings
+  std::size_t smooth_holes = 0;     ///< of the holes: closed by a patch that goes on smoothly
   double area_added_m2 = 0.0;       ///< of those
   double made_up_share = 0.0;       ///< of those, of the repaired surface
 
