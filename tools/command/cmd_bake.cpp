@@ -122,7 +122,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!full) return full.error();
   if (const result<void> ok = fit_scale(*options.placing, options.full, *full, *options.units); !ok) return ok.error();
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
-  turn_up(*options.placing, *full);
+  turn_up(options.placing->up, *full);
   std::vector<std::string> remarks;
   const bool can_be_wrapped = !options.wrap->wanted && bake::can_wrap(*full);
   std::optional<bake::wrap_report> wrapped;
@@ -196,7 +196,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     result<triangle_mesh> coarse = io::load_mesh(options.coarse, not_interrupted);
     if (!coarse) return coarse.error();
     scale_to_metres(*options.units, *coarse);
-    turn_up(*options.placing, *coarse);
+    turn_up(options.placing->up, *coarse);
     settings.coarse = std::move(coarse).value();
   }
   // A mesh that the picture does not need is not kept twice.
