@@ -88,12 +88,10 @@ TEST(Mend, DirtyMeshesComeOutClosedAndNearToWhatTheyWere) {
     triangle_mesh m = clean[which];
     std::string planted;
     const std::size_t defects = run % 3 == 0 ? 1 : 1 + dice.below(6);
-    std::size_t holes = 0;
     for (std::size_t i = 0; i < defects; ++i) {
       const auto k = static_cast<kind>(dice.below(dirt::kinds));
       if (k == kind::inner_ball && which == 1) continue;  // nothing is in the middle of a torus
       planted += std::string(dirt::name(k)) + ", ";
-      holes += k == kind::hole ? 1 : 0;
       dirt::plant(m, k, dice);
     }
     SCOPED_TRACE("run " + std::to_string(run) + ", mesh " + std::to_string(which) + ": " + planted);
