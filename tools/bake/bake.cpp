@@ -7,8 +7,8 @@
 
 #include "bake/added_relief.hpp"
 #include "bake/atlas.hpp"
-#include "bake/cage.hpp"
 #include "bake/check.hpp"
+#include "bake/coarse.hpp"
 #include "bake/crease_normals.hpp"
 #include "bake/geometry.hpp"
 #include "bake/measure.hpp"
@@ -16,7 +16,6 @@
 #include "bake/piece_fit.hpp"
 #include "bake/pieces.hpp"
 #include "bake/project.hpp"
-#include "bake/relief_fit.hpp"
 #include "bake/self_crossing.hpp"
 #include "bake/simplify.hpp"
 #include "bake/stage_monitor.hpp"
@@ -68,23 +67,6 @@ result<void> check_kept_uvs(const triangle_mesh& full, const bake_settings& sett
   return check_uvs(full, settings.texture_size);
 }
 
-// The coarse mesh that the user gives, checked, or one made by simplifying.
-result<simplified_mesh> coarse_of(const checked_mesh& full, const bake_settings& settings, unsigned threads,
-                                  stage_monitor& monitor) {
-  if (!settings.coarse) return simplify(full, settings.triangles, threads, monitor);
-  triangle_mesh rounded = *settings.coarse;
-  round_to_float32(rounded);
-  auto given = check(rounded, "the coarse mesh");
-  if (!given) return given.error();
-  simplified_mesh out{std::move(given->mesh), {}};
-  if (given->flipped) out.note = "the coarse mesh was inside-out and has been turned";
-  if (given->turned_triangles > 0) {
-    const std::string turned = "of the coarse mesh " + winding_remark(given->turned_triangles);
-    out.note = out.note.empty() ? turned : out.note + "; " + turned;
-  }
-  return out;
-}
-
 void remark(const bake_settings& settings, std::string_view sentence) {
   if (settings.remark && !sentence.empty()) settings.remark(sentence);
 }
@@ -134,24 +116,17 @@ result<textured_model> bake(triangle_mesh full_mesh, const bake_settings& settin
   if (full->flipped) remark(settings, "the mesh was inside-out and has been turned");
   const double diagonal = bounds_of(full->mesh.positions).diagonal();
 
-  if (!monitor.begin("simplify")) return cancelled();
-  auto coarse = coarse_of(*full, settings, threads, monitor);
-  if (!coarse) return coarse.error();
-  // Only now: simplifying is what takes the most memory.
-  const triangle_bvh full_tree(full->mesh.positions, full->mesh.triangles, threads, &monitor);
-  if (monitor.cancelled()) return cancelled();
-  if (!settings.coarse && coarse->mesh.triangles.size() < full->mesh.triangles.size())
-    fit_to_relief(coarse->mesh, full_tree, widest_cage_in_diagonals * diagonal, threads, &monitor);
-  if (monitor.cancelled()) return cancelled();
-  if (!monitor.begin("compare")) return cancelled();
+  auto chosen = choose_coarse(*full, settings, threads, monitor);
+  if (!chosen) return chosen.error();
+  simplified_mesh* const coarse = &chosen->made;
+  const triangle_bvh& full_tree = chosen->full_tree;
+  const double cage_m = chosen->cage_m;
   const auto crossings = find_self_crossings(full->mesh, full_tree, threads, monitor);
   if (!crossings) return cancelled();
   if (crossings->pairs > 0) remark(settings, crossing_remark(*crossings));
   remark(settings, coarse->note);
   const added_relief added{settings.relief, full->mesh};
   if (const auto sound = check_relief(added, diagonal); !sound) return sound.error();
-  const auto cage = measure_cage(full->mesh, full_tree, coarse->mesh, threads, monitor);
-  if (!cage) return cage.error();
 
   if (!monitor.begin("atlas")) return cancelled();
   const auto charts = settings.keep_uvs ? atlas_from_uvs(coarse->mesh, settings.texture_size)
@@ -165,7 +140,7 @@ result<textured_model> bake(triangle_mesh full_mesh, const bake_settings& settin
   remark(settings, thin_remark(*thin, thin_texels * charts->texel_m));
 
   if (!monitor.begin("project")) return cancelled();
-  const double range = std::max(range_per_cage * *cage, least_range_in_diagonals * diagonal);
+  const double range = std::max(range_per_cage * cage_m, least_range_in_diagonals * diagonal);
   auto projected = project(
       coarse->mesh, *charts, crease_normals(coarse->mesh, full_tree, least_band_texels * charts->texel_m), full_tree,
       range, settings.texture_size, threads, monitor, settings.relief ? &added : nullptr, settings.texels);

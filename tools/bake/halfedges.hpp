@@ -50,6 +50,17 @@ struct connectivity {
   }
 };
 
+/// Calls visit(triangle, corner) for the triangles around the vertex that the halfedge starts from; where that is an open
+/// one, up to the next open edge.
+template <class Visit>
+void visit_fan(const connectivity& net, std::uint32_t start, const Visit& visit) {
+  std::uint32_t h = start;
+  do {
+    visit(h / 3, h % 3);
+    h = net.mate[previous_halfedge(h)];
+  } while (h != start && h != no_halfedge);
+}
+
 /// Pairs the halfedges of a triangle list. Linear in its size for meshes of bounded valence.
 /// @pre every index < vertex_count; triangles.size() < 2^30
 [[nodiscard]] connectivity connect(std::span<const index_triangle> triangles, std::size_t vertex_count);

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "asperity/bake/repair.hpp"
 #include "bake/geometry.hpp"
 
 namespace asperity::bake {

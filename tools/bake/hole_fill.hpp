@@ -17,6 +17,9 @@ namespace asperity::bake {
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> find_simple_holes(const triangle_mesh& mesh,
                                                                         const connectivity& around);
 
+/// Edges of the largest hole that is filled in one go.
+inline constexpr std::size_t largest_hole_edges = 500;
+
 /// Appends triangles over the hole: those with the fewest folds, and of these the least area (dynamic programming, as
 /// the cube of its edges) up to `largest_hole_edges`; a larger hole is filled over every few of its vertices first, and then
 /// between these. @param budget  of steps, counted down; where it runs out, fewer vertices are taken at a time

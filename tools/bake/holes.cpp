@@ -1,13 +1,12 @@
 // Holes closed, and open pieces that no hole can be told of dropped.
 #include <algorithm>
-#include <limits>
-#include <string>
 #include <utility>
+#include <vector>
 
 #include "bake/halfedges.hpp"
 #include "bake/hole_fill.hpp"
 #include "bake/repair_steps.hpp"
-#include "bake/winding.hpp"
+#include "bake/smooth_fill.hpp"
 
 namespace asperity::bake {
 namespace {
@@ -65,62 +64,27 @@ void drop_loose_pieces(triangle_mesh& mesh, repair_report& report) {
   drop_triangles(mesh, gone);
 }
 
-void close_all_holes(triangle_mesh& mesh, repair_report& report) {
+void close_all_holes(triangle_mesh& mesh, const repair_settings& settings, repair_report& report) {
   const connectivity net = connect(mesh.triangles, mesh.positions.size());
   double budget = most_filling_steps;
   const std::size_t before = mesh.triangles.size();
-  for (const auto& hole : find_simple_holes(mesh, net)) {
-    report.add(repair_kind::hole, mesh.positions[origin_of(mesh.triangles, hole.front())], widest_distance(mesh, hole));
-    report.area_added_m2 += fill_hole(mesh, hole, budget);
+  std::vector<closed_hole> holes;
+  for (auto& border : find_simple_holes(mesh, net)) {
+    report.add(repair_kind::hole, mesh.positions[origin_of(mesh.triangles, border.front())],
+               widest_distance(mesh, border));
+    const std::size_t first = mesh.triangles.size();
+    const double area = fill_hole(mesh, border, budget);
+    holes.push_back({std::move(border), mesh.triangles.size() - first, area});
+  }
+  if (holes.empty()) return;
+  mesh.uvs.clear();
+  if (settings.smooth_holes)
+    smooth_patches(mesh, net, holes, {report.area_added_m2, settings.largest_made_up_share, settings.threads});
+  for (const closed_hole& hole : holes) {
+    report.area_added_m2 += hole.area_m2;
+    report.smooth_holes += hole.smooth ? 1U : 0U;
   }
   report.triangles_added += mesh.triangles.size() - before;
-  if (mesh.triangles.size() != before) mesh.uvs.clear();
-}
-
-result<hole_report> close_holes(triangle_mesh& mesh) {
-  for (const index_triangle& t : mesh.triangles) {
-    if (std::ranges::max(t) >= mesh.positions.size()) {
-      return error{error_code::bad_mesh, "cannot close holes: a triangle names a vertex that the mesh does not have"};
-    }
-  }
-  connectivity around = connect(mesh.triangles, mesh.positions.size());
-  if (around.non_manifold_edges.count != 0) {
-    return error{error_code::bad_mesh, "cannot close holes: " + std::to_string(around.non_manifold_edges.count) +
-                                           (around.non_manifold_edges.count == 1 ? " edge has" : " edges have") +
-                                           " more than two triangles; remove duplicate or inner faces first"};
-  }
-  hole_report report;
-  triangle_mesh wound{{}, mesh.triangles, mesh.uvs};
-  if (around.misoriented_edges.count != 0) {
-    const auto turned = make_winding_consistent(wound);
-    if (!turned) {
-      return error{error_code::bad_mesh,
-                   "cannot close holes: the surface has only one side, as a Moebius band has; cut it or remove faces"};
-    }
-    report.triangles_turned = *turned;
-    around = connect(wound.triangles, mesh.positions.size());
-  }
-
-  const auto holes = find_holes(around);
-  for (const auto& hole : holes) {
-    if (hole.size() > largest_hole_edges) {
-      return error{error_code::bad_mesh, "cannot close holes: one has " + std::to_string(hole.size()) +
-                                             " edges, more than " + std::to_string(largest_hole_edges) +
-                                             "; close it in a mesh editor, where its shape can be chosen"};
-    }
-  }
-  mesh.triangles = std::move(wound.triangles);
-  mesh.uvs = std::move(wound.uvs);
-  report.holes = holes.size();
-  const std::size_t before = mesh.triangles.size();
-  double budget = std::numeric_limits<double>::infinity();
-  for (const auto& hole : holes) {
-    report.area_added_m2 += fill_hole(mesh, hole, budget);
-    report.largest_m = std::max(report.largest_m, widest_distance(mesh, hole));
-  }
-  report.triangles_added = mesh.triangles.size() - before;
-  if (report.holes != 0) mesh.uvs.clear();
-  return report;
 }
 
 }  // namespace asperity::bake

@@ -181,7 +181,7 @@ result<void> make_closed_manifold(triangle_mesh& mesh, const repair_settings& se
     }
     drop_loose_pieces(mesh, report);
     if (mesh.triangles.size() < 4) return not_mended("has no part that bounds a volume");
-    if (settings.close_holes) close_all_holes(mesh, report);
+    if (settings.close_holes) close_all_holes(mesh, settings, report);
     if (faults_of(mesh).none()) return {};
   }
   return not_mended("cannot be repaired, it still has " + what_is_left(faults_of(mesh)));

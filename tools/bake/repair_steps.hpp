@@ -42,7 +42,7 @@ void part_sheets(triangle_mesh& mesh, repair_report& report);
 
 /// holes.cpp. @pre edges with one or two triangles, and consistent winding
 void drop_loose_pieces(triangle_mesh& mesh, repair_report& report);
-void close_all_holes(triangle_mesh& mesh, repair_report& report);
+void close_all_holes(triangle_mesh& mesh, const repair_settings& settings, repair_report& report);
 
 /// inner_components.cpp. @pre closed and 2-manifold
 void order_components(triangle_mesh& mesh, const repair_settings& settings, repair_report& report);

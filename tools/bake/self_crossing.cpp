@@ -61,22 +61,24 @@ bool cross(const triangle_mesh& mesh, const index_triangle& a, const plane& at_a
   return an_edge_pierces(b, cb, a, at_a) || an_edge_pierces(a, at_a.c, b, plane(cb));
 }
 
-// Calls found(block, triangle, other) for every pair, the lower number first. @return false where cancelled
+// Calls found(block, triangle, other) once for every pair of which at least one is `from` or above. @return false where
+// cancelled
 template <class Found>
-bool visit_crossings(const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads, stage_monitor& monitor,
-                     const Found& found) {
+bool visit_crossings(const triangle_mesh& mesh, const triangle_bvh& tree, std::size_t from, unsigned threads,
+                     stage_monitor& monitor, const Found& found) {
   const auto body = [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
+    for (std::size_t t = from + begin; t < from + end; ++t) {
       const index_triangle& a = mesh.triangles[t];
       const plane at(corners(mesh.positions, a));
       const vec3 low = glm::min(at.c[0], glm::min(at.c[1], at.c[2]));
       const vec3 high = glm::max(at.c[0], glm::max(at.c[1], at.c[2]));
       tree.visit_box(low, high, [&](std::uint32_t other) {
-        if (other > t && cross(mesh, a, at, mesh.triangles[other])) found(block, static_cast<std::uint32_t>(t), other);
+        if ((other > t || other < from) && cross(mesh, a, at, mesh.triangles[other]))
+          found(block, static_cast<std::uint32_t>(t), other);
       });
     }
   };
-  return parallel_blocks(mesh.triangles.size(), threads, monitor, 0.0, 0.5, body);
+  return parallel_blocks(mesh.triangles.size() - from, threads, monitor, 0.0, 0.5, body);
 }
 
 }  // namespace
@@ -89,7 +91,7 @@ std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, con
     const corner_list c = corners(mesh.positions, mesh.triangles[t]);
     of_block[block].first = (c[0] + c[1] + c[2]) / 3.0;
   };
-  if (!visit_crossings(mesh, tree, threads, monitor, found)) return std::nullopt;
+  if (!visit_crossings(mesh, tree, 0, threads, monitor, found)) return std::nullopt;
   self_crossings out;
   for (const self_crossings& found_there : of_block) {
     if (out.pairs == 0) out.first = found_there.first;
@@ -98,16 +100,20 @@ std::optional<self_crossings> find_self_crossings(const triangle_mesh& mesh, con
   return out;
 }
 
-std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> list_self_crossings(
-    const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads, std::size_t most, stage_monitor& monitor) {
-  using pair_list = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-  std::vector<pair_list> of_block(block_count(mesh.triangles.size()));
+std::optional<crossing_pairs> list_self_crossings(const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads,
+                                                  std::size_t most, stage_monitor& monitor) {
+  return list_crossings_from(mesh, tree, 0, threads, most, monitor);
+}
+
+std::optional<crossing_pairs> list_crossings_from(const triangle_mesh& mesh, const triangle_bvh& tree, std::size_t from,
+                                                  unsigned threads, std::size_t most, stage_monitor& monitor) {
+  std::vector<crossing_pairs> of_block(block_count(mesh.triangles.size() - from));
   const auto found = [&](std::size_t block, std::uint32_t t, std::uint32_t other) {
-    if (of_block[block].size() < most) of_block[block].emplace_back(t, other);
+    if (of_block[block].size() < most) of_block[block].emplace_back(std::min(t, other), std::max(t, other));
   };
-  if (!visit_crossings(mesh, tree, threads, monitor, found)) return std::nullopt;
-  pair_list out;
-  for (const pair_list& part : of_block) out.insert(out.end(), part.begin(), part.end());
+  if (!visit_crossings(mesh, tree, from, threads, monitor, found)) return std::nullopt;
+  crossing_pairs out;
+  for (const crossing_pairs& part : of_block) out.insert(out.end(), part.begin(), part.end());
   std::ranges::sort(out);
   if (out.size() > most) out.resize(most);
   return out;

@@ -29,8 +29,15 @@ struct self_crossings {
 inline constexpr std::size_t most_listed_crossings = 1'000'000;
 
 /// The pairs themselves, the lower number first, sorted; no more than `most`. @return nothing where it was cancelled
-[[nodiscard]] std::optional<std::vector<std::pair<std::uint32_t, std::uint32_t>>> list_self_crossings(
-    const triangle_mesh& mesh, const triangle_bvh& tree, unsigned threads, std::size_t most, stage_monitor& monitor);
+using crossing_pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+[[nodiscard]] std::optional<crossing_pairs> list_self_crossings(const triangle_mesh& mesh, const triangle_bvh& tree,
+                                                                unsigned threads, std::size_t most,
+                                                                stage_monitor& monitor);
+
+/// Of these the pairs of which at least one is triangle `from` or a later one.
+[[nodiscard]] std::optional<crossing_pairs> list_crossings_from(const triangle_mesh& mesh, const triangle_bvh& tree,
+                                                                std::size_t from, unsigned threads, std::size_t most,
+                                                                stage_monitor& monitor);
 
 /// The sentence with which a report tells of them. @pre found.pairs > 0
 [[nodiscard]] std::string crossing_remark(const self_crossings& found);

@@ -64,8 +64,9 @@ bool is_unfolded(const triangle_mesh& mesh) {
 }
 
 result<simplified_mesh> simplify(const checked_mesh& full, std::size_t triangles, unsigned threads,
-                                 stage_monitor& monitor) {
+                                 stage_monitor& monitor, std::size_t* stuck_at) {
   simplified_mesh out;
+  std::size_t fewest_stuck = 0;
   if (full.mesh.triangles.size() <= triangles) {
     out.mesh = full.mesh;
     round_to_float32(out.mesh);
@@ -85,10 +86,13 @@ result<simplified_mesh> simplify(const checked_mesh& full, std::size_t triangles
     round_to_float32(out.mesh);
     // An edge collapse stops early where the topology is in its way: then less than asked for has been removed.
     const bool reached = 2 * out.mesh.triangles.size() <= 3 * target;
+    if (!reached && (fewest_stuck == 0 || out.mesh.triangles.size() < fewest_stuck))
+      fewest_stuck = out.mesh.triangles.size();
     if (!reached || !same_topology(out.mesh, full) || !is_unfolded(out.mesh)) continue;
     out.note = describe(a, triangles, out.mesh.triangles.size());
     return out;
   }
+  if (stuck_at != nullptr) *stuck_at = fewest_stuck;
   return error{error_code::bad_mesh, "no sound coarse mesh of " + std::to_string(triangles) +
                                          " triangles could be made (" + std::to_string(full.components) +
                                          " components, Euler characteristic " + std::to_string(full.euler) +

@@ -21,9 +21,11 @@ struct simplified_mesh {
 /// folded, flipped or degenerate triangle). Where the check fails it tries again, smoothed more or less, or with more
 /// triangles. A mesh that has no more triangles than asked for comes back as it is.
 /// @pre triangles >= 4
+/// @param stuck_at  filled in where it is refused: the fewest triangles at which the topology stopped an attempt, 0 where
+///                  none was stopped
 /// @return bad_mesh where no attempt gives a sound coarse mesh; cancelled
 [[nodiscard]] result<simplified_mesh> simplify(const checked_mesh& full, std::size_t triangles, unsigned threads,
-                                               stage_monitor& monitor);
+                                               stage_monitor& monitor, std::size_t* stuck_at = nullptr);
 
 /// True where no triangle is degenerate or folded back onto its neighbour. @pre closed 2-manifold
 [[nodiscard]] bool is_unfolded(const triangle_mesh& mesh);

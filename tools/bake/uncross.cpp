@@ -47,6 +47,8 @@ std::vector<bool> with_rings(const triangle_mesh& mesh, const pair_list& pairs, 
 void uncross(triangle_mesh& mesh, const repair_settings& settings, repair_report& report) {
   constexpr int most_rounds = 4;
   constexpr double largest_cut_share = 0.1;  // of the area
+  repair_settings flat_patches = settings;  // what bulges may cross again
+  flat_patches.smooth_holes = false;
   pair_list pairs = own_crossings(mesh, settings.threads);
   for (int round = 0; round < most_rounds && !pairs.empty(); ++round) {
     const std::vector<bool> gone = with_rings(mesh, pairs, 1 + round);
@@ -60,7 +62,7 @@ void uncross(triangle_mesh& mesh, const repair_settings& settings, repair_report
     repair_report aside;
     part_sheets(next, aside);
     const std::size_t kept = next.triangles.size();
-    close_all_holes(next, aside);
+    close_all_holes(next, flat_patches, aside);
     drop_degenerate(next, aside);
     const connectivity net = connect(next.triangles, next.positions.size());
     const double reach = reach_of(next);

@@ -25,6 +25,7 @@ json repair_document(const bake::repair_report& repaired) {
           {"triangles_after", repaired.triangles_after},
           {"made_up_share", repaired.made_up_share},
           {"holes_closed", holes.count},
+          {"holes_smooth", repaired.smooth_holes},
           {"triangles_added", repaired.triangles_added},
           {"area_added", repaired.area_added_m2},
           {"largest_hole", holes.largest_m}};
@@ -37,8 +38,11 @@ std::string repair_text(const bake::repair_report& repaired) {
     const bake::repair_action& a = repaired.actions[k];
     if (a.count == 0) continue;
     if (kind == bake::repair_kind::hole) {
-      out += row("holes closed", std::to_string(a.count) + ", the largest " + length_text(a.largest_m) + " across; " +
-                                     brief(100.0 * repaired.made_up_share) + " % of the surface is made up");
+      out += row("holes closed",
+                 std::to_string(a.count) +
+                     (repaired.smooth_holes > 0 ? " (" + std::to_string(repaired.smooth_holes) + " smoothly)" : "") +
+                     ", the largest " + length_text(a.largest_m) + " across; " + brief(100.0 * repaired.made_up_share) +
+                     " % of the surface is made up");
       continue;
     }
     std::string told = std::to_string(a.count) + ' ' + bake::in_words(kind, a.count) + ", the first at (" +

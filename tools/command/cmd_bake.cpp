@@ -42,7 +42,7 @@ struct bake_command {
   std::string material;
   std::string material_map;
   std::vector<std::string> material_at;
-  std::size_t triangles = 600;
+  std::optional<std::size_t> triangles;
   std::uint32_t texture = 1024;
   std::string texels = "point";
   unsigned threads = 0;
@@ -122,7 +122,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
   if (!full) return full.error();
   if (const result<void> ok = fit_scale(*options.placing, options.full, *full, *options.units); !ok) return ok.error();
   if (const result<void> ok = bring_to_metres(*options.units, options.full, *full); !ok) return ok.error();
-  turn_up(*options.placing, *full);
+  turn_up(options.placing->up, *full);
   std::vector<std::string> remarks;
   const bool can_be_wrapped = !options.wrap->wanted && bake::can_wrap(*full);
   std::optional<bake::wrap_report> wrapped;
@@ -175,7 +175,8 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
 
   bake::bake_settings settings;
   settings.name = options.name.empty() ? fs::path(options.full).stem().string() : options.name;
-  settings.triangles = options.triangles;
+  settings.triangles = options.triangles.value_or(settings.triangles);
+  settings.more_triangles = !options.triangles;
   settings.texture_size = options.texture;
   settings.texels = options.texels == "highest" ? bake::texel_filter::highest
                     : options.texels == "mean"  ? bake::texel_filter::mean
@@ -195,7 +196,7 @@ result<answer> run_bake(const bake_command& options, const common_options& commo
     result<triangle_mesh> coarse = io::load_mesh(options.coarse, not_interrupted);
     if (!coarse) return coarse.error();
     scale_to_metres(*options.units, *coarse);
-    turn_up(*options.placing, *coarse);
+    turn_up(options.placing->up, *coarse);
     settings.coarse = std::move(coarse).value();
   }
   // A mesh that the picture does not need is not kept twice.
@@ -305,9 +306,11 @@ void add_bake(command_line& line) {
   sub.add_option("-o,--output", o->out, "Textured model to write (.glb)")
       ->required()
       ->check([](const std::string& text) { return extension_error(text, {".glb"}); }, "FILE.glb");
-  auto* triangles = sub.add_option("--triangles", o->triangles, "Triangles of the coarse mesh to aim for")
-                        ->check(CLI::Range(4, 1000000))
-                        ->capture_default_str();
+  auto* triangles =
+      sub.add_option("--triangles", o->triangles,
+                     "Triangles of the coarse mesh to aim for; by default 600, or more where the mesh has "
+                     "too many handles for these")
+          ->check(CLI::Range(4, 1000000));
   auto* coarse = sub.add_option("--coarse", o->coarse, "Use this mesh as the coarse mesh instead of simplifying")
                      ->excludes(triangles);
   sub.add_flag("--split", o->split,

@@ -10,6 +10,7 @@
 #include "cli.hpp"
 #include "file_names.hpp"
 #include "interrupt.hpp"
+#include "mesh_placing.hpp"
 #include "mesh_units.hpp"
 #include "model_drawing.hpp"
 #include "model_report.hpp"
@@ -27,6 +28,7 @@ struct inspect_command {
   std::string file;
   std::string picture;
   std::string original;
+  std::string original_up = "z";
   std::shared_ptr<mesh_units> units = std::make_shared<mesh_units>();
   std::string up = "auto";
   double turn_deg = 0.0;
@@ -59,6 +61,7 @@ result<json> draw(const inspect_command& options, const common_options& common, 
     if (!loaded) return loaded.error();
     original = std::move(*loaded);
     if (const result<void> ok = bring_to_metres(*options.units, options.original, *original); !ok) return ok.error();
+    turn_up(options.original_up, *original);
     settings.original = &*original;
     settings.original_name = fs::path(options.original).filename().string();
   }
@@ -108,6 +111,7 @@ void add_inspect(command_line& line) {
   const unit_option_pair unit = add_unit_options(sub, o->units, "the original");
   unit.units->needs(original);
   unit.scale->needs(original);
+  add_original_up(sub, o->original_up, original);
   sub.add_option("--up", o->up,
                  "With --picture: axis of the body that points up, x, y or z; auto takes z, and lays down what is tall")
       ->check(CLI::IsMember({"auto", "x", "y", "z"}))

@@ -15,6 +15,7 @@
 #include "file_names.hpp"
 #include "interrupt.hpp"
 #include "led_session.hpp"
+#include "mesh_placing.hpp"
 #include "mesh_units.hpp"
 #include "options.hpp"
 #include "output_file.hpp"
@@ -41,6 +42,7 @@ struct view_command {
   std::string address = "127.0.0.1";
   std::string exported;
   std::string original;
+  std::string original_up = "z";
   std::optional<std::string> units;  // of the original
   bool gallery = false;
 };
@@ -163,6 +165,7 @@ result<view::page_scene> model_scene(const view_command& options) {
     units.units = options.units;
     units.scale = options.scale;
     if (const result<void> ok = bring_to_metres(units, options.original, *original); !ok) return ok.error();
+    turn_up(options.original_up, *original);
     const std::string name = std::filesystem::path(options.original).filename().string();
     if (const result<void> fits = picture::check_original(*model, *original, name); !fits) return fits.error();
   }
@@ -308,6 +311,7 @@ void add_view(command_line& line) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   auto* original = sub.add_option("--original", o->original,
                                   "Mesh that the model was baked from: the page can then colour the distance to it");
+  add_original_up(sub, o->original_up, original);
   auto* scale = sub.add_option("--scale", o->scale,
                                "Motion scaling of the session on record; with --original: metres per unit of it")
                     ->check(positive_number_error, "NUMBER > 0");

@@ -1,11 +1,18 @@
 #include "mesh_placing.hpp"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "asperity/model/textured_model.hpp"
 #include "options.hpp"
 
 namespace asperity::command {
+namespace {
+
+const std::vector<std::string> axes{"x", "y", "z", "-x", "-y", "-z"};
+
+}  // namespace
 
 void add_placing_options(CLI::App& sub, const std::shared_ptr<mesh_placing>& placing, const unit_option_pair& units) {
   sub.add_option_function<double>(
@@ -15,7 +22,14 @@ void add_placing_options(CLI::App& sub, const std::shared_ptr<mesh_placing>& pla
       ->excludes(units.units)
       ->excludes(units.scale);
   sub.add_option("--up", placing->up, "Axis of the meshes that points up: x, y, z, -x, -y or -z; it becomes z")
-      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
+      ->check(CLI::IsMember(axes))
+      ->capture_default_str();
+}
+
+CLI::Option* add_original_up(CLI::App& sub, std::string& up, CLI::Option* original) {
+  return sub.add_option("--original-up", up, "With --original: the axis that --up named in the bake")
+      ->check(CLI::IsMember(axes))
+      ->needs(original)
       ->capture_default_str();
 }
 
@@ -30,13 +44,13 @@ result<void> fit_scale(const mesh_placing& placing, const std::string& file, con
   return {};
 }
 
-void turn_up(const mesh_placing& placing, triangle_mesh& mesh) {
+void turn_up(const std::string& up, triangle_mesh& mesh) {
   const auto turned = [&](const vec3& p) -> vec3 {
-    if (placing.up == "x") return {-p.z, p.y, p.x};
-    if (placing.up == "-x") return {p.z, p.y, -p.x};
-    if (placing.up == "y") return {p.x, -p.z, p.y};
-    if (placing.up == "-y") return {p.x, p.z, -p.y};
-    if (placing.up == "-z") return {p.x, -p.y, -p.z};
+    if (up == "x") return {-p.z, p.y, p.x};
+    if (up == "-x") return {p.z, p.y, -p.x};
+    if (up == "y") return {p.x, -p.z, p.y};
+    if (up == "-y") return {p.x, p.z, -p.y};
+    if (up == "-z") return {p.x, -p.y, -p.z};
     return p;
   };
   for (vec3& p : mesh.positions) p = turned(p);

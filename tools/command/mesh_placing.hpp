@@ -24,7 +24,11 @@ void add_placing_options(CLI::App& sub, const std::shared_ptr<mesh_placing>& pla
 [[nodiscard]] result<void> fit_scale(const mesh_placing& placing, const std::string& file, const triangle_mesh& mesh,
                                      mesh_units& units);
 
-/// Turns the mesh about the origin so that the axis `up` becomes z; a rotation by quarter turns, exact.
-void turn_up(const mesh_placing& placing, triangle_mesh& mesh);
+/// Turns the mesh about the origin so that the axis `up`, x, y, z, -x, -y or -z, becomes z; a rotation by quarter turns,
+/// exact.
+void turn_up(const std::string& up, triangle_mesh& mesh);
+
+/// Adds --original-up: what --up was when the original was baked. @return the option
+CLI::Option* add_original_up(CLI::App& sub, std::string& up, CLI::Option* original);
 
 }  // namespace asperity::command

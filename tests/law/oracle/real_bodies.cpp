@@ -50,7 +50,7 @@ const original_and_bake& load_real_body(const std::string& name) {
     for (vec3& p : full->positions) p *= scale;
     // The library's own repair: what lies over a hole is its word, everywhere else it is the scan's.
     if (mesh.holes > 0) {
-      if (const auto closed = bake::close_holes(*full); !closed) throw std::runtime_error(closed.error().message);
+      if (const auto closed = bake::repair(*full); !closed) throw std::runtime_error(closed.error().message);
     }
     auto model = io::load_textured_model(baked / (name + ".glb"));
     if (!model) throw std::runtime_error(model.error().message);

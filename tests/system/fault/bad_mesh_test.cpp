@@ -67,6 +67,7 @@ TEST_F(bad_mesh, open_surface) {
   std::vector<std::string> bake{"bake", path("mesh.obj"), "-o", path("out.glb"), "--texture", "64"};
   const json repair = expect_document(bake, "asperity.bake/1").at("repair");
   EXPECT_EQ(repair.at("holes_closed"), 1);
+  EXPECT_EQ(repair.at("holes_smooth"), 0);
   ASSERT_EQ(repair.at("actions").size(), 1U) << repair;
   EXPECT_EQ(repair.at("actions").at(0).at("action"), "hole");
   EXPECT_EQ(repair.at("actions").at(0).at("count"), 1);

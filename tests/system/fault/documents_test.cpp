@@ -301,6 +301,31 @@ TEST_F(documents, inspect_takes_the_original_in_its_own_units) {
   EXPECT_NE(message.find("--units mm (86.6 mm)"), std::string::npos) << message;
 }
 
+TEST_F(documents, inspect_turns_the_original_as_the_bake_did) {
+  write("wedge.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0.06 0\nv 0.01 0.02 0.03\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  for (const char* up : {"x", "y", "z", "-x", "-y", "-z"}) {
+    SCOPED_TRACE(up);
+    ASSERT_EQ(run({"bake", path("wedge.obj"), std::string("--up=") + up, "--texture", "64", "--without-field", "-o",
+                   path("wedge.glb")})
+                  .exit_status,
+              0);
+    for (const char* said : {"x", "y", "z", "-x", "-y", "-z"}) {
+      const arguments inspect{"inspect",
+                              path("wedge.glb"),
+                              "--original",
+                              path("wedge.obj"),
+                              "--picture",
+                              path("wedge.png"),
+                              std::string("--original-up=") + said};
+      if (std::string(said) == up) {
+        EXPECT_LT(expect_document(inspect, "asperity.inspect/1")["picture"]["largest"], 2e-3);
+      } else {
+        expect_failure(inspect, 1, "invalid_argument");
+      }
+    }
+  }
+}
+
 TEST_F(documents, devices) {
   const json d = expect_document({"devices"}, "asperity.devices/1");
   ASSERT_GE(d["devices"].size(), 1U);

@@ -48,7 +48,7 @@ bake_outcome bake_bytes(const mesh_format& format, const std::string& bytes, boo
     return out;
   }
   if (close_holes) {
-    if (const auto closed = bake::close_holes(*mesh); !closed) {
+    if (const auto closed = bake::repair(*mesh); !closed) {
       out.model = closed.error();
       return out;
     }

@@ -94,7 +94,8 @@ inline void plant(triangle_mesh& m, kind k, shapes::dice& dice) {
     case kind::degenerate_split: {  // a corner on an edge of one triangle, and a triangle without area between
       const std::size_t at = any();
       const auto t = m.triangles[at];
-      const std::uint32_t v = fresh(0.5 * (m.positions[t[0]] + m.positions[t[1]]));
+      const double s = dice(0.2, 0.8);
+      const std::uint32_t v = fresh((1.0 - s) * m.positions[t[0]] + s * m.positions[t[1]]);
       m.triangles[at] = {t[0], v, t[2]};
       m.triangles.push_back({v, t[1], t[2]});
       m.triangles.push_back({t[0], t[1], v});

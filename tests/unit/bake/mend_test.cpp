@@ -1,9 +1,15 @@
 // Repair of whole meshes: what is clean stays as it is, and what is dirty comes out closed, near to what it was.
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "asperity/bake/repair.hpp"
 #include "bake/check.hpp"
+#include "bake/triangle_bvh.hpp"
 #include "dirty_mesh.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
@@ -82,12 +88,10 @@ TEST(Mend, DirtyMeshesComeOutClosedAndNearToWhatTheyWere) {
     triangle_mesh m = clean[which];
     std::string planted;
     const std::size_t defects = run % 3 == 0 ? 1 : 1 + dice.below(6);
-    std::size_t holes = 0;
     for (std::size_t i = 0; i < defects; ++i) {
       const auto k = static_cast<kind>(dice.below(dirt::kinds));
       if (k == kind::inner_ball && which == 1) continue;  // nothing is in the middle of a torus
       planted += std::string(dirt::name(k)) + ", ";
-      holes += k == kind::hole ? 1 : 0;
       dirt::plant(m, k, dice);
     }
     SCOPED_TRACE("run " + std::to_string(run) + ", mesh " + std::to_string(which) + ": " + planted);
@@ -164,6 +168,97 @@ TEST(Mend, TurnsAComponentThatIsInsideOutAndKeepsACavity) {
   ASSERT_TRUE(report) << report.error().message;
   EXPECT_EQ((*report)[repair_kind::turned_inside_out].count, 1U);
   EXPECT_TRUE(check(apart));
+}
+
+/// Texture coordinates that are linear in space, but for whole numbers: each triangle is a chart of its own.
+struct charted {
+  mat3 slope{0.0};
+  explicit charted(shapes::dice& dice) {
+    for (int c = 0; c < 2; ++c)
+      for (int k = 0; k < 3; ++k) slope[k][c] = dice(-4.0, 4.0);
+  }
+  [[nodiscard]] vec2 at(const vec3& p) const {
+    const vec3 uv = slope * p;
+    return {uv.x, uv.y};
+  }
+  void lay_on(triangle_mesh& mesh) const {
+    mesh.uvs.resize(mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        mesh.uvs[t][k] = at(mesh.positions[mesh.triangles[t][k]]) + static_cast<double>(1 + t) * vec2(1.0, 0.0);
+  }
+  /// The chart of a triangle, where its corners have what was laid there.
+  [[nodiscard]] std::optional<std::size_t> chart_of(const triangle_mesh& mesh, std::size_t t) const {
+    constexpr double near = 1e-4;
+    const double chart = std::round(mesh.uvs[t][0].x - at(mesh.positions[mesh.triangles[t][0]]).x);
+    for (std::size_t k = 0; k < 3; ++k)
+      if (glm::length(mesh.uvs[t][k] - at(mesh.positions[mesh.triangles[t][k]]) - vec2(chart, 0.0)) > near)
+        return std::nullopt;
+    return static_cast<std::size_t>(chart) - 1;
+  }
+};
+
+/// A triangle cut in two at the middle of an edge, which its neighbour knows nothing of.
+void plant_t_junction(triangle_mesh& m, shapes::dice& dice) {
+  const std::size_t at = dice.below(m.triangles.size());
+  const auto t = m.triangles[at];
+  const auto v = static_cast<std::uint32_t>(m.positions.size());
+  m.positions.push_back(0.5 * (m.positions[t[0]] + m.positions[t[1]]));
+  m.triangles[at] = {t[0], v, t[2]};
+  m.triangles.push_back({v, t[1], t[2]});
+}
+
+/// Cells of a grid of which two touch along an edge: an edge of four triangles.
+triangle_mesh touching_cells() {
+  const std::vector<double> line{0.0, 0.02, 0.04};
+  return shapes::cells({line, line, line}, [](const std::array<int, 3>& c) { return (c[0] + c[1]) % 2 == 0; });
+}
+
+TEST(Mend, TextureCoordinatesStayAtTheirCorners) {
+  const auto runs = test_support::extent<std::size_t>(400, 10000);
+  shapes::dice dice(test_support::fresh_seed("mend, texture coordinates", "400 or 10,000 meshes"));
+  std::array<std::size_t, repair_kinds> done{};
+  const std::vector<triangle_mesh> clean = clean_meshes();
+  for (std::size_t run = 0; run < runs; ++run) {
+    triangle_mesh m = run % 5 == 4 ? touching_cells() : clean[run % 5];
+    std::string planted;
+    for (std::size_t i = dice.below(5) + 1; i > 0; --i) {
+      const auto k = static_cast<kind>(dice.below(dirt::kinds));
+      if (k == kind::hole || (k == kind::inner_ball && run % 5 != 0)) {
+        planted += "T junction, ";
+        plant_t_junction(m, dice);
+        continue;
+      }
+      planted += std::string(dirt::name(k)) + ", ";
+      dirt::plant(m, k, dice);
+    }
+    SCOPED_TRACE("run " + std::to_string(run) + ": " + planted);
+    const charted charts(dice);
+    charts.lay_on(m);
+    const std::vector<vec3> before = m.positions;
+    const std::vector<index_triangle> had = m.triangles;
+    const auto report = repair(m);
+    ASSERT_TRUE(report) << report.error().message;
+    for (std::size_t k = 0; k < repair_kinds; ++k) done[k] += report->actions[k].count;
+    if (report->triangles_added > 0) {
+      EXPECT_TRUE(m.uvs.empty()) << "patches have none";
+      continue;
+    }
+    ASSERT_EQ(m.uvs.size(), m.triangles.size());
+    for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+      const auto chart = charts.chart_of(m, t);
+      ASSERT_TRUE(chart) << "triangle " << t;
+      ASSERT_LT(*chart, had.size());
+      // It lies in the triangle that it was, or was a part of.
+      const std::array<vec3, 3> was{before[had[*chart][0]], before[had[*chart][1]], before[had[*chart][2]]};
+      for (const std::uint32_t v : m.triangles[t])
+        ASSERT_LT(glm::length(closest_on_triangle(m.positions[v], was) - m.positions[v]), 1e-5) << "triangle " << t;
+    }
+  }
+  for (const repair_kind k : {repair_kind::weld, repair_kind::degenerate, repair_kind::t_junction,
+                              repair_kind::duplicate, repair_kind::inner_wall, repair_kind::split_edge,
+                              repair_kind::turned, repair_kind::loose_piece, repair_kind::inner_component})
+    EXPECT_GT(done[static_cast<std::size_t>(k)], 0U) << to_string(k) << " never came up";
 }
 
 }  // namespace

@@ -47,30 +47,38 @@ double volume(const triangle_mesh& m) {
   return v;
 }
 
-TEST(close_holes, closes_both_ends_of_a_tube_with_its_lids) {
+// As much as there is may be made up: these meshes are all holes.
+bake::repair_settings generous() {
+  bake::repair_settings out;
+  out.largest_made_up_share = 1.0;
+  return out;
+}
+
+TEST(holes, of_a_tube_are_closed_with_its_lids) {
   triangle_mesh m = open_tube(24);
-  const auto report = bake::close_holes(m);
-  ASSERT_TRUE(report);
-  EXPECT_EQ(report->holes, 2U);
+  const auto report = bake::repair(m, generous());
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ((*report)[bake::repair_kind::hole].count, 2U);
+  EXPECT_EQ(report->smooth_holes, 0U);
   EXPECT_EQ(report->triangles_added, 2U * (24 - 2));
   EXPECT_TRUE(is_closed_and_oriented(m));
   const double lid = 0.5 * 24 * std::sin(2 * std::numbers::pi / 24);
   EXPECT_NEAR(report->area_added_m2, 2 * lid, 1e-12);
   EXPECT_NEAR(volume(m), 2 * lid, 1e-12);  // outward, and the lids are flat
-  EXPECT_NEAR(report->largest_m, 2.0, 1e-12);
+  EXPECT_NEAR((*report)[bake::repair_kind::hole].largest_m, 2.0, 1e-12);
 }
 
 // A box without its top, and on one side of the rim a triangle that stands up as high as the box is wide. The patch of
 // least area is that triangle once more, back to back with itself, and the flat top.
-TEST(close_holes, does_not_fold_a_patch_onto_what_is_there) {
+TEST(holes, patch_does_not_fold_onto_what_is_there) {
   triangle_mesh m;
   for (int i = 0; i < 8; ++i) m.positions.emplace_back(i & 1, i >> 1 & 1, i >> 2);
   m.positions.emplace_back(0.5, 0.0, 2.0);
   m.triangles = {{0, 2, 3}, {0, 3, 1}, {0, 1, 5}, {0, 5, 4}, {1, 3, 7}, {1, 7, 5},
                  {3, 2, 6}, {3, 6, 7}, {2, 0, 4}, {2, 4, 6}, {4, 5, 8}};
-  const auto report = bake::close_holes(m);
-  ASSERT_TRUE(report);
-  EXPECT_EQ(report->holes, 1U);
+  const auto report = bake::repair(m, generous());
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ((*report)[bake::repair_kind::hole].count, 1U);
   EXPECT_EQ(report->triangles_added, 3U);
   EXPECT_TRUE(is_closed_and_oriented(m));
   const double flat = 0.5, standing = 0.75, beside = 0.5 * std::sqrt(1.25);  // from a far corner of the rim
@@ -78,53 +86,28 @@ TEST(close_holes, does_not_fold_a_patch_onto_what_is_there) {
   EXPECT_GT(report->area_added_m2, 1.0 + 0.5) << "the folded patch is smaller";
 }
 
-TEST(close_holes, turns_triangles_that_wind_against_their_neighbours_first) {
+TEST(holes, can_be_followed_once_triangles_against_their_neighbours_are_turned) {
   triangle_mesh tube = open_tube(40);
   for (const std::size_t t : std::array<std::size_t, 3>{3, 4, 31})
     std::swap(tube.triangles[t][1], tube.triangles[t][2]);
-  const auto report = bake::close_holes(tube);
+  const auto report = bake::repair(tube, generous());
   ASSERT_TRUE(report) << report.error().message;
-  EXPECT_EQ(report->triangles_turned, 3U);
-  EXPECT_EQ(report->holes, 2U);
+  EXPECT_EQ((*report)[bake::repair_kind::turned].count, 3U);
+  EXPECT_EQ((*report)[bake::repair_kind::hole].count, 2U);
   EXPECT_TRUE(is_closed_and_oriented(tube));
 }
 
-TEST(close_holes, refuses_a_moebius_band_and_changes_nothing) {
+TEST(holes, of_a_moebius_band_are_refused_and_nothing_changes) {
   triangle_mesh band = open_tube(15);
   for (auto& t : band.triangles) {  // the last column meets the first with top and bottom exchanged
     if (&t < &band.triangles[28]) continue;
     for (auto& v : t) v = v < 2 ? 1 - v : v;
   }
   const triangle_mesh before = band;
-  const auto report = bake::close_holes(band);
+  const auto report = bake::repair(band);
   ASSERT_FALSE(report);
-  EXPECT_NE(report.error().message.find("only one side"), std::string::npos) << report.error().message;
   EXPECT_EQ(band.triangles, before.triangles);
-}
-
-TEST(close_holes, leaves_a_closed_mesh_as_it_is) {
-  triangle_mesh m = open_tube(8);
-  ASSERT_TRUE(bake::close_holes(m));
-  const auto triangles = m.triangles;
-  const auto again = bake::close_holes(m);
-  ASSERT_TRUE(again);
-  EXPECT_EQ(again->holes, 0U);
-  EXPECT_EQ(m.triangles, triangles);
-}
-
-TEST(close_holes, refuses_a_hole_too_large_to_guess_and_changes_nothing) {
-  triangle_mesh m = open_tube(static_cast<std::uint32_t>(bake::largest_hole_edges) + 1);
-  const auto triangles = m.triangles;
-  const auto report = bake::close_holes(m);
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().code, error_code::bad_mesh);
-  EXPECT_EQ(m.triangles, triangles);
-}
-
-TEST(close_holes, refuses_edges_with_three_triangles) {
-  triangle_mesh m = open_tube(6);
-  m.triangles.push_back(m.triangles.front());
-  EXPECT_FALSE(bake::close_holes(m));
+  EXPECT_EQ(band.positions, before.positions);
 }
 
 }  // namespace

@@ -479,5 +479,37 @@ TEST(Wrap, CanBeCancelledAnywhere) {
   }
 }
 
+// Of an open ball, whose winding number decides where the membrane spans its opening: faces given twice would move it.
+TEST(Wrap, FacesGivenTwiceCountOnce) {
+  dice draw(test_support::fresh_seed("Wrap.FacesGivenTwiceCountOnce", "2 balls"));
+  for (int run = 0; run < 2; ++run) {
+    triangle_mesh open = ball(0.05, 4);
+    const double height = draw(0.0, 0.03);
+    std::erase_if(open.triangles, [&](const auto& t) { return open.positions[t[0]].z > height; });
+    triangle_mesh doubled = open;
+    for (const index_triangle& t : open.triangles)
+      for (std::size_t copies = draw.below(3); copies > 0; --copies) {
+        const std::size_t k = draw.below(3);
+        doubled.triangles.push_back({t[k], t[(k + 1) % 3], t[(k + 2) % 3]});
+      }
+    const outcome once = wrapped(open, 0.004), twice = wrapped(doubled, 0.004);
+    EXPECT_EQ(twice.report.dropped_triangles, doubled.triangles.size() - open.triangles.size());
+    EXPECT_TRUE(twice.mesh.positions == once.mesh.positions);
+    EXPECT_TRUE(twice.mesh.triangles == once.mesh.triangles);
+  }
+}
+
+TEST(Wrap, TurnsClosedPartsThatAreInsideOut) {
+  dice draw(test_support::fresh_seed("Wrap.TurnsClosedPartsThatAreInsideOut", "2 pairs of balls"));
+  for (int run = 0; run < 2; ++run) {
+    const triangle_mesh right = ball(0.05, 3);
+    const triangle_mesh other = ball(draw(0.02, 0.04), 3, {draw(0.12, 0.15), draw(-0.02, 0.02), 0.0});
+    const outcome made = wrapped(shapes::both(right, shapes::reversed(other)), 0.004);
+    EXPECT_EQ(made.report.turned_triangles, other.triangles.size());
+    EXPECT_EQ(made.report.plate_share, 0.0) << "taken for a sheet";
+    EXPECT_EQ(made.report.components, 2U);
+  }
+}
+
 }  // namespace
 }  // namespace asperity::bake

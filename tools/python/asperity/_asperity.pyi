@@ -86,7 +86,7 @@ def bake_mesh(
     mesh: Mesh,
     *,
     name: str,
-    triangles: int,
+    triangles: Optional[int],
     texture: int,
     coarse: Optional[Mesh],
     pieces: Optional[int],

@@ -26,7 +26,7 @@ def bake(
     output: Optional[PathLike] = None,
     *,
     name: Optional[str] = None,
-    triangles: int = 600,
+    triangles: Optional[int] = None,
     texture: int = 1024,
     coarse: Union[_asperity.Mesh, PathLike, None] = None,
     pieces: Optional[int] = None,
@@ -43,7 +43,8 @@ def bake(
     mesh: a Mesh, or a file (.ply, .obj, .stl, .gltf, .glb).
     output: a .glb to write as well. It appears whole or not at all.
     name: kept in the model; by default the file's name without extension, or "mesh".
-    triangles: of the coarse mesh, to aim for. texture: texels per side.
+    triangles: of the coarse mesh, to aim for; by default 600, or more where the mesh has too many handles for these.
+    texture: texels per side.
     coarse: a coarse mesh to use in place of simplifying. pieces: convex pieces to aim for.
     scale: metres per unit of the files, 0.001 for millimetres.
     repair: what becomes of a mesh that is not closed: keep (mended, or refused), wrap (wrapped where it cannot be

@@ -80,8 +80,8 @@ result<baked> run(bake_order& order, work_monitor& monitor) {
   return out;
 }
 
-py::tuple bake_mesh(const mesh_handle& mesh, const std::string& name, std::size_t triangles, std::uint32_t texture,
-                    const std::optional<mesh_handle>& coarse, std::optional<std::size_t> pieces,
+py::tuple bake_mesh(const mesh_handle& mesh, const std::string& name, std::optional<std::size_t> triangles,
+                    std::uint32_t texture, const std::optional<mesh_handle>& coarse, std::optional<std::size_t> pieces,
                     const std::string& repair, bool wrap, std::optional<material> surface, bool field, unsigned threads,
                     const py::object& progress) {
   if (repair != "keep" && repair != "wrap" && repair != "strict") {
@@ -94,7 +94,8 @@ py::tuple bake_mesh(const mesh_handle& mesh, const std::string& name, std::size_
                    .keep_field = field,
                    .surface = std::move(surface)};
   order.settings.name = name;
-  order.settings.triangles = triangles;
+  order.settings.triangles = triangles.value_or(order.settings.triangles);
+  order.settings.more_triangles = !triangles;
   order.settings.texture_size = texture;
   order.settings.pieces = pieces;
   order.settings.threads = threads;

@@ -18,6 +18,9 @@ namespace asperity::bake {
 struct bake_settings {
   std::string name;                     ///< name of the model, kept in the file
   std::size_t triangles = 600;          ///< coarse triangles to aim for; ignored where `coarse` is given
+  /// Where `triangles` are too few for a sound coarse mesh near the original, as one with many handles needs, more are taken
+  /// and a remark tells how many; otherwise the bake is refused, and the refusal names a count that is enough.
+  bool more_triangles = false;
   std::optional<triangle_mesh> coarse;  ///< a coarse mesh to use instead of simplifying
   /// The coarse mesh's own texture coordinates become the atlas instead of a new one. Without `coarse` the mesh has to
   /// be its own coarse mesh: of no more than `triangles`.

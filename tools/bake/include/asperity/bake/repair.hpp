@@ -15,6 +15,9 @@ struct repair_settings {
   /// edge at either; an open edge is split where such a vertex lies on it. At least 1e-6.
   double weld_in_diagonals = 1e-5;
   bool close_holes = true;
+  /// A hole in a smooth surface is closed by a patch that goes on smoothly, instead of over its own vertices; a hole whose
+  /// surroundings end in an edge is closed flat all the same.
+  bool smooth_holes = true;
   bool drop_inner = true;               ///< components within the material of another, which nothing can touch
   bool uncross = true;                  ///< where one component passes through itself
   double largest_made_up_share = 0.25;  ///< of the repaired surface; more is refused
@@ -49,6 +52,7 @@ struct repair_report {
   std::array<repair_action, repair_kinds> actions;
   std::size_t triangles_before = 0, triangles_after = 0;
   std::size_t triangles_added = 0;  ///< made up: of closed holes and resolved crossings
+  std::size_t smooth_holes = 0;     ///< of the holes: closed by a patch that goes on smoothly
   double area_added_m2 = 0.0;       ///< of those
   double made_up_share = 0.0;       ///< of those, of the repaired surface
 
@@ -70,27 +74,8 @@ struct repair_report {
 /// range, coordinates that are not finite) is left as it is for `check` to name.
 /// @return bad_mesh where more than largest_made_up_share would be made up, or where the mesh cannot be mended; the
 ///         mesh is then as it was
-/// @source Guéziec et al. 2001 (cutting and stitching); Barequet and Sharir 1995, Liepa 2003 (holes)
+/// @source Guéziec et al. 2001 (cutting and stitching); Barequet and Sharir 1995 (least-area triangulation of a hole by
+///         dynamic programming); Liepa 2003 (angles first, then area; smooth patches)
 [[nodiscard]] result<repair_report> repair(triangle_mesh& mesh, const repair_settings& settings = {});
-
-/// Largest hole, in edges, that close_holes fills.
-inline constexpr std::size_t largest_hole_edges = 500;
-
-struct hole_report {
-  std::size_t holes = 0;
-  std::size_t triangles_added = 0;
-  double area_added_m2 = 0.0;        ///< area of the new triangles
-  double largest_m = 0.0;            ///< longest distance across one hole
-  std::size_t triangles_turned = 0;  ///< that were wound against their neighbours, so that borders can be followed
-};
-
-/// Closes every hole with a triangulation over the hole's own vertices and does nothing else; no vertex is added or
-/// moved. It is searched for the fewest folds, onto itself or onto the triangles around, and of those for the least
-/// area. Texture coordinates are dropped where a hole was closed: the new triangles have none.
-/// @return bad_mesh where a hole has more than largest_hole_edges edges, or where edges are shared by more than two
-///         triangles (a hole has no border there that could be followed), or where a surface has only one side
-/// @source Barequet and Sharir 1995 (least-area triangulation of a hole by dynamic programming);
-///         Liepa 2003 (angles first, then area)
-[[nodiscard]] result<hole_report> close_holes(triangle_mesh& mesh);
 
 }  // namespace asperity::bake
