@@ -16,8 +16,8 @@ namespace asperity {
 /// part grows by its second-order expansion at the centre and what its third derivatives can add; the relief is at most
 /// the highest at the feet of the ball's points, which lie next to the centre's.
 /// @rt safe
-[[nodiscard]] inline depth_bound bound_of_ball(const body_field& in_y, const pose& T_yx,
-                                               const sample_ball& ball_x) noexcept {
+[[nodiscard, gnu::flatten]] inline depth_bound bound_of_ball(const body_field& in_y, const pose& T_yx,
+                                                             const sample_ball& ball_x) noexcept {
   // A smooth distance grows by little more than a metre per metre; beyond the grid by one along it and one across it.
   constexpr double steepest = 1.2, steepest_beyond = 1.5;
   const vec3 centre_y = T_yx * ball_x.centre_b;

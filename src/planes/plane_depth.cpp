@@ -228,7 +228,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   has_plane_.resize(patches.size());
   // Several patches are looked through at a time; what they have is compared in their order, so that what is told
   // does not depend on how many. The first ones hide most of what comes later: few at a time, then more.
-  const std::size_t most_at_a_time = team_ ? std::size_t{few_patches} * 4 * team_->threads() : 1;
+  const std::size_t most_at_a_time = team_ ? std::size_t{few_patches} * 8 * team_->threads() : 1;
   std::size_t at_a_time = team_ ? few_patches : 1;
   for (std::size_t begin = 0; begin < order_.size();) {
     const std::size_t count = std::min(at_a_time, order_.size() - begin);
@@ -292,7 +292,8 @@ void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) no
   }
 }
 
-double plane_depth::growth_m(const near_patch& patch, const leaf_reader& reader, double most_m) const noexcept {
+[[gnu::flatten]] double plane_depth::growth_m(const near_patch& patch, const leaf_reader& reader,
+                                              double most_m) const noexcept {
   const way& w = ways_[patch.body];
   const vec3 now_y = reader.in_field(patch.ball.centre_b);
   const vec3 before_y = (patch.of_probe ? w.before_ba : w.before_ab) * patch.ball.centre_b;
@@ -393,8 +394,9 @@ plane_depth::told_from plane_depth::told_of(const near_patch& patch) const noexc
           .least_m = back_m > 0.0 ? back_m - 1.25 * told_m_ : -told_m_};
 }
 
-bool plane_depth::look_through(const near_patch& patch, std::span<const near_leaf> leaves, const leaf_reader& reader,
-                               bool alone, std::span<near_plane> out) const noexcept {
+[[gnu::flatten]] bool plane_depth::look_through(const near_patch& patch, std::span<const near_leaf> leaves,
+                                                const leaf_reader& reader, bool alone,
+                                                std::span<near_plane> out) const noexcept {
   const told_from told = told_of(patch);
   const vec3 slope_w = reader.by_probe_w(patch.in_other.slope);
   const first_met::group* group = met_->find_group(patch.body, slope_w);
@@ -468,8 +470,9 @@ void plane_depth::keep_what_matters(const near_patch& patch, const leaf_reader& 
   }
 }
 
-status plane_depth::planes_at(const scene_pose& at, const near_samples& found, std::span<const near_plane>,
-                              const vec6& moved, double above_m, plane_list& out) const noexcept {
+[[gnu::flatten]] status plane_depth::planes_at(const scene_pose& at, const near_samples& found,
+                                               std::span<const near_plane>, const vec6& moved, double above_m,
+                                               plane_list& out) const noexcept {
   readers_of_threads reading(*bodies_, at, at.T_wa * centre_of_mass_a_, *materials_);
   const vec6 step = moved - *asked_at_;
   *asked_at_ = moved;
