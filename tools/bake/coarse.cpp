@@ -67,11 +67,12 @@ result<coarse_choice> choose_coarse(const checked_mesh& full, const bake_setting
   std::size_t stuck_at = 0;
   result<coarse_choice> asked = with_count(full, settings, settings.triangles, threads, monitor, stuck_at);
   if (asked || settings.coarse || asked.error().code != error_code::bad_mesh) return asked;
-  std::size_t count = settings.triangles;
+  std::size_t count = settings.triangles, tried = count;
   for (int i = 0; i < most_counts; ++i) {
     const auto over_stuck = static_cast<std::size_t>(std::ceil(room_over_stuck * static_cast<double>(stuck_at)));
     count = (std::max(2 * count, over_stuck) + count_step - 1) / count_step * count_step;
     if (count > most_coarse_triangles) break;
+    tried = count;
     result<coarse_choice> more = with_count(full, settings, count, threads, monitor, stuck_at);
     if (!more && more.error().code != error_code::bad_mesh) return more;
     if (!more) continue;
@@ -84,7 +85,9 @@ result<coarse_choice> choose_coarse(const checked_mesh& full, const bake_setting
     note = note.empty() ? why : why + "; " + note;
     return more;
   }
-  return asked;
+  if (tried == settings.triangles) return asked;
+  return error{error_code::bad_mesh,
+               fault_of(asked.error()) + ", nor with up to " + std::to_string(tried) + "; give a coarse mesh"};
 }
 
 }  // namespace asperity::bake

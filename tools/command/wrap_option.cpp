@@ -78,8 +78,11 @@ std::string wrap_text(const bake::wrap_report& report) {
 }
 
 error with_offer_to_wrap(error refusal, bool can_be_wrapped) {
-  const bool of_mesh = refusal.code == error_code::bad_mesh && refusal.message.rfind("the mesh ", 0) == 0;
-  if (of_mesh && can_be_wrapped) refusal.message += "; or add --wrap, which puts a closed surface around it as it is";
+  // What is refused of other files, as of a coarse mesh that was given, no wrap mends.
+  const auto begins = [&](const char* with) { return refusal.message.rfind(with, 0) == 0; };
+  const bool of_mesh = begins("the mesh ") || begins("no sound coarse mesh ");
+  if (refusal.code == error_code::bad_mesh && of_mesh && can_be_wrapped)
+    refusal.message += "; or add --wrap, which puts a closed surface around it as it is";
   return refusal;
 }
 

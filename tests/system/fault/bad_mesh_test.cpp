@@ -95,6 +95,58 @@ TEST_F(bad_mesh, the_way_out_that_a_refusal_offers_is_one) {
   expect_failure({"bake", path("mesh.obj"), "--wrap=1e-9", "-o", path("no.glb")}, 1, "invalid_argument");
 }
 
+// A lens whose rim is sharp all around: no coarse mesh of it is unfolded, however many triangles it has.
+std::string sharp_lens() {
+  constexpr int around = 100, rings = 80;
+  const auto vertex = [](int ring, int i, double side) {
+    const double r = static_cast<double>(ring) / rings, a = 2.0 * 3.14159265358979 * i / around;
+    return "v " + std::to_string(r * std::cos(a)) + ' ' + std::to_string(r * std::sin(a)) + ' ' +
+           std::to_string(side * 0.01 * (1.0 - r * r)) + '\n';
+  };
+  std::string vertices = vertex(0, 0, 1.0) + vertex(0, 0, -1.0), faces;
+  for (int ring = 1; ring <= rings; ++ring) {
+    for (int i = 0; i < around; ++i) vertices += vertex(ring, i, 1.0);
+  }
+  for (int ring = 1; ring < rings; ++ring) {
+    for (int i = 0; i < around; ++i) vertices += vertex(ring, i, -1.0);
+  }
+  const auto number = [](int ring, int i, bool above) {
+    const int of_ring = (ring - 1) * around + i % around;
+    return 3 + (above || ring == rings ? of_ring : rings * around + of_ring);
+  };
+  const auto face = [&](int a, int b, int c, bool above) {
+    faces +=
+        "f " + std::to_string(a) + ' ' + std::to_string(above ? b : c) + ' ' + std::to_string(above ? c : b) + '\n';
+  };
+  for (const bool above : {true, false}) {
+    for (int i = 0; i < around; ++i) {
+      face(above ? 1 : 2, number(1, i, above), number(1, i + 1, above), above);
+      for (int ring = 1; ring < rings; ++ring) {
+        const int a = number(ring, i, above), b = number(ring + 1, i, above);
+        const int c = number(ring + 1, i + 1, above), d = number(ring, i + 1, above);
+        face(a, b, c, above);
+        face(a, c, d, above);
+      }
+    }
+  }
+  return vertices + faces;
+}
+
+TEST_F(bad_mesh, no_coarse_mesh_is_sound) {
+  const std::string message = expect_refused("lens.obj", sharp_lens(), "bad_mesh");
+  EXPECT_NE(message.find("no sound coarse mesh of 600 triangles"), std::string::npos) << message;
+  EXPECT_NE(message.find("nor with up to 19200; give a coarse mesh; or add --wrap"), std::string::npos) << message;
+  expect_document(
+      {"bake", path("lens.obj"), "--fit", "0.05", "--wrap=0.001", "-o", path("out.glb"), "--texture", "128"},
+      "asperity.bake/1");
+  // A coarse mesh that is given is another file: no wrap mends it.
+  write("open.obj", std::string(cube_vertices) + cube_without_lid);
+  const std::string of_coarse = expect_failure({"bake", path("lens.obj"), "--fit", "0.05", "--coarse", path("open.obj"),
+                                                "-o", path("no.glb"), "--texture", "128"},
+                                               1, "bad_mesh");
+  EXPECT_EQ(of_coarse.find("--wrap"), std::string::npos) << of_coarse;
+}
+
 // Two thirds of it are missing: one command is offered, and an option that takes it at once.
 TEST_F(bad_mesh, too_open_to_be_closed) {
   const std::string message =
