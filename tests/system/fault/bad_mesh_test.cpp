@@ -136,9 +136,10 @@ TEST_F(bad_mesh, no_coarse_mesh_is_sound) {
   const std::string message = expect_refused("lens.obj", sharp_lens(), "bad_mesh");
   EXPECT_NE(message.find("no sound coarse mesh of 600 triangles"), std::string::npos) << message;
   EXPECT_NE(message.find("nor with up to 19200; give a coarse mesh; or add --wrap"), std::string::npos) << message;
-  expect_document(
+  const json baked = expect_document(
       {"bake", path("lens.obj"), "--fit", "0.05", "--wrap=0.001", "-o", path("out.glb"), "--texture", "128"},
       "asperity.bake/1");
+  EXPECT_GT(baked.at("wrap").at("plate_share"), 0.9);
   // A coarse mesh that is given is another file: no wrap mends it.
   write("open.obj", std::string(cube_vertices) + cube_without_lid);
   const std::string of_coarse = expect_failure({"bake", path("lens.obj"), "--fit", "0.05", "--coarse", path("open.obj"),

@@ -351,10 +351,9 @@ TEST_F(documents, a_panel_of_a_device) {
 
 TEST_F(documents, bench) {
   const json d = expect_document({"bench", "--probe", pin(), "--fixed", pin(), "--poses", "50"}, "asperity.bench/1");
-  expect_keys(d["seconds"],
-              {"collision_query", "contact_soft", "contact_central", "tick_planes", "every_sample", "follow_on_wall",
-               "follow_shared_on_wall", "probe_on_planes", "probe_rubbing_on_planes", "tick_least_motion", "tick_soft",
-               "tick_central"});
+  expect_keys(d["seconds"], {"collision_query", "contact_soft", "contact_central", "tick_planes", "every_sample",
+                             "follow_on_wall", "follow_shared_on_wall", "probe_on_planes", "probe_rubbing_on_planes",
+                             "tick_least_motion", "tick_soft", "tick_central"});
   EXPECT_GT(d["planes_held"]["mean"], 0.0);
   expect_keys(d["samples"], {"balls_looked_at", "near", "leaves_bounded", "read_quickly", "read_exactly"});
   EXPECT_GT(d["samples"]["near"], d["samples"]["read_exactly"]);
