@@ -47,7 +47,7 @@ std::vector<bool> with_rings(const triangle_mesh& mesh, const pair_list& pairs, 
 void uncross(triangle_mesh& mesh, const repair_settings& settings, repair_report& report) {
   constexpr int most_rounds = 4;
   constexpr double largest_cut_share = 0.1;  // of the area
-  repair_settings flat_patches = settings;  // what bulges may cross again
+  repair_settings flat_patches = settings;   // what bulges may cross again
   flat_patches.smooth_holes = false;
   pair_list pairs = own_crossings(mesh, settings.threads);
   for (int round = 0; round < most_rounds && !pairs.empty(); ++round) {

@@ -16,8 +16,8 @@
 namespace asperity::bake {
 
 struct bake_settings {
-  std::string name;                     ///< name of the model, kept in the file
-  std::size_t triangles = 600;          ///< coarse triangles to aim for; ignored where `coarse` is given
+  std::string name;             ///< name of the model, kept in the file
+  std::size_t triangles = 600;  ///< coarse triangles to aim for; ignored where `coarse` is given
   /// Where `triangles` are too few for a sound coarse mesh near the original, as one with many handles needs, more are taken
   /// and a remark tells how many; otherwise the bake is refused, and the refusal names a count that is enough.
   bool more_triangles = false;
