@@ -57,7 +57,8 @@ class refiner {
     const auto [a, b, c] = patch_.triangles[t];
     const auto second = static_cast<std::uint32_t>(patch_.triangles.size());
     const std::uint32_t third = second + 1;
-    const std::array<std::uint32_t, 3> outer{mate_[3 * t], mate_[3 * t + 1], mate_[3 * t + 2]};
+    const std::size_t first = 3 * std::size_t{t};
+    const std::array<std::uint32_t, 3> outer{mate_[first], mate_[first + 1], mate_[first + 2]};
     patch_.triangles[t] = {a, b, v};
     patch_.triangles.push_back({b, c, v});
     patch_.triangles.push_back({c, a, v});

@@ -10,7 +10,7 @@
 namespace asperity::command {
 namespace {
 
-const std::vector<std::string> axes{"x", "y", "z", "-x", "-y", "-z"};
+const std::vector<std::string> axis_names{"x", "y", "z", "-x", "-y", "-z"};
 
 }  // namespace
 
@@ -22,13 +22,13 @@ void add_placing_options(CLI::App& sub, const std::shared_ptr<mesh_placing>& pla
       ->excludes(units.units)
       ->excludes(units.scale);
   sub.add_option("--up", placing->up, "Axis of the meshes that points up: x, y, z, -x, -y or -z; it becomes z")
-      ->check(CLI::IsMember(axes))
+      ->check(CLI::IsMember(axis_names))
       ->capture_default_str();
 }
 
 CLI::Option* add_original_up(CLI::App& sub, std::string& up, CLI::Option* original) {
   return sub.add_option("--original-up", up, "With --original: the axis that --up named in the bake")
-      ->check(CLI::IsMember(axes))
+      ->check(CLI::IsMember(axis_names))
       ->needs(original)
       ->capture_default_str();
 }
