@@ -13,20 +13,13 @@
 #include "planes/first_met.hpp"
 #include "planes/known_branches.hpp"
 #include "planes/known_depths.hpp"
-#include "planes/leaf_reader.hpp"
+#include "planes/patch_readers.hpp"
 #include "planes/plane_materials.hpp"
 #include "planes/plane_watch.hpp"
 #include "planes/tick_team.hpp"
 
 namespace asperity {
 namespace {
-
-void keep_deepest(const support_plane& p, plane_list& in) noexcept {
-  if (in.push_back(p)) return;
-  support_plane* const least =
-      std::min_element(in.begin(), in.end(), [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
-  if (least->depth_m < p.depth_m) *least = p;
-}
 
 // What a hand does in a period T of a contact loop whose reach is 3 v T with v = 0.6 m/s: 5 rad/s and 0.1 m/s, as
 // plane_selection has it.
@@ -35,95 +28,8 @@ trial_motions trials_within(double reach_m) noexcept {
   return {.tilt_rad = 5.0 * period_s, .slide_m = 0.1 * period_s};
 }
 
-// Readers of a pose, one for the patches of a body on either side; patches mostly come in long rows of the same two.
-class readers {
- public:
-  readers(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w, const plane_materials& materials) noexcept
-      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), materials_(&materials) {}
-
-  [[nodiscard]] const leaf_reader& of(const near_patch& patch, double sinking_m) noexcept {
-    std::optional<leaf_reader>& out = patch.of_probe ? of_probe_ : of_fixed_;
-    if (out && out->reads(patch)) return *out;
-    const field_body &A = *bodies_->probe, &B = *bodies_->fixed[patch.body];
-    const pose &T_wa = at_->T_wa, &T_wb = at_->T_wb[patch.body];
-    const material_places *of_a = materials_->of_probe(), *of_b = materials_->of_body(patch.body);
-    if (patch.of_probe) {
-      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m, of_a, of_b, work_);
-    } else {
-      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m, of_b, of_a, work_);
-    }
-    return *out;
-  }
-  [[nodiscard]] const depth_work& work() const noexcept { return work_; }
-
- private:
-  const field_scene* bodies_;
-  const scene_pose* at_;
-  vec3 c_a_w_;
-  const plane_materials* materials_;
-  depth_work work_;
-  std::optional<leaf_reader> of_probe_, of_fixed_;
-};
-
-// Readers of a pose, a pair for each thread of a team.
-class readers_of_threads {
- public:
-  readers_of_threads(const field_scene& bodies, const scene_pose& at, const vec3& c_a_w,
-                     const plane_materials& materials) noexcept
-      : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), materials_(&materials) {}
-
-  [[nodiscard]] readers& of(unsigned thread) noexcept {
-    std::optional<readers>& out = readers_[thread];
-    if (!out) out.emplace(*bodies_, *at_, c_a_w_, *materials_);
-    return *out;
-  }
-  [[nodiscard]] depth_work work() const noexcept {
-    depth_work sum;
-    for (const std::optional<readers>& r : readers_) {
-      if (!r) continue;
-      sum.bounded += r->work().bounded;
-      sum.quick += r->work().quick;
-      sum.exact += r->work().exact;
-    }
-    return sum;
-  }
-
- private:
-  const field_scene* bodies_;
-  const scene_pose* at_;
-  vec3 c_a_w_;
-  const plane_materials* materials_;
-  std::array<std::optional<readers>, tick_team::most_threads> readers_;
-};
-
 // Patches of a task where each takes little, and where each may take much.
 constexpr std::size_t many_patches = 32, few_patches = 4;
-
-// Brings what is known of a patch to the pose that is asked for, turned by so much from the tick's. Returns how much
-// deeper its samples can be there than at the tick's pose.
-double come_to(known_depths::asked_patch& asked, const near_patch& patch, const leaf_reader& there,
-               const vec3& turned) noexcept {
-  constexpr double asked_pitches = 0.4;  // of the smooth part: the poses that are asked for are mostly no further
-  const double radius_m = patch.ball.radius_m;
-  if (!std::exchange(asked.has_slopes, true)) {
-    asked.slopes = there.slopes_about(patch, asked.middle_y, radius_m + asked_pitches * there.pitch_m());
-  }
-  const vec3 now_y = there.in_field(patch.ball.centre_b), before_y = std::exchange(asked.asked_y, now_y);
-  const vec3 turn = turned - std::exchange(asked.turned, turned);
-  const patch_way gone{now_y - before_y, std::sqrt(glm::dot(turn, turn)) * radius_m};
-  const patch_way come{now_y - asked.middle_y, std::sqrt(glm::dot(turned, turned)) * radius_m};
-  const double here_m = glm::length(come.of_middle), before_m = glm::distance(before_y, asked.middle_y);
-  const double grown_m = asked.slopes.growth_m(gone, radius_m + std::max(here_m, before_m));
-  known_depths::grow(asked, std::min(grown_m, static_cast<double>(std::exchange(asked.since_m, 0.0F))));
-  return asked.slopes.growth_m(come, radius_m + here_m);
-}
-
-// Of a depth on one surface, the part that pushes as much or less on another one.
-double share_of_push(const std::optional<surface_pair>& on, const std::optional<surface_pair>& now) noexcept {
-  if (!on && !now) return 1.0;
-  if (!on || !now) return 0.0;
-  return std::min(1.0, on->stiffness_n_per_m / now->stiffness_n_per_m);
-}
 
 }  // namespace
 
@@ -179,32 +85,6 @@ void plane_depth::reserve(std::size_t most) {
 plane_depth::plane_depth(plane_depth&&) noexcept = default;
 plane_depth& plane_depth::operator=(plane_depth&&) noexcept = default;
 plane_depth::~plane_depth() = default;
-
-void plane_depth::take(const plane_scene& next) noexcept {
-  const std::uint64_t before = placed_ != nullptr ? placed_->version : 0;
-  for (way& w : ways_) w.deepest_m = 0.0;
-  for (const support_plane& p : reported_) {
-    way& w = ways_[p.body];
-    w.deepest_m = std::max(w.deepest_m, p.depth_m);
-  }
-  for (std::uint32_t b = 0; b < ways_.size(); ++b) {
-    if (!(next.since[b] > before)) continue;
-    way& w = ways_[b];
-    const double share = placed_ != nullptr ? share_of_push(placed_->surfaces[b], next.surfaces[b]) : 0.0;
-    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m),
-         .comes = true,
-         .was_m = share * w.deepest_m,
-         .half_m = next.of[b].half_m};
-    come_ = true;
-    watch_->forget(b, next.of[b]);
-    known_->forget(b);
-    materials_->forget(b);
-    if (branches_) branches_->forget(b);
-  }
-  bodies_ = next.fields;
-  materials_->take(next);
-  placed_ = &next;
-}
 
 const placed_scene* plane_depth::placed() const noexcept { return placed_; }
 
@@ -303,56 +183,6 @@ void plane_depth::learn_ways(const scene_pose& at, const near_samples& found) no
   if (!(most_m + at_most_m > -told_m_)) return at_most_m;
   const double far_m = patch.ball.radius_m + gone.most_m();
   return reader.slopes_about(patch, now_y, far_m).growth_m(gone, far_m);
-}
-
-vec6 plane_depth::way_ahead(const pose& T_wa) const noexcept {
-  // Rendered where the probe is, in use a period later and for a period: so it is asked for the end of that.
-  constexpr double periods = 2.0;
-  if (!went_) return {};
-  const vec3 slid_w = T_wa * centre_of_mass_a_ - before_wa_ * centre_of_mass_a_;
-  return periods * vec6{slid_w, log_rotation(T_wa.rotation * glm::conjugate(before_wa_.rotation))};
-}
-
-void plane_depth::stand_back(const near_samples& found, const vec6& ahead, std::span<near_plane> out) noexcept {
-  // Half way through there are several ways out, and the probe goes on until it is read again.
-  constexpr double answered = 0.7;
-  constexpr double none = -std::numeric_limits<double>::infinity();
-  for (way& w : ways_) {
-    w.deepest_m = w.bound_m = w.ahead_m = none;
-    w.too_deep = false;
-  }
-  for (const near_patch& patch : found.patches()) {
-    way& w = ways_[patch.body];
-    // Where a probe has left it so fast that nothing of it was read, a bound will do.
-    w.bound_m = std::max(w.bound_m, patch.in_other.most_m);
-    // Not of planes: half way through, samples have none.
-    w.too_deep = w.too_deep || patch.in_other.smooth_m > answered * (patch.of_probe ? w.half_m : probe_half_m_);
-    for (const near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
-      if (!(p.plane.depth_m > none)) continue;
-      const double grows_m = std::min(told_m_, dot(p.plane.gradient, ahead));
-      w.deepest_m = std::max(w.deepest_m, p.plane.depth_m);
-      w.ahead_m = std::max(w.ahead_m, p.plane.depth_m + std::max(0.0, grows_m));
-    }
-  }
-  come_ = false;
-  for (way& w : ways_) {
-    if (const bool comes = std::exchange(w.comes, false); comes || w.away) {
-      const double deeper_m = w.ahead_m - (comes ? w.was_m : 0.0);
-      w.away = w.too_deep && (!comes || deeper_m > let_in_m);
-      w.back_m = !w.away && deeper_m > let_in_m ? deeper_m : 0.0;
-    } else if (w.back_m > 0.0) {
-      const bool was_read = w.deepest_m > w.back_m - 1.25 * told_m_;
-      w.back_m = std::max(0.0, std::min(w.back_m, (was_read ? w.deepest_m : w.bound_m) + told_m_));
-    }
-    come_ = come_ || w.away || w.back_m > 0.0;
-  }
-  if (!come_) return;
-  for (const near_patch& patch : found.patches()) {
-    const way& w = ways_[patch.body];
-    for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
-      p.plane.depth_m = w.away ? none : p.plane.depth_m - w.back_m;
-    }
-  }
 }
 
 void plane_depth::teach(const near_samples& found) noexcept {
@@ -468,64 +298,6 @@ void plane_depth::keep_what_matters(const near_patch& patch, const leaf_reader& 
     }
     if (group != nullptr) first_met::add(*group, moved, p.plane.depth_m);
   }
-}
-
-[[gnu::flatten]] status plane_depth::planes_at(const scene_pose& at, const near_samples& found,
-                                               std::span<const near_plane>, const vec6& moved, double above_m,
-                                               plane_list& out) const noexcept {
-  readers_of_threads reading(*bodies_, at, at.T_wa * centre_of_mass_a_, *materials_);
-  const vec6 step = moved - *asked_at_;
-  *asked_at_ = moved;
-  const double slid_m = std::sqrt(glm::dot(step.linear, step.linear));
-  const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
-  const std::span<const near_patch> patches = found.patches();
-  const auto look = [&](std::size_t p, unsigned thread, plane_list& to) noexcept {
-    known_depths::asked_patch& asked = known_->asked()[p];
-    const near_patch& patch = patches[p];
-    const way& of = ways_[patch.body];
-    const double deeper_m = above_m + of.back_m;
-    // Most patches are too far away for any motion of this length.
-    if (of.away || !(static_cast<double>(asked.most_m + asked.since_m) > deeper_m)) return;
-    const leaf_reader& reader = reading.of(thread).of(patch, of.sinking_m);
-    const double least_m = std::max(deeper_m, come_to(asked, patch, reader, moved.angular) - told_m_ + of.back_m);
-    if (!(static_cast<double>(asked.most_m) > least_m)) return;
-    known_->open(asked, patch);
-    const bool has_map = materials_->has_map(patch.body);
-    for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
-      reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i), [&](support_plane plane) noexcept {
-        plane.depth_m -= of.back_m;
-        if (has_map) plane.depth_m -= materials_->back_m(found.leaves()[i], patch.of_probe, plane);
-        if (plane.depth_m > above_m) keep_deepest(plane, to);
-      });
-    }
-    known_->close(asked, patch);
-  };
-  const auto come_and_look = [&](std::size_t p, unsigned thread, plane_list& to) noexcept {
-    known_depths::asked_patch& asked = known_->asked()[p];
-    asked.since_m +=
-        static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
-    look(p, thread, to);
-  };
-  const std::size_t parts = parts_.size();
-  if (parts <= 1) {
-    for (std::size_t p = 0; p < patches.size(); ++p) come_and_look(p, 0, out);
-    return out.dropped() > 0 ? status::capacity_reached : status::ok;
-  }
-  share(team_.get(), parts, [&](std::size_t part, unsigned thread) noexcept {
-    parts_[part].clear();
-    const std::size_t begin = patches.size() * part / parts, end = patches.size() * (part + 1) / parts;
-    for (std::size_t p = begin; p < end; ++p) come_and_look(p, thread, parts_[part]);
-  });
-  bool all = true;
-  for (const plane_list& part : parts_) {
-    all = all && part.dropped() == 0;
-    for (const support_plane& p : part) keep_deepest(p, out);
-  }
-  if (all && out.dropped() == 0) return status::ok;
-  // Which planes make room for deeper ones depends on their order: one thread takes them in that of the patches.
-  out.clear();
-  for (std::size_t p = 0; p < patches.size(); ++p) look(p, 0, out);
-  return out.dropped() > 0 ? status::capacity_reached : status::ok;
 }
 
 std::size_t plane_depth::heap_bytes() const noexcept {

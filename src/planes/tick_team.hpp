@@ -72,7 +72,7 @@ class tick_team {
  private:
   static constexpr std::uint32_t closed = 0;
   // Some tenths of a millisecond: more than lies between two calls of a tick, and less than between two ticks.
-  static constexpr int looks = 4000;
+  static constexpr int looks = 20'000;
 
   [[nodiscard]] static constexpr std::uint32_t following(std::uint32_t call) noexcept {
     return call + 1 != closed ? call + 1 : call + 2;

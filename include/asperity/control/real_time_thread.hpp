@@ -85,8 +85,8 @@ inline void ask_for_class(const real_time_wish& wish, bool is_device, thread_gra
   got.scheduling_error = error;
 }
 
-[[nodiscard]] inline int processors_of_process() noexcept {
-  cpu_set_t allowed;
+/// The processors that this process has, and how many.
+inline int processors_of_process(cpu_set_t& allowed) noexcept {
   CPU_ZERO(&allowed);
   return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? CPU_COUNT(&allowed) : 1;
 }
@@ -98,7 +98,9 @@ inline void ask_for_class(const real_time_wish& wish, bool is_device, thread_gra
 /// @param helper its number, from 1 on
 [[nodiscard]] inline thread_grants ask_for_real_time_helper(unsigned helper, const real_time_wish& wish = {}) noexcept {
   thread_grants got;
-  if (real_time_detail::processors_of_process() >= wish.processors_for_contact_class + static_cast<int>(helper)) {
+  cpu_set_t allowed;
+  if (real_time_detail::processors_of_process(allowed) >=
+      wish.processors_for_contact_class + static_cast<int>(helper)) {
     real_time_detail::ask_for_class(wish, false, got);
   }
   return got;
@@ -110,9 +112,7 @@ inline void ask_for_class(const real_time_wish& wish, bool is_device, thread_gra
 [[nodiscard]] inline thread_grants ask_for_real_time(session_thread which, const real_time_wish& wish = {}) noexcept {
   thread_grants got;
   cpu_set_t allowed;
-  CPU_ZERO(&allowed);
-  const bool known = sched_getaffinity(0, sizeof allowed, &allowed) == 0;
-  const int processors = known ? CPU_COUNT(&allowed) : 1;
+  const int processors = real_time_detail::processors_of_process(allowed);
   const bool is_device = which == session_thread::device;
 
   if (is_device || processors >= wish.processors_for_contact_class) {

@@ -39,14 +39,6 @@ bool is_closed_and_oriented(const triangle_mesh& m) {
   return true;
 }
 
-double volume(const triangle_mesh& m) {
-  double v = 0.0;
-  for (const auto& t : m.triangles) {
-    v += glm::dot(m.positions[t[0]], glm::cross(m.positions[t[1]], m.positions[t[2]])) / 6.0;
-  }
-  return v;
-}
-
 // As much as there is may be made up: these meshes are all holes.
 bake::repair_settings generous() {
   bake::repair_settings out;
@@ -64,7 +56,7 @@ TEST(holes, of_a_tube_are_closed_with_its_lids) {
   EXPECT_TRUE(is_closed_and_oriented(m));
   const double lid = 0.5 * 24 * std::sin(2 * std::numbers::pi / 24);
   EXPECT_NEAR(report->area_added_m2, 2 * lid, 1e-12);
-  EXPECT_NEAR(volume(m), 2 * lid, 1e-12);  // outward, and the lids are flat
+  EXPECT_NEAR(bake::dirt::volume(m), 2 * lid, 1e-12);  // outward, and the lids are flat
   EXPECT_NEAR((*report)[bake::repair_kind::hole].largest_m, 2.0, 1e-12);
 }
 

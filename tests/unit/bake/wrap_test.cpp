@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -16,9 +15,10 @@
 #include "bake/geometry.hpp"
 #include "bake/self_crossing.hpp"
 #include "bake/soup_facing.hpp"
-#include "bake/winding_number.hpp"
 #include "bake/wrap_fit.hpp"
 #include "bake/wrap_lattice.hpp"
+#include "dirty_mesh.hpp"
+#include "even_ball.hpp"
 #include "shapes.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
@@ -26,45 +26,11 @@
 namespace asperity::bake {
 namespace {
 
+using shapes::ball;
 using shapes::dice;
+using shapes::turned_at_random;
+using shapes::without_some;
 constexpr double pi = std::numbers::pi;
-
-// An octahedron cut `times` times, its vertices on a sphere about `at`.
-triangle_mesh ball(double radius_m, int times, const vec3& at = vec3(0.0)) {
-  triangle_mesh m{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-                  {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}},
-                  {}};
-  for (int i = 0; i < times; ++i) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [found, added] =
-          middles.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(m.positions.size()));
-      if (added) m.positions.push_back(glm::normalize(m.positions[a] + m.positions[b]));
-      return found->second;
-    };
-    std::vector<std::array<std::uint32_t, 3>> finer;
-    for (const auto& t : m.triangles) {
-      const std::uint32_t a = middle(t[0], t[1]), b = middle(t[1], t[2]), c = middle(t[2], t[0]);
-      finer.insert(finer.end(), {{t[0], a, c}, {a, t[1], b}, {c, b, t[2]}, {a, b, c}});
-    }
-    m.triangles = std::move(finer);
-  }
-  for (vec3& p : m.positions) p = at + radius_m * p;
-  return m;
-}
-
-double volume_of(const triangle_mesh& m) {
-  double six = 0.0;
-  for (const auto& t : m.triangles)
-    six += glm::dot(m.positions[t[0]], glm::cross(m.positions[t[1]], m.positions[t[2]]));
-  return six / 6.0;
-}
-
-double area_of(const triangle_mesh& m) {
-  double twice = 0.0;
-  for (const auto& t : m.triangles) twice += glm::length(area_normal(corners(m.positions, t)));
-  return 0.5 * twice;
-}
 
 // The largest distance of drawn points of one mesh from the other, each looked for in all of its triangles.
 double drawn_distance(dice& draw, const triangle_mesh& from, const triangle_mesh& to, int points) {
@@ -112,17 +78,6 @@ outcome wrapped(const triangle_mesh& mesh, double cell_m, std::optional<double> 
   return out;
 }
 
-triangle_mesh turned_at_random(triangle_mesh m, dice& draw, double share) {
-  for (auto& t : m.triangles)
-    if (draw() < share) std::swap(t[1], t[2]);
-  return m;
-}
-
-triangle_mesh without_some(triangle_mesh m, dice& draw, double share) {
-  std::erase_if(m.triangles, [&](const auto&) { return draw() < share; });
-  return m;
-}
-
 // Every triangle with vertices of its own.
 triangle_mesh torn_apart(const triangle_mesh& m) {
   triangle_mesh out;
@@ -134,33 +89,6 @@ triangle_mesh torn_apart(const triangle_mesh& m) {
   return out;
 }
 
-TEST(WindingField, IsTheSumOfTheSolidAngles) {
-  dice draw(test_support::fresh_seed("WindingField.IsTheSumOfTheSolidAngles", "200 points"));
-  const triangle_mesh soup = shapes::both(without_some(ball(0.05, 4), draw, 0.3),
-                                          turned_at_random(ball(0.03, 4, {0.02, 0.05, 0.0}), draw, 0.2));
-  const triangle_bvh tree(soup.positions, soup.triangles);
-  const winding_field field(tree);
-  for (int i = 0; i < 200; ++i) {
-    const vec3 p{draw(-0.15, 0.15), draw(-0.15, 0.15), draw(-0.15, 0.15)};
-    double sum = 0.0;
-    for (const auto& t : soup.triangles) sum += winding_of(corners(soup.positions, t), p);
-    EXPECT_NEAR(field.at(p), sum, 0.005);
-  }
-}
-
-TEST(WindingField, OfAClosedSurfaceIsOneInsideAndNoneOutside) {
-  dice draw(test_support::fresh_seed("WindingField.OfAClosedSurface", "300 points"));
-  const triangle_mesh mesh = ball(0.05, 5);
-  const triangle_bvh tree(mesh.positions, mesh.triangles);
-  const winding_field field(tree);
-  for (int i = 0; i < 300; ++i) {
-    const vec3 n = glm::normalize(vec3(draw(-1, 1), draw(-1, 1), draw(-1, 1)));
-    const double r = draw(0.0, 2.0);
-    if (std::abs(r - 1.0) < 0.003) continue;  // between the sphere and its triangles
-    EXPECT_NEAR(field.at(0.05 * r * n), r < 1.0 ? 1.0 : 0.0, 0.005) << r;
-  }
-}
-
 TEST(Wrap, OfASoundMeshLiesOnIt) {
   dice draw(test_support::fresh_seed("Wrap.OfASoundMeshLiesOnIt", "a ball, a torus and a box of drawn sizes"));
   const double size = draw(0.5, 2.0);
@@ -169,7 +97,7 @@ TEST(Wrap, OfASoundMeshLiesOnIt) {
   const outcome ring = wrapped(torus, cell);
   EXPECT_EQ(ring.report.components, 1U);
   EXPECT_EQ(ring.euler, 0);
-  EXPECT_NEAR(volume_of(ring.mesh) / volume_of(torus), 1.0, 0.01);
+  EXPECT_NEAR(dirt::volume(ring.mesh) / dirt::volume(torus), 1.0, 0.01);
   EXPECT_LT(drawn_distance(draw, ring.mesh, torus, 100), 0.3 * cell);
   EXPECT_LT(drawn_distance(draw, torus, ring.mesh, 100), 0.3 * cell);
   EXPECT_LT(ring.report.to_original.max_m, 0.3 * cell);
@@ -183,7 +111,7 @@ TEST(Wrap, OfASoundMeshLiesOnIt) {
   const triangle_mesh box = shapes::box(sides, {1, 1, 1});
   const outcome brick = wrapped(box, 0.003);
   EXPECT_EQ(brick.euler, 2);
-  EXPECT_NEAR(volume_of(brick.mesh) / volume_of(box), 1.0, 0.01);
+  EXPECT_NEAR(dirt::volume(brick.mesh) / dirt::volume(box), 1.0, 0.01);
   EXPECT_LT(drawn_distance(draw, box, brick.mesh, 500), 0.003) << "corners are cut off by less than a cell";
 }
 
@@ -206,7 +134,7 @@ TEST(Wrap, MakesOneBodyOfABrokenBall) {
     const outcome out = wrapped(soup, cell);
     EXPECT_EQ(out.report.components, 1U);
     EXPECT_EQ(out.euler, 2);
-    EXPECT_NEAR(volume_of(out.mesh) / volume_of(sound), 1.0, 0.02);
+    EXPECT_NEAR(dirt::volume(out.mesh) / dirt::volume(sound), 1.0, 0.02);
     EXPECT_LT(drawn_distance(draw, out.mesh, sound, 80), 0.7 * cell);
     EXPECT_LT(drawn_distance(draw, sound, out.mesh, 80), 0.7 * cell);
   }
@@ -219,7 +147,7 @@ TEST(Wrap, OfBodiesThroughEachOtherIsTheirOutside) {
   const outcome both = wrapped(soup, cell);
   const double h = r - 0.5 * apart;
   const double lens = 2.0 * pi * h * h * (3.0 * r - h) / 3.0;
-  EXPECT_NEAR(volume_of(both.mesh) / (2.0 * 4.0 / 3.0 * pi * r * r * r - lens), 1.0, 0.02);
+  EXPECT_NEAR(dirt::volume(both.mesh) / (2.0 * 4.0 / 3.0 * pi * r * r * r - lens), 1.0, 0.02);
   EXPECT_EQ(both.report.components, 1U);
   EXPECT_GT(both.report.to_wrap.max_m, 2.0 * cell) << "what lies within is lost, and told";
   EXPECT_GT(both.report.lost_share, 0.05);
@@ -229,7 +157,8 @@ TEST(Wrap, OfBodiesThroughEachOtherIsTheirOutside) {
   soup = shapes::both(soup, ball(0.008, 3));
   const outcome hollow = wrapped(soup, cell);
   EXPECT_EQ(hollow.report.components, 1U);
-  EXPECT_NEAR(volume_of(hollow.mesh), volume_of(both.mesh), 1e-3 * volume_of(both.mesh)) << "a cavity is filled";
+  EXPECT_NEAR(dirt::volume(hollow.mesh), dirt::volume(both.mesh), 1e-3 * dirt::volume(both.mesh))
+      << "a cavity is filled";
 }
 
 // An open shell whose inner side is mostly enclosed is filled up to a membrane over its opening.
@@ -241,7 +170,7 @@ TEST(Wrap, FillsABowl) {
   const outcome out = wrapped(bowl, 0.003);
   EXPECT_EQ(out.euler, 2);
   EXPECT_EQ(out.report.plate_share, 0.0);
-  EXPECT_NEAR(volume_of(out.mesh) / (2.0 / 3.0 * pi * 0.05 * 0.05 * 0.05), 1.0, 0.05);
+  EXPECT_NEAR(dirt::volume(out.mesh) / (2.0 / 3.0 * pi * 0.05 * 0.05 * 0.05), 1.0, 0.05);
   EXPECT_NEAR(out.report.made_up_share, 1.0 / 3.0, 0.05) << "the membrane over the opening";
   EXPECT_LT(out.report.to_wrap.max_m, 0.003);
 }
@@ -267,8 +196,8 @@ TEST(Wrap, MakesAPlateOfALeaf) {
   EXPECT_EQ(out.report.plate_share, 1.0);
   EXPECT_DOUBLE_EQ(out.report.thickness_m, thickness);
   const double perimeter = 0.32;
-  const double expected = thickness * area_of(leaf) + 0.125 * pi * thickness * thickness * perimeter;
-  EXPECT_NEAR(volume_of(out.mesh) / expected, 1.0, 0.08);
+  const double expected = thickness * dirt::area(leaf) + 0.125 * pi * thickness * thickness * perimeter;
+  EXPECT_NEAR(dirt::volume(out.mesh) / expected, 1.0, 0.08);
   EXPECT_LT(drawn_distance(draw, out.mesh, leaf, 300), 0.5 * thickness + least_cut * 0.0014);
   EXPECT_NEAR(out.report.to_original.median_m, 0.5 * thickness, 0.05 * thickness);
   EXPECT_GT(drawn_distance(draw, leaf, out.mesh, 50), 0.4 * thickness);
@@ -280,7 +209,7 @@ TEST(Wrap, ThickensAWallThatIsThinnerThanACell) {
   EXPECT_EQ(out.report.components, 1U);
   EXPECT_EQ(out.euler, 2);
   EXPECT_GT(out.report.plate_share, 0.95);
-  EXPECT_NEAR(volume_of(out.mesh) / (0.1 * 0.08 * (out.report.thickness_m + 0.0003)), 1.0, 0.15);
+  EXPECT_NEAR(dirt::volume(out.mesh) / (0.1 * 0.08 * (out.report.thickness_m + 0.0003)), 1.0, 0.15);
 }
 
 TEST(Wrap, DoesNotThickenTheEdgeOfAWedge) {
@@ -291,7 +220,7 @@ TEST(Wrap, DoesNotThickenTheEdgeOfAWedge) {
   const outcome out = wrapped(wedge, cell);
   EXPECT_EQ(out.report.components, 1U);
   EXPECT_LT(out.report.to_original.max_m, 1.2 * cell);
-  EXPECT_NEAR(volume_of(out.mesh) / volume_of(wedge), 1.0, 0.03);
+  EXPECT_NEAR(dirt::volume(out.mesh) / dirt::volume(wedge), 1.0, 0.03);
 }
 
 // Two bodies less than a cell apart are joined: where lattice nodes happen to lie in the gap, each would be a tunnel.
@@ -321,8 +250,8 @@ TEST(Wrap, KeepsOnlyWhatCanBeTouched) {
   EXPECT_EQ(dropped->cavities, 2U) << "the hollow, and the ball in it";
   EXPECT_EQ(dropped->specks, 1U);
   EXPECT_EQ(dropped->left, 2U);
-  const double expected = volume_of(ball(0.05, 3)) + volume_of(ball(0.02, 3));
-  EXPECT_NEAR(volume_of(parts), expected, 1e-9);
+  const double expected = dirt::volume(ball(0.05, 3)) + dirt::volume(ball(0.02, 3));
+  EXPECT_NEAR(dirt::volume(parts), expected, 1e-9);
 }
 
 TEST(Wrap, TurnsPanelsThatFaceAnyWay) {
@@ -340,8 +269,8 @@ TEST(Wrap, TurnsPanelsThatFaceAnyWay) {
   stage_monitor monitor;
   triangle_mesh turned = panels;
   ASSERT_TRUE(face_outwards(turned, 2, monitor));
-  EXPECT_NEAR(volume_of(turned), volume_of(sound), 1e-9);
-  EXPECT_NEAR(volume_of(wrapped(panels, 0.003).mesh) / volume_of(sound), 1.0, 0.01);
+  EXPECT_NEAR(dirt::volume(turned), dirt::volume(sound), 1e-9);
+  EXPECT_NEAR(dirt::volume(wrapped(panels, 0.003).mesh) / dirt::volume(sound), 1.0, 0.01);
 }
 
 TEST(Wrap, ReportsTheDistancesThatAnIndependentMeasurementFinds) {
