@@ -8,6 +8,8 @@
 #include <numbers>
 #include <utility>
 
+#include "dirty_mesh.hpp"
+
 namespace {
 
 using namespace asperity;
