@@ -99,6 +99,7 @@ void plane_depth::stand_back(const near_samples& found, const vec6& ahead, std::
     const way& w = ways_[patch.body];
     for (near_plane& p : out.subspan(patch.first_leaf, patch.leaf_count)) {
       p.plane.depth_m = w.away ? none : p.plane.depth_m - w.back_m;
+      p.plane.back_m += w.back_m;
     }
   }
 }

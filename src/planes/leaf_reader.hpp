@@ -23,6 +23,18 @@
 
 namespace asperity {
 
+/// The number by which planes tell whose sample they stand for: support_plane::sample.
+struct sample_number {
+  bool of_probe = false;
+  std::uint32_t index = 0;  ///< of sample_tree::samples()
+
+  [[nodiscard]] constexpr std::uint32_t told() const noexcept { return 2 * index + (of_probe ? 1 : 2); }
+  /// @pre told > 0
+  [[nodiscard]] static constexpr sample_number from(std::uint32_t told) noexcept {
+    return {told % 2 == 1, (told - 1) / 2};
+  }
+};
+
 /// Reads samples of a body X in the field of a body Y at one pose. What a sample tells is read in double precision with
 /// exact slopes; quick readings with a stated error only tell which samples need that, so they change no result.
 class leaf_reader {
@@ -131,6 +143,14 @@ class leaf_reader {
     }
   }
 
+  /// The plane of one sample; its depth is -infinity where the field has no direction there.
+  [[nodiscard]] support_plane plane_of(std::uint32_t index) const noexcept {
+    near_plane out;
+    const sample_depth now = exact(x_->samples.samples()[index]);
+    if (now.sample != nullptr) report(now, out);
+    return out.plane;
+  }
+
   /// A bound as it is kept.
   [[nodiscard]] static float rounded_up(double most_m) noexcept {
     constexpr float rounding_m = 1e-9F;
@@ -189,7 +209,7 @@ class leaf_reader {
     out.plane.depth_m = of.depth_m;
     out.plane.body = body_;
     const auto index = static_cast<std::uint32_t>(of.sample - x_->samples.samples().data());
-    out.plane.sample = 2 * index + (of_probe_ ? 1 : 2);
+    out.plane.sample = sample_number{of_probe_, index}.told();
     out.plane.r_w = out.point_w - c_a_w_;
     out.plane.gradient = {slope_w, glm::cross(out.plane.r_w, slope_w)};
     out.plane.n_ab_w = slope_w / std::sqrt(glm::dot(of.slope_y, of.slope_y));

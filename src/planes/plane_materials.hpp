@@ -98,6 +98,7 @@ class plane_materials {
         held_leaf now = of(found.leaves()[i], patch.of_probe, p);
         now.back_m = back_m(found.leaves()[i], patch.of_probe, p);
         p.depth_m -= now.back_m;
+        p.back_m += now.back_m;
         if (next_.size() < next_.capacity()) next_.push_back(now);
       }
     }

@@ -67,7 +67,12 @@ double come_to(known_depths::asked_patch& asked, const near_patch& patch, const 
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
       reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i), [&](support_plane plane) noexcept {
         plane.depth_m -= of.back_m;
-        if (has_map) plane.depth_m -= materials_->back_m(found.leaves()[i], patch.of_probe, plane);
+        plane.back_m = of.back_m;
+        if (has_map) {
+          const double back_m = materials_->back_m(found.leaves()[i], patch.of_probe, plane);
+          plane.depth_m -= back_m;
+          plane.back_m += back_m;
+        }
         if (plane.depth_m > above_m) keep_deepest(plane, to);
       });
     }

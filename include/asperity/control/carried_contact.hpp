@@ -35,9 +35,10 @@ using body_velocities = fixed_vector<body_velocity, most_moving_bodies>;
 class carried_contact {
  public:
   /// @param contact outlives this
+  /// @param planes  the contact's, as they are or read again; outlive this
   /// @param ways    of the bodies in the period; outlive this
-  carried_contact(const linear_contact& contact, std::span<const body_way> ways) noexcept
-      : contact_(&contact), ways_(ways) {}
+  carried_contact(const linear_contact& contact, const support_planes& planes, std::span<const body_way> ways) noexcept
+      : contact_(&contact), planes_(&planes), ways_(ways) {}
 
   /// Whether a body that the contact knows is one that may move. Where none is, the contact stands as it is.
   [[nodiscard]] bool moves() const noexcept { return !ways_.empty() && !contact_->bodies.empty(); }
@@ -46,7 +47,7 @@ class carried_contact {
   /// @param dt_s the period's length, s; 0 leaves the velocities at 0
   void at(const pose& T_wc, double part, double dt_s, support_planes& planes,
           body_velocities& velocities) const noexcept {
-    planes = contact_->planes;
+    planes = *planes_;
     velocities.clear();
     const vec6 moved = pose_difference(T_wc, contact_->T_wc);
     for (const body_place& then : contact_->bodies) {
@@ -106,6 +107,7 @@ class carried_contact {
   }
 
   const linear_contact* contact_;
+  const support_planes* planes_;
   std::span<const body_way> ways_;
 };
 

@@ -115,6 +115,7 @@ class contact_loop {
     linear_contact& out = shared_->contacts.back();
     linearise(last_, answer, at, selection_, rest_, out);
     if (scene != nullptr) tell(*scene, there, out);
+    if (out.reader != nullptr) tell_places(out);
     out.flags = flags_.held(out.flags, at.time_ns);
     pending_ = true;
     ++computed_;
@@ -183,6 +184,17 @@ class contact_loop {
       }
     }
     return out;
+  }
+
+  // Where the bodies of the planes are. Those that move have a generation, by which the device loop finds their way.
+  void tell_places(linear_contact& out) const noexcept {
+    for (const support_plane& p : out.planes) {
+      const auto is_of = [&](const body_place& b) { return b.body == p.body; };
+      if (std::any_of(out.places.begin(), out.places.end(), is_of)) continue;
+      const auto moving = std::find_if(out.bodies.begin(), out.bodies.end(), is_of);
+      static_cast<void>(out.places.push_back(
+          moving != out.bodies.end() ? *moving : body_place{.body = p.body, .T_wb = placement_.T_wb[p.body]}));
+    }
   }
 
   static void tell(const placed_scene& scene, const body_places& there, linear_contact& out) noexcept {

@@ -44,6 +44,7 @@ struct control_settings {
   /// which looks 0.1 mm and 5 mrad around: with half of it a press with 10 N stepped by 0.4 N/ms at rest. What a hand
   /// begins to do in a period of a slow loop takes more.
   double least_gaps_m = 1e-3;
+  bool local_model = true;         ///< planes are read again in each device tick, see local_model
   transient_settings transient{};  ///< of a first touch, see check(); none by default
   guard_settings guard{};
   weight_settings weight{};  ///< of the handle, see check(); none by default

@@ -14,6 +14,7 @@
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/material.hpp"
+#include "asperity/render/plane_reader.hpp"
 #include "asperity/render/support_plane.hpp"
 
 namespace asperity {
@@ -36,6 +37,9 @@ struct contact_body {
   std::uint8_t of_body = 0;
 };
 
+/// Of how many bodies a contact's planes can be read again.
+inline constexpr std::size_t most_read_bodies = 8;
+
 /// Contact wrench on the probe, linear in the probe's pose: W(q) = W0 + J (q - q0). World axes, torque about c_A.
 /// The probe's frame c here has its origin in the centre of mass c_A and the body's axes.
 /// Held instead of linearised, a wrench one period late is unstable above 70 N/m at 100 Hz; with J no limit was found.
@@ -47,13 +51,15 @@ struct linear_contact {
   pose T_wc{};          ///< q0: pose of the probe's centre-of-mass frame that W0 belongs to
   vec3 direction_ab_w{
       0.0};  ///< mean contact direction, weighted by depth; length 1 where all contacts agree, 0 without
-  std::int64_t time_ns = 0;           ///< time of q0 (not of the end of the computation)
-  double max_depth_m = 0.0;           ///< deepest contact at q0; 0 without contact
-  std::uint32_t contacts = 0;         ///< contacts with depth > 0 at q0
-  std::uint32_t dropped = 0;          ///< contacts that did not fit
-  status answer = status::not_ready;  ///< what the renderer answered at q0
-  support_planes planes{};            ///< at q0; empty where the renderer knows none or nothing is near
-  body_places bodies{};               ///< where the moving bodies were at q0; the others stand still
+  std::int64_t time_ns = 0;              ///< time of q0 (not of the end of the computation)
+  double max_depth_m = 0.0;              ///< deepest contact at q0; 0 without contact
+  std::uint32_t contacts = 0;            ///< contacts with depth > 0 at q0
+  std::uint32_t dropped = 0;             ///< contacts that did not fit
+  status answer = status::not_ready;     ///< what the renderer answered at q0
+  support_planes planes{};               ///< at q0; empty where the renderer knows none or nothing is near
+  const plane_reader* reader = nullptr;  ///< reads them again; null where nobody can, or the scene may change
+  fixed_vector<body_place, most_read_bodies> places{};  ///< where the bodies of these planes were at q0, for the reader
+  body_places bodies{};                                 ///< where the moving bodies were at q0; the others stand still
   known_motion known{};               ///< how far the probe may go from q0; unlimited where nobody says
   tick_flag flags = tick_flag::none;  ///< what the planes do not answer
   std::uint64_t version = 0;          ///< of the scene that was rendered; 0: one that never changes

@@ -47,6 +47,7 @@ inline void linearise(const tick& found, status answer, const timed_pose& at, co
     return;
   }
   out.known = found.known;
+  out.reader = found.reader;
   out.flags = found.flags;
   if (!found.planes.empty() && found.dropped_contacts > 0) out.flags |= tick_flag::planes_left_out;
   if (selected == status::capacity_reached && lacks_a_wall(found.planes, out.planes, selection.same_direction)) {

@@ -13,6 +13,7 @@
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/friction.hpp"
 #include "asperity/control/linear_contact.hpp"
+#include "asperity/control/local_model.hpp"
 #include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/probe.hpp"
 #include "asperity/control/virtual_coupling.hpp"
@@ -30,6 +31,7 @@ namespace asperity {
 /// probe that runs at several times the device's rate, so the target goes evenly from its last pose to the newest one.
 /// The probe goes no further than the contact knows (linear_contact::known), planes or not: there it waits for the next
 /// contact, and the coupling pulls at the hand by what it lags behind.
+/// Planes are read again where the probe is, once in a period, as far as the contact's renderer can (local_model).
 /// Planes of bodies that move go with them, evenly through the period. A linear wrench does not: it is the one of the
 /// contact's time.
 /// @rt safe: no allocation, lock, throw, print or clock
@@ -37,14 +39,16 @@ class probe_motion {
  public:
   /// @param substeps of the probe in one period; at least one is made
   /// @param rubbing on support planes; a contact without planes has no friction
+  /// @param reads_again whether planes are read again in each period, see local_model
   /// @pre check(laws.usual), check(rubbing)
   probe_motion(const probe_settings& body, const coupling_settings& coupling, contact_laws laws, int substeps,
-               const friction_settings& rubbing = {}) noexcept
+               const friction_settings& rubbing = {}, bool reads_again = true) noexcept
       : laws_(std::move(laws)),
         substeps_(std::max(1, substeps)),
         coupling_(coupling, body.mass_kg, mean_inertia(body)),
         probe_(body),
-        friction_(rubbing) {}
+        friction_(rubbing),
+        local_(reads_again) {}
 
   /// Puts probe and target there, at rest.
   void place(const pose& target_T_wc) noexcept {
@@ -88,7 +92,8 @@ class probe_motion {
   [[nodiscard]] status move(double dt_s, const pose& wanted_T_wc, double part, const linear_contact& contact,
                             std::span<const body_way> ways = {},
                             const std::optional<twist>& velocity_w = std::nullopt) noexcept {
-    const carried_contact carried(contact, ways);
+    const support_planes& planes = local_.planes_of(contact, ways, probe_.state().T_wc);
+    const carried_contact carried(contact, planes, ways);
     felt_.list.clear();
     velocities_.clear();
     const pose from = target_T_wc_;
@@ -111,7 +116,7 @@ class probe_motion {
       const double passed = static_cast<double>(i) / substeps_;
       const double begun = static_cast<double>(i - 1) / substeps_;
       const pose target{exp_rotation(passed * way.angular) * from.rotation, from.position + passed * way.linear};
-      if (const status s = substep(dt_s, target, contact, carried, begun); s != status::ok) return s;
+      if (const status s = substep(dt_s, target, contact, planes, carried, begun); s != status::ok) return s;
     }
     felt_.point_w = probe_.state().T_wc.position;
     body_share_ = carried.moves() ? carried.body_share(probe_.state().T_wc, 1.0) : 0.0;
@@ -128,7 +133,7 @@ class probe_motion {
       springs(i, i) = i < 3 ? coupling_.stiffness_n_per_m() : coupling_.stiffness_n_m_per_rad();
     }
     const vec6 moved = pose_difference(probe_.state().T_wc, contact.T_wc);
-    const carried_contact carried(contact, ways);
+    const carried_contact carried(contact, contact.planes, ways);
     if (!carried.moves()) return balance_of(springs, {}, contact.planes, moved, laws_).on_probe_w;
     support_planes planes;
     body_velocities none;
@@ -196,7 +201,7 @@ class probe_motion {
   }
 
   [[nodiscard]] status substep(double dt_s, const pose& target, const linear_contact& contact,
-                               const carried_contact& carried, double begun) noexcept {
+                               const support_planes& read, const carried_contact& carried, double begun) noexcept {
     const double h_s = dt_s / substeps_;
     if (contact.planes.empty()) {
       friction_.forget();
@@ -205,7 +210,7 @@ class probe_motion {
       touched_ = evaluate(contact, probe_.state().T_wc);
       return s;
     }
-    const support_planes* planes = &contact.planes;
+    const support_planes* planes = &read;
     known_region within{contact.T_wc, contact.known};
     if (carried.moves()) {
       carried.at(probe_.state().T_wc, begun, dt_s, carried_, velocities_);
@@ -243,6 +248,7 @@ class probe_motion {
   virtual_coupling coupling_;
   asperity::probe probe_;
   friction friction_;
+  local_model local_;
   pose target_T_wc_{};
   twist target_velocity_w_{};
   std::array<stretch, most_recent> recent_{};  // the newest first

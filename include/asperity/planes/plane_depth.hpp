@@ -14,6 +14,7 @@
 #include "asperity/model/scene.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/depth_backend.hpp"
+#include "asperity/render/plane_reader.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 #include "asperity/render/tick_flag.hpp"
@@ -26,6 +27,7 @@ class known_branches;
 class known_depths;
 class leaf_reader;
 class plane_materials;
+class surface_reader;
 class tick_team;
 struct plane_scene;
 
@@ -99,6 +101,8 @@ class ASPERITY_API plane_depth {
 
   /// The planes of the last measure(), gaps included.
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return reported_; }
+  /// Reads them again elsewhere; null where bodies may change, since one could go while it is read.
+  [[nodiscard]] const plane_reader* reader() const noexcept;
   /// How far the probe may move from there: by the reach, or as far as nothing is near.
   [[nodiscard]] known_motion known() const noexcept { return known_motion_; }
   /// What these planes do not answer.
@@ -165,6 +169,7 @@ class ASPERITY_API plane_depth {
   std::shared_ptr<tick_team> team_;
   mutable std::vector<plane_list> parts_;  // of planes_at(), of several threads
   std::unique_ptr<plane_materials> materials_;
+  std::unique_ptr<surface_reader> reader_;
   std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
   double probe_half_m_ = 0.0;
   pose before_wa_{};         // of the last measure() ...
@@ -177,6 +182,7 @@ class ASPERITY_API plane_depth {
 
 static_assert(depth_backend<plane_depth>);
 static_assert(reports_planes_nearby<plane_depth>);
+static_assert(has_plane_reader<plane_depth>);
 static_assert(reports_known_motion<plane_depth>);
 static_assert(reports_work<plane_depth>);
 

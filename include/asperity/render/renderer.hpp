@@ -15,6 +15,7 @@
 #include "asperity/render/collision_finder.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/render/force_model.hpp"
+#include "asperity/render/plane_reader.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 
@@ -31,6 +32,7 @@ struct tick {
   std::span<const wrench> on_body;     ///< on each fixed body, about its own centre of mass; empty: not known
   std::span<const support_plane> planes;  ///< gaps included; empty where the depth backend knows none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
+  const plane_reader* reader = nullptr;   ///< reads the planes again; lives as long as the renderer; null: nobody can
   known_motion known{};                   ///< how far the probe may move on what the planes tell
   tick_flag flags = tick_flag::none;      ///< what the planes do not answer
   depth_work work{};                      ///< what it took
@@ -157,6 +159,7 @@ class basic_renderer {
     out.centre_of_mass_w = centre_of_mass_w(scene(), at.T_wa);
     out.on_body = detail::as_felt_by_bodies(report.by_body, out.centre_of_mass_w, scene(), at);
     out.dropped_contacts = found_.dropped();
+    if constexpr (has_plane_reader<Depth>) out.reader = depth_.reader();
     if constexpr (reports_known_motion<Depth>) out.known = depth_.known();
     if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
     if constexpr (reports_work<Depth>) out.work = depth_.work();

@@ -23,6 +23,7 @@ struct support_plane {
   double spread_m = 0.0;         ///< radius across n_ab_w of the surface that the plane stands for, m
   std::uint32_t body = 0;        ///< index of B in scene::fixed
   std::uint32_t sample = 0;      ///< planes of one body with the same number stand for the same point; 0: not known
+  double back_m = 0.0;           ///< the surface is felt this much further in than it is; depth_m is less by it
   double closing_m_per_s = 0.0;  ///< how fast the depth grows by the body's own motion; 0 for a body at rest
   std::uint8_t of_probe = 0;     ///< number of the probe's material where the point is; see material_map
   std::uint8_t of_body = 0;      ///< and of the body's
@@ -31,7 +32,7 @@ struct support_plane {
 /// @rt safe
 [[nodiscard]] inline bool is_finite(const support_plane& p) noexcept {
   return std::isfinite(p.depth_m) && is_finite(p.gradient) && is_finite(p.n_ab_w) && is_finite(p.r_w) &&
-         std::isfinite(p.spread_m) && std::isfinite(p.closing_m_per_s);
+         std::isfinite(p.spread_m) && std::isfinite(p.back_m) && std::isfinite(p.closing_m_per_s);
 }
 
 /// How far the probe may move from the pose of a tick: while share() is at most 1, it meets no surface but that of the

@@ -10,6 +10,7 @@
 #include "law/presses/press_law.hpp"
 #include "law/presses/press_session.hpp"
 #include "law/presses/rest_session.hpp"
+#include "law/presses/scrub_session.hpp"
 #include "support/fresh_seed.hpp"
 
 namespace {
@@ -19,17 +20,18 @@ using namespace asperity::presses;
 
 constexpr char usage[] =
     "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
-    "[--sessions | --rests] [--dump]\n"
+    "[--sessions | --rests | --scrubs] [--dump]\n"
     "  --law NAME    least-motion or window (renderers), planes (the renderer for control loops, with\n"
-    "                --sessions or --rests) or exit (the originals' own true depth, slow, with neither)\n"
+    "                --sessions, --rests or --scrubs) or exit (the originals' own true depth, slow, with neither)\n"
     "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
     "  --touches N   presses on each pair (24)\n"
     "  --first N     leave the first N of the day's touches out (0)\n"
     "  --step MM     between two steps of a press (0.1)\n"
     "  --own         solids are their own coarse meshes; otherwise they are simplified\n"
     "  --sessions    a simulated hand presses with up to 20 N instead, through device and coupling\n"
-    "  --rests       a simulated hand rests instead, pressed in by 2 to 30 mm, and what trembles is told; without\n"
-    "                --pair on all ordered pairs of the benchmark models\n"
+    "  --rests       a simulated hand rests instead, pressed in by 2 to 30 mm, and what trembles is told; with\n"
+    "                this and the next one all ordered pairs of the benchmark models without --pair\n"
+    "  --scrubs      a simulated hand scrubs instead, and what it feels is compared with loops at 10 kHz\n"
     "  --dump        every step of every press as well\n"
     "The touches are those of the day; ASPERITY_SEED=N repeats a run. The benchmark models and the scans are taken "
     "from\n"
@@ -41,7 +43,7 @@ struct arguments {
   std::vector<press_pair> pairs;
   press_choice which;
   press_bake solids = press_bake::simplified;
-  bool sessions = false, rests = false, dump = false;
+  bool sessions = false, rests = false, scrubs = false, dump = false;
 };
 
 press_pair pair_named(const std::string& text) {
@@ -62,6 +64,8 @@ bool parse(int argc, char** argv, arguments& to) {
       to.sessions = true;
     } else if (name == "--rests") {
       to.rests = true;
+    } else if (name == "--scrubs") {
+      to.scrubs = true;
     } else if (name == "--dump") {
       to.dump = true;
     } else if (i + 1 == argc) {
@@ -80,7 +84,7 @@ bool parse(int argc, char** argv, arguments& to) {
       return false;
     }
   }
-  if (to.pairs.empty()) to.pairs = to.rests ? benchmark_pairs() : press_pairs();
+  if (to.pairs.empty()) to.pairs = to.rests || to.scrubs ? benchmark_pairs() : press_pairs();
   return to.which.touches > 0 && to.which.first >= 0 && to.which.step_m > 0.0;
 }
 
@@ -103,14 +107,16 @@ int main(int argc, char** argv) {
   }
   const std::vector<press_law> laws = known_laws();
   const auto law = std::find_if(laws.begin(), laws.end(), [&](const press_law& l) { return l.name == asked.law; });
-  if (law == laws.end() || (asked.sessions || asked.rests ? !law->render : !law->make)) {
+  if (law == laws.end() || (asked.sessions || asked.rests || asked.scrubs ? !law->render : !law->make)) {
     std::fputs(usage, stderr);
     return 2;
   }
   press_choice which = asked.which;
   which.seed = test_support::fresh_seed("presses", std::to_string(which.touches) + " touches a pair");
   press_shelf shelf(asked.solids);
-  if (asked.rests) {
+  if (asked.scrubs) {
+    print_scrub_heading(stdout);
+  } else if (asked.rests) {
     print_rest_heading(stdout);
   } else if (asked.sessions) {
     print_session_heading(stdout);
@@ -127,6 +133,16 @@ int main(int argc, char** argv) {
     const result<const press_body*> probe = shelf.get(pair.probe), fixed = shelf.get(pair.fixed);
     if (!probe || !fixed) {
       std::printf("%s: %s\n", pair.name().c_str(), (probe ? fixed.error() : probe.error()).message.c_str());
+      ++failed;
+      continue;
+    }
+    if (asked.scrubs) {
+      const result<scrub_result> row = scrub_sessions(pair, **probe, **fixed, which);
+      if (row) {
+        print_row(stdout, pair, *row);
+        continue;
+      }
+      std::printf("%s: %s\n", pair.name().c_str(), row.error().message.c_str());
       ++failed;
       continue;
     }

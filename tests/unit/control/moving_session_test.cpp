@@ -198,7 +198,7 @@ TEST(carried_contact, is_exact_for_planes) {
     support_planes carried;
     body_velocities velocities;
     const std::array<body_way, 1> ways{gone};
-    carried_contact(contact, ways).at(T_wa, 1.0, dt_s, carried, velocities);
+    carried_contact(contact, contact.planes, ways).at(T_wa, 1.0, dt_s, carried, velocities);
     const auto depth_at = [&](const pose& T_wb) {
       return height_m - glm::dot(normal_b, inverse(T_wb) * (T_wa * point_a));
     };

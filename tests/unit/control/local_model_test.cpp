@@ -1,0 +1,180 @@
+// Planes read again between two contacts: exact where a plane alone is wrong, and a slow contact loop feels like a fast one.
+#include "asperity/control/local_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <gtest/gtest.h>
+#include <span>
+#include <vector>
+
+#include "asperity/control/virtual_session.hpp"
+#include "asperity/device/simulated/simulated_device.hpp"
+#include "support/extent.hpp"
+#include "support/fresh_seed.hpp"
+#include "unit/control/drawn.hpp"
+#include "unit/control/plane_bodies.hpp"
+#include "unit/control/plane_session.hpp"
+
+namespace asperity {
+namespace {
+
+using namespace test_support;
+
+// A wavy wall that goes with its body, and one point of the probe.
+struct wavy_reader final : plane_reader {
+  wall of{};  // at its body's origin
+  vec3 point_c{0.0};
+
+  [[nodiscard]] support_plane plane(const pose& T_wc, const pose& T_wb) const noexcept {
+    const vec3 p_b = inverse(T_wb) * (T_wc * point_c), slope_w = T_wb.rotation * of.slope(p_b);
+    const vec3 r_w = T_wc * point_c - T_wc.position;
+    return {.depth_m = of.depth_m(p_b),
+            .gradient = {slope_w, glm::cross(r_w, slope_w)},
+            .n_ab_w = slope_w / glm::length(slope_w),
+            .r_w = r_w,
+            .body = of.body,
+            .sample = 1};
+  }
+  void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
+            std::span<support_plane> planes) const noexcept override {
+    for (support_plane& p : planes) {
+      if (p.body == body && p.sample != 0) p = plane(T_wc, T_wb);
+    }
+  }
+};
+
+wall wavy(std::uint32_t body) { return {.amplitude_m = 1e-4, .wave_m = 1.5e-3, .body = body}; }
+
+// A probe and a body that moved since the contact: at the probe's pose, with the body carried to the end of its way, the
+// plane says what the pair has there. The way of a plane that nobody read is off by the wave.
+TEST(local_model, is_exact_where_the_probe_is) {
+  drawn d(seed_of(fresh_seed("local_model.is_exact_where_the_probe_is", "500 contacts"), "contacts"));
+  double unread_off_m = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const auto any_pose = [&] { return pose{exp_rotation(d.inside(2.0)), d.inside(0.2)}; };
+    const auto nudged = [&](const pose& T) {
+      return pose{exp_rotation(d.inside(0.02)) * T.rotation, T.position + d.inside(1e-3)};
+    };
+    wavy_reader reader;
+    reader.of = wavy(3);
+    reader.point_c = d.inside(0.01);
+    const pose then_T_wb = any_pose();
+    linear_contact contact;
+    contact.T_wc = {exp_rotation(d.inside(2.0)), then_T_wb * d.inside(2e-3)};
+    static_cast<void>(contact.planes.push_back(reader.plane(contact.T_wc, then_T_wb)));
+    static_cast<void>(contact.planes.push_back(contact.planes[0]));
+    contact.planes[1].body = 4;  // nobody says where it is
+    contact.reader = &reader;
+    const bool moves = i % 2 == 0;
+    const pose now_T_wc = nudged(contact.T_wc), now_T_wb = moves ? nudged(then_T_wb) : then_T_wb;
+    static_cast<void>(contact.places.push_back({3, then_T_wb, moves ? 7U : 0U}));
+    if (moves) static_cast<void>(contact.bodies.push_back({3, then_T_wb, 7}));
+    const std::array<body_way, 1> ways{body_way{3, now_T_wb, {}, 7}};
+    const std::span<const body_way> gone = moves ? std::span<const body_way>(ways) : std::span<const body_way>();
+
+    local_model model(true), off(false);
+    EXPECT_EQ(&off.planes_of(contact, gone, now_T_wc), &contact.planes);
+    const auto depth_of = [&](const support_planes& planes) {
+      support_planes carried = planes;
+      body_velocities none;
+      const carried_contact with(contact, planes, gone);
+      if (with.moves()) with.at(now_T_wc, 0.0, 0.0, carried, none);
+      return carried[0].depth_m + dot(carried[0].gradient, pose_difference(now_T_wc, contact.T_wc));
+    };
+    const double truth_m = reader.plane(now_T_wc, now_T_wb).depth_m;
+    const support_planes& read = model.planes_of(contact, gone, now_T_wc);
+    EXPECT_NEAR(depth_of(read), truth_m, 1e-12) << i;
+    EXPECT_EQ(read[1].depth_m, contact.planes[1].depth_m);
+    unread_off_m = std::max(unread_off_m, std::fabs(depth_of(contact.planes) - truth_m));
+  }
+  EXPECT_GT(unread_off_m, 1e-4);
+}
+
+TEST(local_model, leaves_a_contact_alone_that_nobody_can_read) {
+  linear_contact contact;
+  static_cast<void>(contact.planes.push_back({.depth_m = 1e-4, .sample = 1}));
+  local_model model(true);
+  EXPECT_EQ(&model.planes_of(contact, {}, {}), &contact.planes);
+  wavy_reader reader;
+  contact.reader = &reader;
+  contact.planes.clear();
+  EXPECT_EQ(&model.planes_of(contact, {}, {}), &contact.planes);
+}
+
+// A renderer of one point of the probe over the wavy wall.
+struct wavy_renderer {
+  wavy_reader reader{};
+  support_plane plane{};
+
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
+    out = {};
+    out.centre_of_mass_w = at.T_wa.position;
+    plane = reader.plane(at.T_wa, at.T_wb[0]);
+    out.planes = {&plane, 1};
+    out.reader = &reader;
+    return status::ok;
+  }
+};
+
+struct forces {
+  std::vector<vec3>* out;
+  void operator()(const session_record& r) noexcept { out->push_back(r.on_hand_d.force); }
+};
+
+// What the hand feels as it scrubs over the wall, one value for each millisecond.
+std::vector<vec3> scrubbed(const simulated_settings& hand, std::int64_t device_ns, std::int64_t contact_ns, bool reads,
+                           double seconds) {
+  std::vector<vec3> all, out;
+  simulated_device dev(hand);
+  EXPECT_TRUE(dev.open() && dev.arm());
+  control_settings c;
+  c.coupling = coupling_for(dev.capabilities(), 1000.0);
+  c.local_model = reads;
+  wavy_renderer feel;
+  feel.reader.of = wavy(0);
+  virtual_session session(std::move(feel), {{pose{}}, vec3(0.0)}, dev, c,
+                          {.device_period_ns = device_ns,
+                           .contact_period_ns = contact_ns,
+                           .contact_one_period_late = contact_ns > device_ns},
+                          forces{&all});
+  session.run_until(static_cast<std::int64_t>(1e9 * seconds));
+  const auto each = static_cast<std::size_t>(1'000'000 / device_ns);
+  for (std::size_t i = 0; i < all.size(); i += each) out.push_back(all[i]);
+  return out;
+}
+
+double rms_off(std::span<const vec3> a, std::span<const vec3> b, std::size_t from) {
+  double sum = 0.0;
+  std::size_t n = 0;
+  for (std::size_t i = from; i < std::min(a.size(), b.size()); ++i, ++n) sum += glm::dot(a[i] - b[i], a[i] - b[i]);
+  return n == 0 ? 1e9 : std::sqrt(sum / static_cast<double>(n));
+}
+
+TEST(local_model, makes_a_slow_contact_loop_feel_like_a_fast_one) {
+  drawn d(seed_of(fresh_seed("local_model.makes_a_slow_contact_loop_feel_like_a_fast_one", "8 hands"), "hands"));
+  for (int i = 0; i < extent(8, 60); ++i) {
+    simulated_settings hand;
+    hand.seed = d.bits();
+    hand.capabilities = strong_device(10.0);
+    hand.motion.kind = motion_kind::scrub;
+    hand.motion.T_dh.position = {0.0, 0.0, 1e-3};
+    hand.motion.depth_m = d.between(3e-3, 8e-3);
+    hand.motion.sideways_d = {1.0, 0.0, 0.0};
+    hand.motion.amplitude_m = d.between(2e-3, 6e-3);
+    hand.motion.frequency_hz = d.between(0.5, 2.0);
+    constexpr double seconds = 1.0;
+    const std::vector<vec3> best = scrubbed(hand, 100'000, 100'000, false, seconds);
+    for (const std::int64_t contact_ns : {2'500'000, 5'000'000}) {
+      const double unread_n = rms_off(scrubbed(hand, 1'000'000, contact_ns, false, seconds), best, 500);
+      const double read_n = rms_off(scrubbed(hand, 1'000'000, contact_ns, true, seconds), best, 500);
+      std::printf("  hand %d, contacts each %.1f ms: off by %.1f mN, %.1f mN without\n", i,
+                  1e-6 * static_cast<double>(contact_ns), 1e3 * read_n, 1e3 * unread_n);
+      EXPECT_LT(read_n, 0.6 * unread_n) << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace asperity
