@@ -31,7 +31,7 @@ constexpr char usage[] =
     "  --sessions    a simulated hand presses with up to 20 N instead, through device and coupling\n"
     "  --rests       a simulated hand rests instead, pressed in by 2 to 30 mm, and what trembles is told; with\n"
     "                this and the next one all ordered pairs of the benchmark models without --pair\n"
-    "  --scrubs      a simulated hand scrubs instead, and what it feels is compared with loops at 10 kHz\n"
+    "  --scrubs      a simulated hand scrubs instead, and how far its planes are off the surface is told\n"
     "  --dump        every step of every press as well\n"
     "The touches are those of the day; ASPERITY_SEED=N repeats a run. The benchmark models and the scans are taken "
     "from\n"

@@ -1,4 +1,4 @@
-// A hand that scrubs over a body at some rates, beside the same hand where both loops run at 10 kHz.
+// A hand that scrubs over a body at some rates of contacts: is the probe where the surface has it?
 #pragma once
 
 #include <array>
@@ -12,8 +12,7 @@
 
 namespace asperity::presses {
 
-/// How a hand scrubs: pressed in beyond the touch, to and fro across the press. It does not tremble, since a tremor is
-/// drawn anew at every rate.
+/// How a hand scrubs: pressed in beyond the touch, to and fro across the press.
 struct scrub_rules {
   double way_m = 5e-3;  ///< of the hand beyond the touch
   double amplitude_m = 4e-3, frequency_hz = 1.0;
@@ -24,14 +23,18 @@ struct scrub_rules {
 /// Draws a scrub: presses of 3 to 10 mm, 2 to 6 mm to and fro at 0.5 to 3 Hz, in any direction across.
 [[nodiscard]] scrub_rules drawn_scrub(std::uint64_t seed, const std::string& pair, std::uint64_t touch);
 
-/// The rates of contacts that are compared, Hz, with a device loop of 1 kHz and contacts one period late.
+/// The rates of contacts, Hz, with a device loop of 1 kHz and contacts one period late.
 inline constexpr std::array<double, 3> scrub_rates_hz{1000.0, 400.0, 200.0};
 
-/// What the hand feels beside the loops at 10 kHz, rms, N: the force, and how far it is off with planes that stay as
-/// the contact had them, and with planes that are read again in each device tick.
+/// How far the planes that held the probe were from the surface, m: its depth at the end of each device tick, as a tick
+/// of the renderer there tells it, less the depth that the planes in use had. Ticks in which something pressed.
+struct plane_error {
+  double rms_m = 0.0, p99_m = 0.0;
+  int ticks = 0;
+};
+/// By planes that stay as the contact had them, and by planes that are read again in each device tick.
 struct scrub_result {
-  double force_n = 0.0;
-  std::array<double, scrub_rates_hz.size()> off_n{}, read_again_off_n{};
+  std::array<plane_error, scrub_rates_hz.size()> stay{}, read_again{};
 };
 
 /// One hand's scrubs at a touch of the seed.

@@ -1,4 +1,4 @@
-// Textures that are scrubbed while contacts are slow: planes that are read again feel like a loop at 10 kHz.
+// Textures that are scrubbed while contacts are slow: planes that are read again are where the surface is.
 #include <cstdint>
 #include <cstdio>
 #include <gtest/gtest.h>
@@ -13,15 +13,14 @@
 namespace asperity::presses {
 namespace {
 
-// Nobody promises this of every hand: where the probe slides off, two sessions part for good. Of all hands together the
-// rms is less than 0.8 of what planes leave that stay as they were told.
+// Of all hands together, planes that are read again are off by less than the planes that stay as they were told.
 TEST(scrubs, are_felt_between_contacts) {
   const std::uint64_t seed =
       test_support::fresh_seed("scrubs", "a hand on 1 of 3 pairs of benchmark models, 3 on each at length");
   const std::vector<std::string> names{"hammer on torus", "cad_part on gear", "file on block"};
   press_shelf shelf(press_bake::simplified);
   print_scrub_heading(stdout);
-  double off[scrub_rates_hz.size()] = {}, again[scrub_rates_hz.size()] = {};
+  double stay[scrub_rates_hz.size()] = {}, again[scrub_rates_hz.size()] = {};
   for (std::size_t n = 0; n < names.size(); ++n) {
     if (!test_support::at_length() && n != seed % names.size()) continue;
     for (const press_pair& pair : benchmark_pairs()) {
@@ -32,17 +31,16 @@ TEST(scrubs, are_felt_between_contacts) {
         const auto row = scrub_sessions(pair, **probe, **fixed, {seed, 1, i, 1e-4});
         ASSERT_TRUE(row) << row.error().message;
         print_row(stdout, pair, *row);
-        EXPECT_GT(row->force_n, 0.1);
         for (std::size_t r = 0; r < scrub_rates_hz.size(); ++r) {
-          off[r] += row->off_n[r] * row->off_n[r];
-          again[r] += row->read_again_off_n[r] * row->read_again_off_n[r];
+          EXPECT_GT(row->stay[r].ticks, 100);
+          stay[r] += row->stay[r].rms_m * row->stay[r].rms_m;
+          again[r] += row->read_again[r].rms_m * row->read_again[r].rms_m;
         }
       }
     }
   }
   for (std::size_t r = 0; r < scrub_rates_hz.size(); ++r) {
-    EXPECT_GT(off[r], 0.0);
-    EXPECT_LT(again[r], 0.64 * off[r]) << scrub_rates_hz[r] << " Hz";
+    EXPECT_LT(again[r], 0.25 * stay[r]) << scrub_rates_hz[r] << " Hz";
   }
 }
 
