@@ -12,7 +12,7 @@
 #include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/render/depth_backend.hpp"
-#include "asperity/render/plane_reader.hpp"
+#include "asperity/render/plane_source.hpp"
 #include "planes/leaf_reader.hpp"
 
 namespace asperity {

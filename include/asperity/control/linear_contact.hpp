@@ -14,10 +14,11 @@
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/material.hpp"
-#include "asperity/render/plane_reader.hpp"
 #include "asperity/render/support_plane.hpp"
 
 namespace asperity {
+
+class plane_reader;
 
 /// Most support planes that a contact carries: those that press where the probe will rest, one for each sample, and
 /// those that it meets next when it tilts or slides.

@@ -13,7 +13,6 @@
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/friction.hpp"
 #include "asperity/control/linear_contact.hpp"
-#include "asperity/control/local_model.hpp"
 #include "asperity/control/moving_bodies.hpp"
 #include "asperity/control/probe.hpp"
 #include "asperity/control/virtual_coupling.hpp"

@@ -14,7 +14,6 @@
 #include "asperity/model/scene.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/depth_backend.hpp"
-#include "asperity/render/plane_reader.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 #include "asperity/render/tick_flag.hpp"

@@ -1,10 +1,12 @@
-// Whom to ask for the support planes of a pose where the probe is not yet.
+// Whom to ask for support planes of poses beside that of a tick: where the probe is not yet, and where it has come since.
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 
 #include "asperity/core/fixed_vector.hpp"
+#include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
@@ -52,6 +54,36 @@ concept reports_planes_nearby = requires(const D& depth, const scene_pose& at, c
                                          double above_m, plane_list& out) {
   { depth.planes_at(at, found, read, moved, above_m, out) }
   noexcept->std::same_as<status>;
+};
+
+/// Reads the points again that support planes stand for. A device loop asks it in each of its ticks, so that what is felt
+/// between two contacts is the surface and not the plane that the older contact had of it.
+///
+/// It refers to the bodies of the renderer that has it, and to nothing that a tick changes: any thread may ask, while
+/// another one steps the renderer. It lives as long as the renderer.
+class plane_reader {
+ public:
+  /// Brings the planes of one body to where the probe and that body are: depth, gradient, direction and point. A plane
+  /// stays as it is where its number is 0, where its point has no depth there, and where it would press after a turn by a
+  /// right angle or more: that is another wall, which a contact has to tell.
+  /// @param T_wc   the probe's centre-of-mass frame   @param T_wb the body's
+  /// @param planes of any bodies; those of others are left alone
+  /// @rt safe: one reading of a depth field for each plane
+  virtual void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
+                    std::span<support_plane> planes) const noexcept = 0;
+
+ protected:
+  plane_reader() = default;
+  plane_reader(const plane_reader&) = default;
+  plane_reader& operator=(const plane_reader&) = default;
+  ~plane_reader() = default;
+};
+
+/// A depth backend whose planes can be read again; see plane_depth. Null where its bodies may change.
+template <class D>
+concept has_plane_reader = requires(const D& depth) {
+  { depth.reader() }
+  noexcept->std::same_as<const plane_reader*>;
 };
 
 }  // namespace asperity

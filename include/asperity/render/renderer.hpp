@@ -15,7 +15,6 @@
 #include "asperity/render/collision_finder.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/render/force_model.hpp"
-#include "asperity/render/plane_reader.hpp"
 #include "asperity/render/plane_source.hpp"
 #include "asperity/render/support_plane.hpp"
 

@@ -1,6 +1,5 @@
-// Planes read again between two contacts: exact where a plane alone is wrong, and a slow contact loop feels like a fast one.
-#include "asperity/control/local_model.hpp"
-
+// Planes read again between two contacts: exact where a plane alone is wrong, and a slow contact loop feels like a fast
+// one.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "asperity/control/carried_contact.hpp"
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
 #include "support/extent.hpp"
