@@ -124,16 +124,17 @@ class probe_motion {
 
   /// What a contact pushes with at the probe's pose, as far as the coupling will come to feel it: the linear wrench, or
   /// the wrench with which the coupling holds a resting probe that the planes have pushed out.
-  /// @param ways of the moving bodies in the next period: the planes are taken where it begins
-  [[nodiscard]] wrench push_of(const linear_contact& contact, std::span<const body_way> ways = {}) const noexcept {
+  /// @param ways of the moving bodies in the next period: the planes are taken where it begins, and read again there
+  [[nodiscard]] wrench push_of(const linear_contact& contact, std::span<const body_way> ways = {}) noexcept {
     if (contact.planes.empty()) return evaluate(contact, probe_.state().T_wc).on_probe_w;
     mat6 springs;
     for (std::size_t i = 0; i < 6; ++i) {
       springs(i, i) = i < 3 ? coupling_.stiffness_n_per_m() : coupling_.stiffness_n_m_per_rad();
     }
     const vec6 moved = pose_difference(probe_.state().T_wc, contact.T_wc);
-    const carried_contact carried(contact, contact.planes, ways);
-    if (!carried.moves()) return balance_of(springs, {}, contact.planes, moved, laws_).on_probe_w;
+    const support_planes& read = local_.planes_of(contact, ways, probe_.state().T_wc);
+    const carried_contact carried(contact, read, ways);
+    if (!carried.moves()) return balance_of(springs, {}, read, moved, laws_).on_probe_w;
     support_planes planes;
     body_velocities none;
     carried.at(probe_.state().T_wc, 0.0, 0.0, planes, none);

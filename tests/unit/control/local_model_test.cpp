@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "asperity/control/carried_contact.hpp"
+#include "asperity/control/probe_motion.hpp"
 #include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_device.hpp"
 #include "support/extent.hpp"
@@ -90,6 +91,36 @@ TEST(local_model, is_exact_where_the_probe_is) {
     unread_off_m = std::max(unread_off_m, std::fabs(depth_of(contact.planes) - truth_m));
   }
   EXPECT_GT(unread_off_m, 1e-4);
+}
+
+// A contact that comes late is no surprise where the old one, read again, pushes as it does.
+TEST(local_model, makes_no_surprise_of_a_wave) {
+  drawn d(seed_of(fresh_seed("local_model.makes_no_surprise_of_a_wave", "200 contacts"), "late"));
+  double unread_off_n = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    wavy_reader reader;
+    reader.of = wavy(0);
+    const auto contact_at = [&](const pose& T_wc) {
+      linear_contact out;
+      out.T_wc = T_wc;
+      static_cast<void>(out.planes.push_back(reader.plane(T_wc, {})));
+      out.reader = &reader;
+      static_cast<void>(out.places.push_back({0, {}, 0}));
+      return out;
+    };
+    const pose now_T_wc{exp_rotation(d.inside(1.0)), {d.between(-1e-3, 1e-3), 0.0, d.between(-2e-4, 1e-4)}};
+    const pose then_T_wc{now_T_wc.rotation, now_T_wc.position + d.inside(1e-3)};
+    const linear_contact late = contact_at(then_T_wc), now = contact_at(now_T_wc);
+    for (const bool reads : {true, false}) {
+      probe_motion motion({}, {}, contact_laws{}, 8, {}, reads);
+      motion.place(now_T_wc);
+      const wrench before = motion.push_of(late);
+      const double off_n = glm::length(motion.push_of(now).force - before.force);
+      if (reads) EXPECT_LT(off_n, 1e-9) << i;
+      if (!reads) unread_off_n = std::max(unread_off_n, off_n);
+    }
+  }
+  EXPECT_GT(unread_off_n, 0.1);
 }
 
 TEST(local_model, leaves_a_contact_alone_that_nobody_can_read) {
