@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "asperity/core/memory.hpp"
 #include "planes/facing.hpp"
@@ -47,7 +48,8 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       branches_(std::move(branches)),
       team_(std::move(team)),
       materials_(std::make_unique<plane_materials>(of, most)),
-      reader_(std::make_unique<surface_reader>(bodies_, centre_of_mass_a_, facing::sinking_m(of))),
+      reader_(std::make_unique<surface_reader>(bodies_, centre_of_mass_a_,
+                                               std::vector<double>(of.fixed.size(), facing::sinking_m(of)))),
       asked_at_(std::make_unique<vec6>()) {
   for (way& w : ways_) w.sinking_m = facing::sinking_m(of);
   reserve(most);
@@ -88,7 +90,9 @@ plane_depth::plane_depth(plane_depth&&) noexcept = default;
 plane_depth& plane_depth::operator=(plane_depth&&) noexcept = default;
 plane_depth::~plane_depth() = default;
 
-const plane_reader* plane_depth::reader() const noexcept { return reader_.get(); }
+const plane_reader* plane_depth::reader() const noexcept {
+  return placed_ != nullptr ? placed_->reader.get() : reader_.get();
+}
 const placed_scene* plane_depth::placed() const noexcept { return placed_; }
 
 status plane_depth::measure(const scene_pose& at, const near_samples& found, std::span<near_plane> out) noexcept {
@@ -306,9 +310,9 @@ void plane_depth::keep_what_matters(const near_patch& patch, const leaf_reader& 
 std::size_t plane_depth::heap_bytes() const noexcept {
   return asperity::heap_bytes(reported_, order_, has_plane_, ways_, parts_) + sizeof(plane_watch) +
          watch_->heap_bytes() + sizeof(plane_materials) + materials_->heap_bytes() + sizeof(first_met) +
-         sizeof(known_depths) + sizeof(vec6) + (reader_ ? sizeof(surface_reader) : 0) + known_->heap_bytes() +
-         (branches_ ? sizeof(known_branches) + branches_->heap_bytes() : 0) + sizeof(field_scene) +
-         bodies_->heap_bytes();
+         sizeof(known_depths) + sizeof(vec6) + (reader_ ? sizeof(surface_reader) + reader_->heap_bytes() : 0) +
+         known_->heap_bytes() + (branches_ ? sizeof(known_branches) + branches_->heap_bytes() : 0) +
+         sizeof(field_scene) + bodies_->heap_bytes();
 }
 
 }  // namespace asperity

@@ -9,8 +9,10 @@
 #include "asperity/planes/plane_finder.hpp"
 #include "model/material_places.hpp"
 #include "planes/body_tree.hpp"
+#include "planes/facing.hpp"
 #include "planes/known_branches.hpp"
 #include "planes/renderer_team.hpp"
+#include "planes/surface_reader.hpp"
 
 namespace asperity {
 namespace {
@@ -191,6 +193,7 @@ std::shared_ptr<const plane_scene> scene_editor::prepare() {
   fields->fixed.resize(n);
   std::vector<body_tree::sphere> spheres;
   spheres.reserve(n);
+  std::vector<double> sinking_m(n);
   for (std::uint32_t b = 0; b < n; ++b) {
     const slot& s = slots_[b];
     out->since[b] = s.since;
@@ -201,9 +204,11 @@ std::shared_ptr<const plane_scene> scene_editor::prepare() {
     out->of[b] = s.facts;
     out->materials[b + 1] = s.materials;
     fields->fixed[b] = s.field;
+    sinking_m[b] = facing::sinking_m(s.facts.smallest_m);
     spheres.push_back({b, s.T_wb * s.facts.centre_b, s.facts.radius_m});
   }
   out->fields = std::move(fields);
+  out->reader = std::make_shared<const surface_reader>(out->fields, probe_->mass.centre_of_mass, std::move(sinking_m));
   out->tree = std::make_shared<const body_tree>(std::move(spheres));
   return out;
 }

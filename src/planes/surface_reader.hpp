@@ -1,13 +1,16 @@
 // What has become of support planes that stand for samples of depth fields.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
+#include "asperity/core/memory.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
@@ -17,15 +20,18 @@
 
 namespace asperity {
 
-/// Reads samples of a scene that never changes, as plane_depth reads them.
+/// Reads samples of a scene, or of one version of it, as plane_depth reads them.
 class surface_reader final : public plane_reader {
  public:
-  /// @param centre_of_mass_a of the probe   @param sinking_m of a sample that looks away, see plane_depth
-  surface_reader(std::shared_ptr<const field_scene> bodies, const vec3& centre_of_mass_a, double sinking_m) noexcept
-      : bodies_(std::move(bodies)), centre_of_mass_a_(centre_of_mass_a), sinking_m_(sinking_m) {}
+  /// @param centre_of_mass_a of the probe
+  /// @param sinking_m one per fixed body, of a sample that looks away; see plane_depth
+  surface_reader(std::shared_ptr<const field_scene> bodies, const vec3& centre_of_mass_a,
+                 std::vector<double> sinking_m) noexcept
+      : bodies_(std::move(bodies)), centre_of_mass_a_(centre_of_mass_a), sinking_m_(std::move(sinking_m)) {}
 
   void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
             std::span<support_plane> planes) const noexcept override {
+    if (body >= bodies_->fixed.size() || !bodies_->fixed[body]) return;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[body];
     const pose T_wa = T_wc * pose{quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a_};
     depth_work unused;
@@ -35,9 +41,9 @@ class surface_reader final : public plane_reader {
       const sample_number number = sample_number::from(p.sample);
       std::optional<leaf_reader>& reader = number.of_probe ? of_probe : of_fixed;
       if (!reader && number.of_probe) {
-        reader.emplace(A, T_wa, B, T_wb, body, true, T_wc.position, sinking_m_, nullptr, nullptr, unused);
+        reader.emplace(A, T_wa, B, T_wb, body, true, T_wc.position, sinking_m_[body], nullptr, nullptr, unused);
       } else if (!reader) {
-        reader.emplace(B, T_wb, A, T_wa, body, false, T_wc.position, sinking_m_, nullptr, nullptr, unused);
+        reader.emplace(B, T_wb, A, T_wa, body, false, T_wc.position, sinking_m_[body], nullptr, nullptr, unused);
       }
       const support_plane now = reader->plane_of(number.index);
       if (!(now.depth_m > -std::numeric_limits<double>::infinity()) ||
@@ -51,10 +57,12 @@ class surface_reader final : public plane_reader {
     }
   }
 
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(sinking_m_); }
+
  private:
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
-  double sinking_m_;
+  std::vector<double> sinking_m_;
 };
 
 }  // namespace asperity

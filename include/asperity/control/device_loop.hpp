@@ -156,9 +156,12 @@ class device_loop {
     }
     if (placed_) {
       const pose& T_wc = motion_.probe().state().T_wc;
-      shared_->poses.back() = {T_wc, now_ns, motion_.pull(),
+      shared_->poses.back() = {T_wc,
+                               now_ns,
+                               motion_.pull(),
                                gaps_for(shared_->contacts.front(), T_wc, settings_.least_gaps_m, motion_.body_share()),
-                               bodies_.places()};
+                               bodies_.places(),
+                               shared_->contacts.front().version};
       shared_->poses.publish();
       felt_bodies& felt = shared_->felt.back();
       felt = motion_.felt();

@@ -22,6 +22,9 @@ struct timed_pose {
   coupling_pull pull{};
   double gaps_m = std::numeric_limits<double>::infinity();  ///< gaps that are wanted; see gaps_for()
   body_places bodies{};                                     ///< where the moving bodies are at this time
+  /// Of the contact in use: nothing of a scene before this one is read any more. Whoever reads no planes again says
+  /// nothing.
+  std::uint64_t version = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// How an application shows that it is alive: any of its threads beats, the device thread counts. It carries no time,
@@ -94,9 +97,19 @@ class scene_hand_over {
     // next one: offer() has made it.
     return next_.take([&](scene_ptr&& next) { static_cast<void>(old_.post(exchange(std::move(next)))); });
   }
+  /// The same, but keeps the scene that was replaced for those who still read it. @pre give_back() said that none is kept
+  /// @rt safe
+  template <class Exchange>
+  bool take_and_keep(Exchange&& exchange) noexcept {
+    return next_.take([&](scene_ptr&& next) { kept_ = exchange(std::move(next)); });
+  }
+  /// Gives back the scene that was kept. Contact thread.
+  /// @return whether none is kept any more: false while the editing thread has the one before it to free   @rt safe
+  bool give_back() noexcept { return !kept_ || old_.post(std::move(kept_)); }
 
  private:
   mailbox<scene_ptr> next_, old_;
+  scene_ptr kept_;
 };
 
 /// Which version of a changing scene the hand feels, and since when.

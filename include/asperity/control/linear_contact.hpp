@@ -58,7 +58,7 @@ struct linear_contact {
   std::uint32_t dropped = 0;             ///< contacts that did not fit
   status answer = status::not_ready;     ///< what the renderer answered at q0
   support_planes planes{};               ///< at q0; empty where the renderer knows none or nothing is near
-  const plane_reader* reader = nullptr;  ///< reads them again; null where nobody can, or the scene may change
+  const plane_reader* reader = nullptr;  ///< reads them again, while its scene lives; null where nobody can
   fixed_vector<body_place, most_read_bodies> places{};  ///< where the bodies of these planes were at q0, for the reader
   body_places bodies{};                                 ///< where the moving bodies were at q0; the others stand still
   known_motion known{};               ///< how far the probe may go from q0; unlimited where nobody says

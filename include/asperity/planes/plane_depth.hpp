@@ -100,7 +100,7 @@ class ASPERITY_API plane_depth {
 
   /// The planes of the last measure(), gaps included.
   [[nodiscard]] std::span<const support_plane> support_planes() const noexcept { return reported_; }
-  /// Reads them again elsewhere; null where bodies may change, since one could go while it is read.
+  /// Reads them again elsewhere. Lives as long as this, or the version of the scene that was taken.
   [[nodiscard]] const plane_reader* reader() const noexcept;
   /// How far the probe may move from there: by the reach, or as far as nothing is near.
   [[nodiscard]] known_motion known() const noexcept { return known_motion_; }
@@ -168,8 +168,8 @@ class ASPERITY_API plane_depth {
   std::shared_ptr<tick_team> team_;
   mutable std::vector<plane_list> parts_;  // of planes_at(), of several threads
   std::unique_ptr<plane_materials> materials_;
-  std::unique_ptr<surface_reader> reader_;
-  std::unique_ptr<vec6> asked_at_;  // the last pose of planes_at(), from that of measure()
+  std::unique_ptr<surface_reader> reader_;  // of a scene that never changes
+  std::unique_ptr<vec6> asked_at_;          // the last pose of planes_at(), from that of measure()
   double probe_half_m_ = 0.0;
   pose before_wa_{};         // of the last measure() ...
   bool went_ = false;        // ... where there was one

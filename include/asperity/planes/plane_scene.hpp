@@ -15,6 +15,7 @@ namespace asperity {
 
 class body_tree;
 class material_places;
+class plane_reader;
 
 /// What a plane renderer looks up of a body in every tick. The same for all bodies of one model.
 struct body_facts {
@@ -32,7 +33,8 @@ struct plane_scene : placed_scene {
   std::shared_ptr<const body_tree> tree;  ///< of the bodies where this version has them
   /// Where which material is: of the probe, then one per slot; null without a map.
   std::vector<std::shared_ptr<const material_places>> materials;
-  std::size_t most_balls = 0;  ///< that the sample_tree of a fixed body may have
+  std::shared_ptr<const plane_reader> reader;  ///< of its bodies
+  std::size_t most_balls = 0;                  ///< that the sample_tree of a fixed body may have
 };
 
 /// What a plane renderer looks up of a body. Reads its whole field; not for a tick.

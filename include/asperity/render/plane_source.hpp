@@ -60,7 +60,7 @@ concept reports_planes_nearby = requires(const D& depth, const scene_pose& at, c
 /// between two contacts is the surface and not the plane that the older contact had of it.
 ///
 /// It refers to the bodies of the renderer that has it, and to nothing that a tick changes: any thread may ask, while
-/// another one steps the renderer. It lives as long as the renderer.
+/// another one steps the renderer. It lives as long as the renderer, or the version of a scene that changes.
 class plane_reader {
  public:
   /// Brings the planes of one body to where the probe and that body are: depth, gradient, direction and point. A plane
@@ -79,7 +79,7 @@ class plane_reader {
   ~plane_reader() = default;
 };
 
-/// A depth backend whose planes can be read again; see plane_depth. Null where its bodies may change.
+/// A depth backend whose planes can be read again; see plane_depth.
 template <class D>
 concept has_plane_reader = requires(const D& depth) {
   { depth.reader() }

@@ -31,7 +31,7 @@ struct tick {
   std::span<const wrench> on_body;     ///< on each fixed body, about its own centre of mass; empty: not known
   std::span<const support_plane> planes;  ///< gaps included; empty where the depth backend knows none
   plane_source planes_near{};             ///< tells the planes of poses near by; empty where the depth backend cannot
-  const plane_reader* reader = nullptr;   ///< reads the planes again; lives as long as the renderer; null: nobody can
+  const plane_reader* reader = nullptr;   ///< reads the planes again; see there how long it lives; null: nobody can
   known_motion known{};                   ///< how far the probe may move on what the planes tell
   tick_flag flags = tick_flag::none;      ///< what the planes do not answer
   depth_work work{};                      ///< what it took

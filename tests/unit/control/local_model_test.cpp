@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "asperity/control/carried_contact.hpp"
@@ -116,8 +118,11 @@ TEST(local_model, makes_no_surprise_of_a_wave) {
       motion.place(now_T_wc);
       const wrench before = motion.push_of(late);
       const double off_n = glm::length(motion.push_of(now).force - before.force);
-      if (reads) EXPECT_LT(off_n, 1e-9) << i;
-      if (!reads) unread_off_n = std::max(unread_off_n, off_n);
+      if (reads) {
+        EXPECT_LT(off_n, 1e-9) << i;
+      } else {
+        unread_off_n = std::max(unread_off_n, off_n);
+      }
     }
   }
   EXPECT_GT(unread_off_n, 0.1);
@@ -132,6 +137,80 @@ TEST(local_model, leaves_a_contact_alone_that_nobody_can_read) {
   contact.reader = &reader;
   contact.planes.clear();
   EXPECT_EQ(&model.planes_of(contact, {}, {}), &contact.planes);
+}
+
+// A renderer of the wavy wall in a scene that changes.
+struct versioned_wall {
+  using placed_type = placed_scene;
+  std::shared_ptr<const placed_scene> now;
+  wavy_reader reader{};
+  support_plane plane{};
+
+  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
+    out = {};
+    plane = reader.plane(at.T_wa, at.T_wb[0]);
+    out.planes = {&plane, 1};
+    out.reader = &reader;
+    return status::ok;
+  }
+  [[nodiscard]] std::shared_ptr<const placed_scene> take(std::shared_ptr<const placed_scene> next) noexcept {
+    return std::exchange(now, std::move(next));
+  }
+  [[nodiscard]] const placed_scene* placed() const noexcept { return now.get(); }
+};
+
+std::shared_ptr<const placed_scene> version_of_a_scene(std::uint64_t version) {
+  auto out = std::make_shared<placed_scene>();
+  out->version = version;
+  out->bodies.fixed.resize(1);
+  out->T_wb.resize(1);
+  out->generation = {1};
+  out->since = {1};
+  out->surfaces = surface_pairs(1);
+  return out;
+}
+
+// The device thread reads the bodies of the contact that it uses, so their scene must not be freed before.
+TEST(local_model, keeps_a_scene_that_is_still_read) {
+  exchange shared;
+  std::weak_ptr<const placed_scene> first;
+  contact_loop<versioned_wall> loop = [&] {
+    const auto scene = version_of_a_scene(1);
+    first = scene;
+    return contact_loop<versioned_wall>({scene, {}, {}}, {{pose{}}, vec3(0.0)}, shared);
+  }();
+  std::int64_t now_ns = 0;
+  const auto ticks_with_the_device_at = [&](std::uint64_t version) {
+    for (int i = 0; i < 3; ++i) {
+      shared.poses.back() = {.time_ns = ++now_ns, .version = version};
+      shared.poses.publish();
+      EXPECT_EQ(loop.tick(now_ns), status::ok);
+    }
+    loop.scenes().collect();
+  };
+  ticks_with_the_device_at(0);  // it has no contact yet
+  ASSERT_TRUE(loop.scenes().offer(version_of_a_scene(2)));
+  ticks_with_the_device_at(0);
+  EXPECT_TRUE(loop.scenes().pending());
+  ticks_with_the_device_at(1);
+  EXPECT_FALSE(loop.scenes().pending());
+  EXPECT_EQ(loop.renderer().now->version, 2U);
+  ticks_with_the_device_at(1);
+  EXPECT_FALSE(first.expired()) << "freed while the device thread reads it";
+  ticks_with_the_device_at(2);
+  EXPECT_TRUE(first.expired()) << "kept for nobody";
+  // One change after the other goes through.
+  for (std::uint64_t v = 3; v < 8; ++v) {
+    ASSERT_TRUE(loop.scenes().offer(version_of_a_scene(v))) << v;
+    ticks_with_the_device_at(v - 1);
+    EXPECT_EQ(loop.renderer().now->version, v);
+  }
+  // A device thread of somebody else, which reads nothing again and says nothing, keeps nothing.
+  ASSERT_TRUE(loop.scenes().offer(version_of_a_scene(8)));
+  const std::weak_ptr<const placed_scene> seventh = loop.renderer().now;
+  ticks_with_the_device_at(timed_pose{}.version);
+  ticks_with_the_device_at(timed_pose{}.version);  // one is freed at a time
+  EXPECT_TRUE(seventh.expired());
 }
 
 // A renderer of one point of the probe over the wavy wall.
