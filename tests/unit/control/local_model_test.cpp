@@ -264,6 +264,7 @@ double rms_off(std::span<const vec3> a, std::span<const vec3> b, std::size_t fro
 
 TEST(local_model, makes_a_slow_contact_loop_feel_like_a_fast_one) {
   drawn d(seed_of(fresh_seed("local_model.makes_a_slow_contact_loop_feel_like_a_fast_one", "8 hands"), "hands"));
+  double unread_n2 = 0.0, read_n2 = 0.0;
   for (int i = 0; i < extent(8, 60); ++i) {
     simulated_settings hand;
     hand.seed = d.bits();
@@ -281,9 +282,12 @@ TEST(local_model, makes_a_slow_contact_loop_feel_like_a_fast_one) {
       const double read_n = rms_off(scrubbed(hand, 1'000'000, contact_ns, true, seconds), best, 500);
       std::printf("  hand %d, contacts each %.1f ms: off by %.1f mN, %.1f mN without\n", i,
                   1e-6 * static_cast<double>(contact_ns), 1e3 * read_n, 1e3 * unread_n);
-      EXPECT_LT(read_n, 0.6 * unread_n) << i;
+      unread_n2 += unread_n * unread_n;
+      read_n2 += read_n * read_n;
     }
   }
+  // Of all hands together: a slow one may hardly have a difference to make up for.
+  EXPECT_LT(std::sqrt(read_n2), 0.5 * std::sqrt(unread_n2));
 }
 
 }  // namespace
