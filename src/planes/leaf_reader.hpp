@@ -59,6 +59,15 @@ class leaf_reader {
         materials_y_(of_y),
         work_(&work) {}
 
+  /// Of the probe A's samples in B's field, or of B's in A's; the rest as above.
+  [[nodiscard]] static leaf_reader between(const field_body& a, const pose& T_wa, const field_body& b, const pose& T_wb,
+                                           std::uint32_t body, bool of_probe, const vec3& c_a_w, double sinking_m,
+                                           const material_places* of_a, const material_places* of_b,
+                                           depth_work& work) noexcept {
+    return of_probe ? leaf_reader(a, T_wa, b, T_wb, body, true, c_a_w, sinking_m, of_a, of_b, work)
+                    : leaf_reader(b, T_wb, a, T_wa, body, false, c_a_w, sinking_m, of_b, of_a, work);
+  }
+
   [[nodiscard]] bool reads(const near_patch& patch) const noexcept {
     return patch.body == body_ && patch.of_probe == of_probe_;
   }

@@ -27,12 +27,8 @@ class patch_readers {
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[patch.body];
     const pose &T_wa = at_->T_wa, &T_wb = at_->T_wb[patch.body];
     const material_places *of_a = materials_->of_probe(), *of_b = materials_->of_body(patch.body);
-    if (patch.of_probe) {
-      out.emplace(A, T_wa, B, T_wb, patch.body, true, c_a_w_, sinking_m, of_a, of_b, work_);
-    } else {
-      out.emplace(B, T_wb, A, T_wa, patch.body, false, c_a_w_, sinking_m, of_b, of_a, work_);
-    }
-    return *out;
+    return out.emplace(
+        leaf_reader::between(A, T_wa, B, T_wb, patch.body, patch.of_probe, c_a_w_, sinking_m, of_a, of_b, work_));
   }
   [[nodiscard]] const depth_work& work() const noexcept { return work_; }
 

@@ -40,10 +40,9 @@ class surface_reader final : public plane_reader {
       if (p.body != body || p.sample == 0) continue;
       const sample_number number = sample_number::from(p.sample);
       std::optional<leaf_reader>& reader = number.of_probe ? of_probe : of_fixed;
-      if (!reader && number.of_probe) {
-        reader.emplace(A, T_wa, B, T_wb, body, true, T_wc.position, sinking_m_[body], nullptr, nullptr, unused);
-      } else if (!reader) {
-        reader.emplace(B, T_wb, A, T_wa, body, false, T_wc.position, sinking_m_[body], nullptr, nullptr, unused);
+      if (!reader) {
+        reader.emplace(leaf_reader::between(A, T_wa, B, T_wb, body, number.of_probe, T_wc.position, sinking_m_[body],
+                                            nullptr, nullptr, unused));
       }
       const support_plane now = reader->plane_of(number.index);
       if (!(now.depth_m > -std::numeric_limits<double>::infinity()) ||

@@ -34,10 +34,8 @@ class local_model {
     planes_ = contact.planes;
     for (const body_place& then : contact.places) {
       // A depth depends on the bodies' pose to each other: the body stays where it was, and the probe is moved.
-      const auto way = std::find_if(ways.begin(), ways.end(), [&](const body_way& w) {
-        return w.body == then.body && w.generation == then.generation;
-      });
-      const pose there_T_wc = way == ways.end() ? T_wc : then.T_wb * inverse(way->after(0.0)) * T_wc;
+      const body_way* const way = find_way(ways, then);
+      const pose there_T_wc = way == nullptr ? T_wc : then.T_wb * inverse(way->after(0.0)) * T_wc;
       const vec6 moved = pose_difference(there_T_wc, contact.T_wc);
       for (support_plane& p : planes_) {
         if (p.body == then.body) p.depth_m += dot(p.gradient, moved);
@@ -94,7 +92,7 @@ class carried_contact {
     velocities.clear();
     const vec6 moved = pose_difference(T_wc, contact_->T_wc);
     for (const body_place& then : contact_->bodies) {
-      const body_way* const way = way_of(then);
+      const body_way* const way = find_way(ways_, then);
       if (way == nullptr) continue;
       const pose T_wb = way->after(part);
       vec6 v;
@@ -133,7 +131,7 @@ class carried_contact {
     double most = 0.0;
     if (!contact_->known.is_limited()) return most;
     for (const body_place& then : contact_->bodies) {
-      const body_way* const way = way_of(then);
+      const body_way* const way = find_way(ways_, then);
       if (way == nullptr) continue;
       const pose X = way->after(part) * inverse(then.T_wb);
       most = std::max(most, contact_->known.share({X * T_wc.position - T_wc.position, log_rotation(X.rotation)}));
@@ -142,13 +140,6 @@ class carried_contact {
   }
 
  private:
-  [[nodiscard]] const body_way* way_of(const body_place& b) const noexcept {
-    const auto found = std::find_if(ways_.begin(), ways_.end(), [&](const body_way& w) {
-      return w.body == b.body && w.generation == b.generation;
-    });
-    return found == ways_.end() ? nullptr : &*found;
-  }
-
   const linear_contact* contact_;
   const support_planes* planes_;
   std::span<const body_way> ways_;

@@ -115,10 +115,7 @@ class contact_loop {
     linear_contact& out = shared_->contacts.back();
     linearise(last_, answer, at, selection_, rest_, out);
     if (scene != nullptr) tell(*scene, there, out);
-    if (out.reader != nullptr) {
-      tell_places(out);
-      told_reader_ = true;
-    }
+    if (out.reader != nullptr) tell_places(out);
     out.flags = flags_.held(out.flags, at.time_ns);
     pending_ = true;
     ++computed_;
@@ -159,9 +156,9 @@ class contact_loop {
       if (before == nullptr) return;
       const std::uint64_t version = before->version;
       // The device thread reads the bodies of its contact. Until it uses one of this version, the one before lives on.
-      const bool may_be_read = told_reader_ && shared_->poses.front().version < version;
+      const bool may_be_read = shared_->poses.front().version < version;
       if (may_be_read || !scenes_.give_back()) return;
-      if (!scenes_.take_and_keep([&](auto next) noexcept { return renderer_.take(std::move(next)); })) return;
+      if (!scenes_.take([&](auto next) noexcept { return renderer_.take(std::move(next)); })) return;
       const placed_scene& now = *renderer_.placed();
       std::size_t kept = 0;
       for (const std::uint32_t b : moved_) {
@@ -226,7 +223,6 @@ class contact_loop {
   held_flags flags_;
   asperity::tick last_{};
   bool pending_ = false;
-  bool told_reader_ = false;  // a contact has planes that may be read again
   std::uint64_t computed_ = 0;
   std::int64_t computed_at_ns_ = 0;
   fixed_vector<std::uint32_t, 2 * most_moving_bodies> moved_;  // not where the scene has them

@@ -89,21 +89,14 @@ class scene_hand_over {
     old_.take([](scene_ptr&& old) { const scene_ptr freed = std::move(old); });
   }
 
-  /// Gives the scene that waits to exchange(next), which returns the one that it replaces. Contact thread.
-  /// @return whether there was one   @rt safe
+  /// Gives the scene that waits to exchange(next), which returns the one that it replaces. That one is kept for those who
+  /// still read it, until give_back(). Contact thread.
+  /// @pre give_back() said that none is kept   @return whether there was one   @rt safe
   template <class Exchange>
   bool take(Exchange&& exchange) noexcept {
-    // A scene is pending until the one before has been given back. So there is room for that one whenever there is a
-    // next one: offer() has made it.
-    return next_.take([&](scene_ptr&& next) { static_cast<void>(old_.post(exchange(std::move(next)))); });
-  }
-  /// The same, but keeps the scene that was replaced for those who still read it. @pre give_back() said that none is kept
-  /// @rt safe
-  template <class Exchange>
-  bool take_and_keep(Exchange&& exchange) noexcept {
     return next_.take([&](scene_ptr&& next) { kept_ = exchange(std::move(next)); });
   }
-  /// Gives back the scene that was kept. Contact thread.
+  /// Gives back the scene that was kept. offer() frees the one before it, so there is room in the end. Contact thread.
   /// @return whether none is kept any more: false while the editing thread has the one before it to free   @rt safe
   bool give_back() noexcept { return !kept_ || old_.post(std::move(kept_)); }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/math.hpp"
@@ -55,6 +56,14 @@ struct body_way {
   }
 };
 using body_ways = fixed_vector<body_way, most_moving_bodies>;
+
+/// The way of the body that was there; null where it does not move. @rt safe
+[[nodiscard]] inline const body_way* find_way(std::span<const body_way> ways, const body_place& then) noexcept {
+  const auto found = std::find_if(ways.begin(), ways.end(), [&](const body_way& w) {
+    return w.body == then.body && w.generation == then.generation;
+  });
+  return found == ways.end() ? nullptr : &*found;
+}
 
 /// The way that a body goes in dt_s seconds. @rt safe
 [[nodiscard]] inline body_way way_of(const body_motion& m, double dt_s) noexcept {

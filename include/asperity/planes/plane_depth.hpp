@@ -181,7 +181,7 @@ class ASPERITY_API plane_depth {
 
 static_assert(depth_backend<plane_depth>);
 static_assert(reports_planes_nearby<plane_depth>);
-static_assert(has_plane_reader<plane_depth>);
+static_assert(reports_plane_reader<plane_depth>);
 static_assert(reports_known_motion<plane_depth>);
 static_assert(reports_work<plane_depth>);
 

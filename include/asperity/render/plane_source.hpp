@@ -81,7 +81,7 @@ class plane_reader {
 
 /// A depth backend whose planes can be read again; see plane_depth.
 template <class D>
-concept has_plane_reader = requires(const D& depth) {
+concept reports_plane_reader = requires(const D& depth) {
   { depth.reader() }
   noexcept->std::same_as<const plane_reader*>;
 };

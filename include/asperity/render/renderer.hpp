@@ -158,7 +158,7 @@ class basic_renderer {
     out.centre_of_mass_w = centre_of_mass_w(scene(), at.T_wa);
     out.on_body = detail::as_felt_by_bodies(report.by_body, out.centre_of_mass_w, scene(), at);
     out.dropped_contacts = found_.dropped();
-    if constexpr (has_plane_reader<Depth>) out.reader = depth_.reader();
+    if constexpr (reports_plane_reader<Depth>) out.reader = depth_.reader();
     if constexpr (reports_known_motion<Depth>) out.known = depth_.known();
     if constexpr (reports_tick_flags<Depth>) out.flags = depth_.flags();
     if constexpr (reports_work<Depth>) out.work = depth_.work();

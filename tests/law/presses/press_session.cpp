@@ -23,26 +23,33 @@ struct keep_last {
 
 }  // namespace
 
-session_result press_session(render_function render, const press_touch& touch, const vec3& centre_of_mass_a,
-                             const session_rules& rules, std::uint64_t seed, exit_search& originals) {
+simulated_settings hand_at(const press_touch& touch, const vec3& centre_of_mass_a, double before_m, double beyond_m,
+                           double approach_s, double strongest_n) {
   simulated_settings made;
-  made.seed = seed;
-  made.hand = firm_hand();
-  made.capabilities.peak_force_n = 2.0 * rules.hand_n;
-  made.capabilities.continuous_force_n = 2.0 * rules.hand_n;
+  made.capabilities.peak_force_n = strongest_n;
+  made.capabilities.continuous_force_n = strongest_n;
   made.capabilities.workspace_low_d = vec3(-1.0);
   made.capabilities.workspace_high_d = vec3(1.0);
-  control_settings control;
-  control.map.T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a};
   motion_settings& m = made.motion;
   m.kind = motion_kind::press;
   m.T_dh = touch.touching_T_wa * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a};
-  m.T_dh.position -= rules.before_m * touch.way_w;
+  m.T_dh.position -= before_m * touch.way_w;
   m.direction_d = -touch.out_w;
-  m.depth_m =
-      rules.before_m + rules.hand_n * (1.0 / made.hand.stiffness_n_per_m + 1.0 / control.coupling.stiffness_n_per_m +
-                                       1.0 / rules.stiffness_n_per_m);
-  m.approach_s = rules.ramp_s;
+  m.depth_m = before_m + beyond_m;
+  m.approach_s = approach_s;
+  return made;
+}
+
+session_result press_session(render_function render, const press_touch& touch, const vec3& centre_of_mass_a,
+                             const session_rules& rules, std::uint64_t seed, exit_search& originals) {
+  control_settings control;
+  control.map.T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a};
+  const double beyond_m = rules.hand_n * (1.0 / firm_hand().stiffness_n_per_m +
+                                          1.0 / control.coupling.stiffness_n_per_m + 1.0 / rules.stiffness_n_per_m);
+  simulated_settings made =
+      hand_at(touch, centre_of_mass_a, rules.before_m, beyond_m, rules.ramp_s, 2.0 * rules.hand_n);
+  made.seed = seed;
+  made.hand = firm_hand();
 
   session_result out;
   simulated_device dev(made);

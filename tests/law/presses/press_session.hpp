@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "asperity/device/simulated/simulated_settings.hpp"
 #include "asperity/model/scene.hpp"
 #include "asperity/render/renderer.hpp"
 #include "law/presses/press_touch.hpp"
@@ -21,6 +22,11 @@ struct rendered {
   const render_function* render;
   [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept { return (*render)(at, out); }
 };
+
+/// A hand that comes from before_m back along a touch's approach and goes beyond_m into the press, in approach_s. Device
+/// and workspace leave room; what else the hand does is the caller's.
+[[nodiscard]] simulated_settings hand_at(const press_touch& touch, const vec3& centre_of_mass_a, double before_m,
+                                         double beyond_m, double approach_s, double strongest_n);
 
 /// How a session presses. A firm hand pulls the handle along the touch's direction, from just before the touch, until
 /// hand and coupling would hold `hand_n` against a wall.

@@ -50,24 +50,13 @@ struct listen {
 rest_result rest_session(render_function render, const press_touch& touch, const vec3& centre_of_mass_a,
                          const rest_rules& rules, std::uint64_t seed) {
   constexpr double before_m = 2e-4, strong_n = 40.0;
-  simulated_settings made;
+  simulated_settings made = hand_at(touch, centre_of_mass_a, before_m, rules.way_m, rules.ramp_s, strong_n);
   made.seed = seed;
   made.hand = hand_of(rules.grip);
-  made.capabilities.peak_force_n = strong_n;
-  made.capabilities.continuous_force_n = strong_n;
-  made.capabilities.workspace_low_d = vec3(-1.0);
-  made.capabilities.workspace_high_d = vec3(1.0);
   control_settings control;
   control.map.T_ha = {quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a};
   control.guard.enabled = rules.guard;
   control.contact.stiffness_n_per_m = rules.plane_stiffness_n_per_m;
-  motion_settings& m = made.motion;
-  m.kind = motion_kind::press;
-  m.T_dh = touch.touching_T_wa * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a};
-  m.T_dh.position -= before_m * touch.way_w;
-  m.direction_d = -touch.out_w;
-  m.depth_m = before_m + rules.way_m;
-  m.approach_s = rules.ramp_s;
 
   rest_result out;
   out.rules = rules;

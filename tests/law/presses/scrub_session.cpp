@@ -34,21 +34,12 @@ struct keeps_ticks {
 simulated_settings hand_for(const press_touch& touch, const vec3& centre_of_mass_a, const scrub_rules& rules,
                             std::uint64_t seed) {
   constexpr double before_m = 2e-4, strong_n = 40.0;
-  simulated_settings made;
+  simulated_settings made = hand_at(touch, centre_of_mass_a, before_m, rules.way_m, rules.begins_s, strong_n);
   made.seed = seed;
-  made.capabilities.peak_force_n = made.capabilities.continuous_force_n = strong_n;
-  made.capabilities.workspace_low_d = vec3(-1.0);
-  made.capabilities.workspace_high_d = vec3(1.0);
   motion_settings& m = made.motion;
   m.kind = motion_kind::scrub;
-  m.T_dh = touch.touching_T_wa * pose{quat(1.0, 0.0, 0.0, 0.0), centre_of_mass_a};
-  m.T_dh.position -= before_m * touch.way_w;
-  m.direction_d = -touch.out_w;
-  m.depth_m = before_m + rules.way_m;
-  m.approach_s = rules.begins_s;
-  const vec3& n = touch.out_w;
-  const vec3 u = glm::normalize(glm::cross(n, std::fabs(n.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0)));
-  m.sideways_d = std::cos(rules.across_rad) * u + std::sin(rules.across_rad) * glm::cross(n, u);
+  const vec3 u = any_orthogonal(touch.out_w);
+  m.sideways_d = std::cos(rules.across_rad) * u + std::sin(rules.across_rad) * glm::cross(touch.out_w, u);
   m.amplitude_m = rules.amplitude_m;
   m.frequency_hz = rules.frequency_hz;
   return made;

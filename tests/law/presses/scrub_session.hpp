@@ -27,7 +27,8 @@ struct scrub_rules {
 inline constexpr std::array<double, 3> scrub_rates_hz{1000.0, 400.0, 200.0};
 
 /// How far the planes that held the probe were from the surface, m: its depth at the end of each device tick, as a tick
-/// of the renderer there tells it, less the depth that the planes in use had. Ticks in which something pressed.
+/// of the renderer there tells it, less the depth that the planes in use had when its last substep began. Ticks in which
+/// something pressed.
 struct plane_error {
   double rms_m = 0.0, p99_m = 0.0;
   int ticks = 0;

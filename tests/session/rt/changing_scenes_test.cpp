@@ -108,8 +108,9 @@ TEST(changing_scenes, each_comes_once_and_goes_back) {
     std::uint64_t last = 0;
     while (runs.load(std::memory_order_relaxed)) {
       trap([&] {
-        if (!way.take(
-                [&](std::shared_ptr<const numbered> next) noexcept { return std::exchange(used, std::move(next)); })) {
+        if (!way.give_back() || !way.take([&](std::shared_ptr<const numbered> next) noexcept {
+              return std::exchange(used, std::move(next));
+            })) {
           return;
         }
         ++taken;

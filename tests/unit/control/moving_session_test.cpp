@@ -163,13 +163,6 @@ moving_case pressed(double newtons, double device_hz, double contact_hz) {
   return c;
 }
 
-double rms_difference(const std::vector<vec3>& a, const std::vector<vec3>& b) {
-  double sum = 0.0;
-  const std::size_t n = std::min(a.size(), b.size());
-  for (std::size_t i = 0; i < n; ++i) sum += glm::dot(a[i] - b[i], a[i] - b[i]);
-  return n == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(sum / static_cast<double>(n));
-}
-
 // A plane of a body that moves has the depth that the pair has in its new pose: computed here in the body's own frame.
 TEST(carried_contact, is_exact_for_planes) {
   drawn d(seed_of(fresh_seed("carried_contact.is_exact_for_planes", "2000 planes"), "planes"));

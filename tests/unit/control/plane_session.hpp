@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -68,6 +69,14 @@ inline simulated_settings hand_that_presses(double newtons, const vec3& touch_d,
   c.motion.depth_m = 0.002 + newtons / 600.0 + newtons / coupling_n_per_m;
   c.motion.approach_s = 0.3;
   return c;
+}
+
+/// Of what two sessions told, as far as both go; infinite where there is nothing to compare.
+inline double rms_difference(const std::vector<vec3>& a, const std::vector<vec3>& b) {
+  double sum = 0.0;
+  const std::size_t n = std::min(a.size(), b.size());
+  for (std::size_t i = 0; i < n; ++i) sum += glm::dot(a[i] - b[i], a[i] - b[i]);
+  return n == 0 ? std::numeric_limits<double>::infinity() : std::sqrt(sum / static_cast<double>(n));
 }
 
 constexpr int hand_kinds = 3;

@@ -131,8 +131,10 @@ TEST(SceneEditor, WaitsForTheLastChangeToBeTaken) {
   scene_hand_over<plane_scene> way;
   std::shared_ptr<const plane_scene> used;
   const auto take = [&] {
-    return way.take(
+    const bool taken = way.take(
         [&](std::shared_ptr<const plane_scene> next) noexcept { return std::exchange(used, std::move(next)); });
+    EXPECT_TRUE(way.give_back());
+    return taken;
   };
   EXPECT_FALSE(take());
   EXPECT_EQ(editor.commit(way).value(), 1U);
@@ -165,6 +167,7 @@ TEST(SceneEditor, WaitsForTheLastChangeToBeTaken) {
     EXPECT_FALSE(editor.commit(way));
     return std::exchange(used, std::move(next));
   }));
+  EXPECT_TRUE(way.give_back());
   EXPECT_EQ(editor.commit(way).value(), 5U);
   EXPECT_TRUE(take());
 }
