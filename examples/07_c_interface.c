@@ -13,7 +13,12 @@ int main(int argc, char** argv) {
   asperity_model *probe = NULL, *body = NULL;
   asperity_renderer* renderer = NULL;
   asperity_tool* tool = NULL;
-  asperity_tool_settings settings = {sizeof settings, 0, 1e-3, 0, 0, 0, 0, 0, 0.4, 0.3, 5.0, 0.2, {0}};
+  const asperity_tool_settings settings = {.size = sizeof settings,
+                                           .period_s = 1e-3,
+                                           .static_friction = 0.4,
+                                           .dynamic_friction = 0.3,
+                                           .most_force_n = 5.0,
+                                           .most_torque_n_m = 0.2};
   asperity_touch touch = {sizeof touch, 0, {0}, {0}, 0, 0, 0};
   asperity_felt felt = {sizeof felt, 0, 0, 0, {0}, {0}, {0}, 0};
   const double upright[4] = {0, 0, 0, 1};

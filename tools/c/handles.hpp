@@ -28,10 +28,6 @@ inline constexpr double largest_stiffness = 1e8, largest_friction = 10.0;
 [[nodiscard]] result<scene> scene_of(const asperity_model* probe, const asperity_model* const* fixed,
                                      std::uint32_t count);
 
-/// The gaps that planes report for a loop that needs `wanted_m` of them, as the command has it: a loop below 180 Hz meets
-/// fast touches a little late, one above 3.6 kHz looks further than it has to. 0 is what is usual.
-[[nodiscard]] double plane_reach_m(const scene& bodies, double wanted_m);
-
 /// Deepest contact of a tick, and how many overlap. @rt safe
 struct touch_depth {
   double deepest_m = 0.0;

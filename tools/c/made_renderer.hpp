@@ -16,6 +16,7 @@ struct renderer_wish {
   double reach_m = 0.0;            ///< of planes
   double softness_m = 0.0, sharpness = 0.0;
   std::uint32_t grid = 0;
+  std::uint32_t threads = 1;  ///< of planes
 };
 
 /// @return invalid_argument | bad_mesh | bad_texture

@@ -32,23 +32,9 @@ result<any_renderer> erased(result<Renderer> made) {
   return any_renderer(std::move(made).value());
 }
 
-double smallest_diagonal_m(const scene& bodies) {
-  double out_m = bodies.probe->box.diagonal();
-  for (const model_ptr& b : bodies.fixed) out_m = std::min(out_m, b->box.diagonal());
-  return out_m;
-}
-
 }  // namespace
 
 namespace asperity::c {
-
-double plane_reach_m(const scene& bodies, double wanted_m) {
-  constexpr double most_m = 0.01, least_m = 0.0005;
-  const double usual_m = reach_for(1e-3);
-  if (wanted_m > usual_m) return std::min(most_m, wanted_m);
-  if (wanted_m < usual_m) return std::min(0.1 * smallest_diagonal_m(bodies), std::max(least_m, wanted_m));
-  return 0.0;
-}
 
 result<any_renderer> make_any_renderer(scene bodies, const renderer_wish& wish) {
   const result<void> ok = range_check()
@@ -58,6 +44,8 @@ result<any_renderer> make_any_renderer(scene bodies, const renderer_wish& wish) 
                               .within("softness_m", wish.softness_m, 0.0, 1.0)
                               .within("sharpness", wish.sharpness, 0.0, 1e6)
                               .within("grid", wish.grid, 0.0, 4096.0)
+                              .holds(wish.threads == 1 || wish.formulation == ASPERITY_FORMULATION_PLANES,
+                                     "threads share a tick of support planes: give formulation planes, or threads 1")
                               .done();
   if (!ok) return ok.error();
   const auto stiffness = [&](double usual) { return or_usual(wish.stiffness_n_per_m, usual); };
@@ -74,6 +62,7 @@ result<any_renderer> make_any_renderer(scene bodies, const renderer_wish& wish) 
       plane_renderer_settings s;
       s.springs.stiffness_n_per_m = stiffness(s.springs.stiffness_n_per_m);
       s.reach_m = wish.reach_m;
+      s.threads = wish.threads;
       return erased(make_plane_renderer(std::move(bodies), s));
     }
     case ASPERITY_FORMULATION_WINDOW: {
@@ -111,7 +100,8 @@ std::int32_t asperity_renderer_make(const asperity_model* probe, const asperity_
         .reach_m = s.reach_m,
         .softness_m = s.softness_m,
         .sharpness = s.sharpness,
-        .grid = s.grid};
+        .grid = s.grid,
+        .threads = s.threads == 0 ? 1 : s.threads};
     result<any_renderer> made = make_any_renderer(std::move(*bodies), wish);
     if (!made) return refuse(why, made.error());
     *out = std::make_unique<asperity_renderer>(std::move(*made), fixed_count).release();

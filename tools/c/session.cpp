@@ -8,6 +8,7 @@
 #include "asperity/planes/plane_renderer.hpp"
 #include "c/held_device.hpp"
 #include "c/made_renderer.hpp"
+#include "plane_reach.hpp"
 
 namespace {
 
@@ -107,10 +108,11 @@ result<std::vector<pose>> poses_of(const double* given, std::uint32_t count) {
 
 result<any_renderer> renderer_for(const scene& bodies, const asperity_session_settings& s, const loop_periods& p) {
   const bool on_planes = s.formulation == ASPERITY_FORMULATION_PLANES;
-  renderer_wish wish{.formulation = s.formulation, .period_s = seconds(p.renewal_ns())};
+  renderer_wish wish{
+      .formulation = s.formulation, .period_s = seconds(p.renewal_ns()), .threads = s.threads == 0 ? 1 : s.threads};
   if (on_planes) {
     const double hand_m = reach_for(seconds(p.contact_ns), seconds(p.device_ns));
-    wish.reach_m = plane_reach_m(bodies, std::max(1.0, s.scale) * hand_m);
+    wish.reach_m = command::plane_reach_m(bodies, std::max(1.0, s.scale) * hand_m);
   } else {
     wish.stiffness_n_per_m = s.stiffness_n_per_m;
   }

@@ -9,6 +9,7 @@
 #include "asperity/device/gate_function.hpp"
 #include "asperity/planes/plane_renderer.hpp"
 #include "c/handles.hpp"
+#include "plane_reach.hpp"
 
 namespace {
 
@@ -121,7 +122,8 @@ std::int32_t asperity_tool_make(const asperity_model* probe, const asperity_mode
       if (!ok) return refuse(why, ok.error());
     }
     plane_renderer_settings planes;
-    planes.reach_m = plane_reach_m(*bodies, reach_for(or_usual(s.period_s, 1e-3)));
+    planes.reach_m = command::plane_reach_m(*bodies, reach_for(or_usual(s.period_s, 1e-3)));
+    if (s.threads != 0) planes.threads = s.threads;
     result<plane_renderer> made = make_plane_renderer(std::move(*bodies), planes);
     if (!made) return refuse(why, made.error());
     *out = std::make_unique<asperity_tool>(std::move(*made), inside, effort_limits{s.most_force_n, s.most_torque_n_m},

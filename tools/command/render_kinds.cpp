@@ -7,15 +7,13 @@
 #include "asperity/planes/plane_renderer.hpp"
 #include "asperity/window/window_renderer.hpp"
 #include "exact/exact_renderer.hpp"
+#include "plane_reach.hpp"
+#ifdef ASPERITY_HAS_GL
+#include "window_on_gpu.hpp"
+#endif
 
 namespace asperity::command {
 namespace {
-
-double smallest_diagonal_m(const scene& bodies) {
-  double out_m = bodies.probe->box.diagonal();
-  for (const model_ptr& b : bodies.fixed) out_m = std::min(out_m, b->box.diagonal());
-  return out_m;
-}
 
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
 
@@ -38,13 +36,7 @@ result<any_renderer> make_planes_on_cpu(scene bodies, const render_options& opti
   plane_renderer_settings settings;
   const double reach_m = std::max(1.0, options.motion_scale) *
                          reach_for(seconds(options.periods.contact_ns), seconds(options.periods.device_ns));
-  // A loop below 180 Hz meets fast touches a little late: a longer reach would list whole bodies. One above 3.6 kHz
-  // looks further than it has to, because planes are also asked for where the probe will come to rest.
-  constexpr double most_m = 0.01, least_m = 0.0005;
-  // What is usual fits small bodies by itself.
-  const double usual_m = reach_for(1e-3);
-  if (reach_m > usual_m) settings.reach_m = std::min(most_m, reach_m);
-  if (reach_m < usual_m) settings.reach_m = std::min(0.1 * smallest_diagonal_m(bodies), std::max(least_m, reach_m));
+  settings.reach_m = plane_reach_m(bodies, reach_m);
   settings.threads = options.threads;
   settings.set_up_helper = options.set_up_helper;
   return erased(make_plane_renderer(std::move(bodies), settings));
@@ -60,7 +52,28 @@ result<any_renderer> make_window_with_exact(scene bodies, const render_options&)
   return erased(make_exact_renderer(std::move(bodies)));
 }
 
-#ifndef ASPERITY_HAS_GL
+#ifdef ASPERITY_HAS_GL
+namespace {
+
+result<any_renderer> make_window_with(gpu_depth_maker* make_depth, scene bodies, const render_options& options) {
+  return make_window_on_gpu(std::move(bodies),
+                            {.make_depth = make_depth,
+                             .device = options.gpu.value_or(""),
+                             .fallback = options.fallback,
+                             .instead = "; or use --backend cpu, or --fallback"},
+                            {.depth = grid_settings(options)});
+}
+
+}  // namespace
+
+result<any_renderer> make_window_with_gl_compute(scene bodies, const render_options& options) {
+  return make_window_with(make_gl_compute_depth, std::move(bodies), options);
+}
+
+result<any_renderer> make_window_with_gl_occlusion(scene bodies, const render_options& options) {
+  return make_window_with(make_gl_occlusion_depth, std::move(bodies), options);
+}
+#else
 std::shared_ptr<gpu_use> gpu_use_of(any_renderer&) { return nullptr; }
 #endif
 

@@ -1,12 +1,10 @@
 #include "window_on_gpu.hpp"
 
-#include <memory>
 #include <utility>
 
 #include "asperity/gl/compute_depth.hpp"
 #include "asperity/gl/occlusion_depth.hpp"
 #include "asperity/window/fallback_depth.hpp"
-#include "asperity/window/window_renderer.hpp"
 
 namespace asperity::command {
 namespace {
@@ -47,11 +45,11 @@ struct absent_depth {
   }
 };
 
-result<any_depth> open(const scene& bodies, const render_options& options, const window_depth_settings& settings,
-                       const contact_limits& limits, gpu_depth_maker* make_depth, gpu_use& use) {
-  const result<gl::context_ptr> context = gl::open_context({.device = options.gpu.value_or("")});
+result<any_depth> open(const scene& bodies, const gpu_wish& wish, const window_renderer_settings& settings,
+                       gpu_use& use) {
+  const result<gl::context_ptr> context = gl::open_context({.device = wish.device});
   if (!context) return context.error();
-  result<any_depth> made = make_depth(*context, bodies, settings, limits);
+  result<any_depth> made = wish.make_depth(*context, bodies, settings.depth, settings.limits);
   if (!made) return made.error();
   const gl::context_facts& facts = (*context)->facts();
   use.device = facts.renderer;
@@ -66,24 +64,23 @@ bool is_the_gpu_s(error_code code) { return code == error_code::unsupported || c
 
 }  // namespace
 
-result<any_renderer> make_window_on_gpu(scene bodies, const render_options& options, gpu_depth_maker* make_depth) {
+result<any_renderer> make_window_on_gpu(scene bodies, const gpu_wish& wish, const window_renderer_settings& settings) {
   if (const result<void> ok = check_has_fixed_body(bodies); !ok) return ok.error();
-  const window_renderer_settings settings{.depth = grid_settings(options)};
   result<cpu_depth> cpu = make_cpu_depth(bodies, settings.depth);  // refuses what no backend can use
   if (!cpu) return cpu.error();
   const auto use = std::make_shared<gpu_use>();
-  use->fallback = options.fallback;
-  result<any_depth> gpu = open(bodies, options, settings.depth, settings.limits, make_depth, *use);
-  if (!gpu && !(options.fallback && is_the_gpu_s(gpu.error().code))) {
+  use->fallback = wish.fallback;
+  result<any_depth> gpu = open(bodies, wish, settings, *use);
+  if (!gpu && !(wish.fallback && is_the_gpu_s(gpu.error().code))) {
     error why = gpu.error();
-    if (is_the_gpu_s(why.code)) why.message += "; or use --backend cpu, or --fallback";
+    if (is_the_gpu_s(why.code)) why.message += wish.instead;
     return why;
   }
   if (!gpu) use->problem = gpu.error().message;
   any_depth first = gpu ? std::move(gpu).value() : any_depth(absent_depth{});
   convex_piece_finder finder(bodies, settings.finder);
   const gradient_penalty force(settings.force);
-  if (!options.fallback) {
+  if (!wish.fallback) {
     return any_renderer(
         gpu_alone(std::move(bodies), std::move(finder), {std::move(first), use}, force, settings.limits));
   }
@@ -112,14 +109,6 @@ result<any_depth> make_gl_occlusion_depth(const gl::context_ptr& context, const 
       context, bodies, settings, {.contacts = limits.contacts, .triangles = limits.triangles});
   if (!made) return made.error();
   return any_depth(std::move(made).value());
-}
-
-result<any_renderer> make_window_with_gl_compute(scene bodies, const render_options& options) {
-  return make_window_on_gpu(std::move(bodies), options, make_gl_compute_depth);
-}
-
-result<any_renderer> make_window_with_gl_occlusion(scene bodies, const render_options& options) {
-  return make_window_on_gpu(std::move(bodies), options, make_gl_occlusion_depth);
 }
 
 }  // namespace asperity::command

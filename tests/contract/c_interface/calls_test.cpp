@@ -325,6 +325,11 @@ TEST(c_calls, settings_out_of_range_are_named) {
   }
   refuses_renderer("formulation", [&](auto& s) { s.formulation = 4; });
   refuses_renderer("grid", [&](auto& s) { s.grid = 100'000; });
+  refuses_renderer("formulation planes", [&](auto& s) { s.threads = 2; });
+  refuses_renderer("threads", [&](auto& s) {
+    s.formulation = ASPERITY_FORMULATION_PLANES;
+    s.threads = 17;
+  });
 
   const auto refuses_session = [&](const char* name, const std::function<void(asperity_session_settings&)>& change) {
     asperity_session_settings s = sized<asperity_session_settings>();
@@ -346,6 +351,7 @@ TEST(c_calls, settings_out_of_range_are_named) {
     refuses_session("most_force_n", [&](auto& s) { s.most_force_n = bad; });
     refuses_session("static_friction", [&](auto& s) { s.static_friction = bad; });
   }
+  refuses_session("threads", [&](auto& s) { s.threads = 17; });
   refuses_session("planes", [&](auto& s) {
     s.formulation = ASPERITY_FORMULATION_LEAST_MOTION;
     s.static_friction = 0.3;

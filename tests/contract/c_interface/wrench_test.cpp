@@ -44,9 +44,11 @@ std::vector<pose> drawn_poses(std::uint64_t seed, int count) {
 }
 
 template <class Renderer>
-void expect_same_ticks(const two_models& models, std::uint32_t formulation, Renderer direct) {
+void expect_same_ticks(const two_models& models, std::uint32_t formulation, Renderer direct,
+                       std::uint32_t threads = 0) {
   asperity_renderer_settings settings = sized<asperity_renderer_settings>();
   settings.formulation = formulation;
+  settings.threads = threads;
   const owned_renderer c = models.renderer(&settings);
   const pose T_wb{exp_rotation({0.01, 0.0, 0.3}), {0.002, 0.001, -0.0005}};
   ASSERT_EQ(asperity_renderer_place_body(c.get(), 0, to_seven(T_wb).data()), ASPERITY_STATUS_OK);
@@ -91,6 +93,10 @@ TEST(c_interface, ticks_of_planes_have_the_same_bits) {
   const two_models& m = shared_models();
   expect_same_ticks(m, ASPERITY_FORMULATION_PLANES, make_plane_renderer({m.probe, {m.plate}}).value());
 }
+TEST(c_interface, ticks_that_three_threads_share_have_the_same_bits) {
+  const two_models& m = shared_models();
+  expect_same_ticks(m, ASPERITY_FORMULATION_PLANES, make_plane_renderer({m.probe, {m.plate}}).value(), 3);
+}
 TEST(c_interface, ticks_of_windows_have_the_same_bits) {
   const two_models& m = shared_models();
   expect_same_ticks(m, ASPERITY_FORMULATION_WINDOW, make_window_renderer({m.probe, {m.plate}}).value());
@@ -125,11 +131,12 @@ TEST(c_interface, a_touch_is_found_where_the_probe_comes_down) {
 }
 
 // The tool in a loop at 90 Hz, 1 kHz and 5 kHz, pressed and dragged with up to 20 N.
-void expect_same_tool(double period_s) {
+void expect_same_tool(double period_s, std::uint32_t threads = 0) {
   SCOPED_TRACE(period_s);
   const two_models& m = shared_models();
   asperity_tool_settings settings = sized<asperity_tool_settings>();
   settings.period_s = period_s;
+  settings.threads = threads;
   settings.static_friction = 0.4;
   settings.dynamic_friction = 0.3;
   const owned_tool c = m.tool(&settings);
@@ -178,6 +185,7 @@ void expect_same_tool(double period_s) {
 TEST(c_interface, a_tool_has_the_same_bits_at_90_hz) { expect_same_tool(1.0 / 90.0); }
 TEST(c_interface, a_tool_has_the_same_bits_at_1_khz) { expect_same_tool(1e-3); }
 TEST(c_interface, a_tool_has_the_same_bits_at_5_khz) { expect_same_tool(2e-4); }
+TEST(c_interface, a_tool_whose_contacts_two_threads_share_has_the_same_bits) { expect_same_tool(1e-3, 2); }
 
 TEST(c_interface, a_tools_wrench_is_shortened_and_keeps_its_direction) {
   const two_models& m = shared_models();
@@ -226,7 +234,7 @@ struct keep_rows {
   void operator()(const session_record& r) const noexcept { rows->push_back(r); }
 };
 
-void expect_same_session(double device_hz, double contact_hz, std::uint32_t hand) {
+void expect_same_session(double device_hz, double contact_hz, std::uint32_t hand, std::uint32_t threads = 0) {
   SCOPED_TRACE(device_hz);
   const two_models& m = shared_models();
   asperity_simulated_settings simulated_wish = sized<asperity_simulated_settings>();
@@ -238,6 +246,7 @@ void expect_same_session(double device_hz, double contact_hz, std::uint32_t hand
   asperity_session_settings settings = sized<asperity_session_settings>();
   settings.device_rate_hz = device_hz;
   settings.contact_rate_hz = contact_hz;
+  settings.threads = threads;
   settings.static_friction = settings.dynamic_friction = 0.3;
   const pose start{quat(1, 0, 0, 0), {0.001, 0.0, 0.0235}};
   const seven start_numbers = to_seven(start);
@@ -302,6 +311,9 @@ void expect_same_session(double device_hz, double contact_hz, std::uint32_t hand
 TEST(c_interface, a_session_has_the_same_bits_at_200_hz) { expect_same_session(200, 200, ASPERITY_HAND_SOFT); }
 TEST(c_interface, a_session_has_the_same_bits_at_1_khz) { expect_same_session(1000, 1000, ASPERITY_HAND_USUAL); }
 TEST(c_interface, a_session_has_the_same_bits_at_10_khz) { expect_same_session(10000, 2500, ASPERITY_HAND_FIRM); }
+TEST(c_interface, a_session_whose_contacts_two_threads_share_has_the_same_bits) {
+  expect_same_session(1000, 1000, ASPERITY_HAND_USUAL, 2);
+}
 
 TEST(c_interface, many_ticks_at_once_are_as_many_one_by_one) {
   const two_models& m = shared_models();

@@ -93,8 +93,8 @@ press_law true_exit_law() {
           {}};
 }
 
-std::vector<press_law> known_laws() {
-  return {least_motion_renderer_law(), window_renderer_law(), plane_renderer_law(), true_exit_law()};
+std::vector<press_law> known_laws(double contact_period_s) {
+  return {least_motion_renderer_law(), window_renderer_law(), plane_renderer_law(contact_period_s), true_exit_law()};
 }
 
 press_row press_one_pair(const press_pair& pair, const press_body& probe, const press_body& fixed,
@@ -130,7 +130,7 @@ press_row press_one_pair(const press_pair& pair, const press_body& probe, const 
 }
 
 session_row press_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
-                           const render_function& render, const press_choice& which) {
+                           const render_function& render, const press_choice& which, const session_rules& rules) {
   const auto start = std::chrono::steady_clock::now();
   session_row row{pair.probe, pair.fixed, {}, 0.0};
   exit_search originals(probe.full, fixed.full);
@@ -139,7 +139,7 @@ session_row press_sessions(const press_pair& pair, const press_body& probe, cons
     const std::optional<press_touch> touch = finder.next(which.seed);
     if (!touch) break;
     if (i < which.first) continue;
-    row.sessions.push_back(press_session(render, *touch, probe.model->mass.centre_of_mass, {},
+    row.sessions.push_back(press_session(render, *touch, probe.model->mass.centre_of_mass, rules,
                                          test_support::seed_of(which.seed, pair.name(), touch->index), originals));
   }
   row.seconds = seconds(std::chrono::steady_clock::now() - start);

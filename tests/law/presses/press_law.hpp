@@ -36,7 +36,7 @@ struct press_law {
 /// it. It is right for every pair, and far too slow for a tick.
 [[nodiscard]] press_law true_exit_law();
 /// All of these.
-[[nodiscard]] std::vector<press_law> known_laws();
+[[nodiscard]] std::vector<press_law> known_laws(double contact_period_s = 1e-3);
 
 /// Which presses of a pair.
 struct press_choice {
@@ -52,7 +52,8 @@ struct press_choice {
 
 /// Sessions of one pair under a renderer.
 [[nodiscard]] session_row press_sessions(const press_pair& pair, const press_body& probe, const press_body& fixed,
-                                         const render_function& render, const press_choice& which);
+                                         const render_function& render, const press_choice& which,
+                                         const session_rules& rules = {});
 
 /// Hands at rest on one pair under a renderer, each by rules drawn anew.
 /// @param plane_stiffness_n_per_m of the sessions' contact law

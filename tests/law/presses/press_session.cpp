@@ -57,7 +57,8 @@ session_result press_session(render_function render, const press_touch& touch, c
     out.ended_early = true;
     return out;
   }
-  virtual_session<rendered, simulated_device, keep_last> session({&render}, {{pose{}}, centre_of_mass_a}, dev, control);
+  virtual_session<rendered, simulated_device, keep_last> session({&render}, {{pose{}}, centre_of_mass_a}, dev, control,
+                                                                 rules.when);
   const vec3 point_a = inverse(touch.touching_T_wa) * touch.point_w;
   const oracle::placed_mesh& fixed = originals.fixed();
   const auto until_ns = static_cast<std::int64_t>(1e9 * (rules.ramp_s + rules.hold_s));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "asperity/control/virtual_session.hpp"
 #include "asperity/device/simulated/simulated_settings.hpp"
 #include "asperity/model/scene.hpp"
 #include "asperity/render/renderer.hpp"
@@ -35,6 +36,7 @@ struct session_rules {
   double stiffness_n_per_m = 2000.0;  ///< of the contact, which the hand's way allows for
   double before_m = 2e-4;             ///< way from the first touch back along the approach where the session begins
   double ramp_s = 0.8, hold_s = 0.2;
+  virtual_schedule when{};  ///< periods of the loops, and how late contacts are
   double weak_share = 0.5;
   double allowance_m = 1e-3;     ///< of the depth, for the models' errors and the motion between two ticks
   double looks_across_m = 2e-5;  ///< step of the difference that says which side of a body is the nearer one

@@ -1,9 +1,11 @@
 // press_table: presses pairs of bodies under a contact law and prints a line for each pair; see usage below.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ using namespace asperity::presses;
 
 constexpr char usage[] =
     "usage: press_table [--law NAME] [--pair PROBE:FIXED]... [--touches N] [--first N] [--step MM] [--own] "
-    "[--sessions | --rests | --scrubs] [--dump]\n"
+    "[--sessions [--contact-rate HZ] | --rests | --scrubs] [--dump]\n"
     "  --law NAME    least-motion or window (renderers), planes (the renderer for control loops, with\n"
     "                --sessions, --rests or --scrubs) or exit (the originals' own true depth, slow, with neither)\n"
     "  --pair A:B    only this pair, or these; any two bodies; without it all pairs of the acceptance\n"
@@ -29,6 +31,8 @@ constexpr char usage[] =
     "  --step MM     between two steps of a press (0.1)\n"
     "  --own         solids are their own coarse meshes; otherwise they are simplified\n"
     "  --sessions    a simulated hand presses with up to 20 N instead, through device and coupling\n"
+    "  --contact-rate HZ  of these sessions, 100 to 10000, whose contacts then are one period late; without it 1000,\n"
+    "                used in the tick that made them\n"
     "  --rests       a simulated hand rests instead, pressed in by 2 to 30 mm, and what trembles is told; with\n"
     "                this and the next one all ordered pairs of the benchmark models without --pair\n"
     "  --scrubs      a simulated hand scrubs instead, and how far its planes are off the surface is told\n"
@@ -43,6 +47,7 @@ struct arguments {
   std::vector<press_pair> pairs;
   press_choice which;
   press_bake solids = press_bake::simplified;
+  std::optional<double> contact_rate_hz;
   bool sessions = false, rests = false, scrubs = false, dump = false;
 };
 
@@ -80,11 +85,16 @@ bool parse(int argc, char** argv, arguments& to) {
       to.which.first = std::atoi(argv[++i]);
     } else if (name == "--step") {
       to.which.step_m = 1e-3 * std::atof(argv[++i]);
+    } else if (name == "--contact-rate") {
+      to.contact_rate_hz = std::atof(argv[++i]);
     } else {
       return false;
     }
   }
   if (to.pairs.empty()) to.pairs = to.rests || to.scrubs ? benchmark_pairs() : press_pairs();
+  constexpr double least_hz = 100.0, most_hz = 1e4;
+  if (to.contact_rate_hz && !(to.sessions && *to.contact_rate_hz >= least_hz && *to.contact_rate_hz <= most_hz))
+    return false;
   return to.which.touches > 0 && to.which.first >= 0 && to.which.step_m > 0.0;
 }
 
@@ -105,7 +115,13 @@ int main(int argc, char** argv) {
     std::fputs(usage, stderr);
     return 2;
   }
-  const std::vector<press_law> laws = known_laws();
+  session_rules rules;
+  if (asked.contact_rate_hz) {
+    rules.when.contact_period_ns = std::llround(1e9 / *asked.contact_rate_hz);
+    rules.when.device_period_ns = std::min(rules.when.device_period_ns, rules.when.contact_period_ns);
+    rules.when.contact_one_period_late = true;
+  }
+  const std::vector<press_law> laws = known_laws(1e-9 * static_cast<double>(rules.when.contact_period_ns));
   const auto law = std::find_if(laws.begin(), laws.end(), [&](const press_law& l) { return l.name == asked.law; });
   if (law == laws.end() || (asked.sessions || asked.rests || asked.scrubs ? !law->render : !law->make)) {
     std::fputs(usage, stderr);
@@ -152,7 +168,7 @@ int main(int argc, char** argv) {
         if (asked.rests) {
           print_row(stdout, rest_sessions(pair, **probe, **fixed, *render, which));
         } else {
-          print_row(stdout, press_sessions(pair, **probe, **fixed, *render, which));
+          print_row(stdout, press_sessions(pair, **probe, **fixed, *render, which, rules));
         }
         continue;
       }

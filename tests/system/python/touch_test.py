@@ -35,6 +35,22 @@ class Touches(unittest.TestCase):
             for threads in (1, 2, 3, 4, 0):
                 self.assertEqual(feel.step_batch(at, threads=threads).tobytes(), single.tobytes())
 
+    def test_threads_that_share_a_step_change_no_bit(self):
+        at = poses(fresh_random(), 60)
+        for threads in (2, 3):
+            alone, shared = renderer("planes"), asperity.Renderer(model("block"), model("gear"), formulation="planes", threads=threads)
+            felt = np.array([shared.step(pose) for pose in at])
+            self.assertGreater(np.abs(felt[:, :3]).max(), 0.01)
+            self.assertEqual(felt.tobytes(), np.array([alone.step(pose) for pose in at]).tobytes())
+            self.assertEqual(shared.step_batch(at, threads=3).tobytes(), felt.tobytes())
+
+    def test_a_session_whose_contacts_are_shared_has_the_same_rows(self):
+        alone, shared = (asperity.Session(asperity.Renderer(model("block"), model("gear"), formulation="planes", threads=n)).run(0.6)
+                         for n in (1, 2))
+        self.assertGreater(np.abs(alone.hand_wrench[:, 2]).max(), 0.1)
+        for name in alone:
+            np.testing.assert_array_equal(alone[name], shared[name], name)
+
     def test_a_batch_of_windows_goes_on_from_pose_to_pose(self):
         at = poses(fresh_random(), 70)
         first, second = (asperity.Renderer(model("block"), model("gear"), formulation="window") for _ in range(2))
@@ -129,7 +145,7 @@ class Refusals(unittest.TestCase):
             asperity.load("/no/such/model.glb")
         self.assertEqual(caught.exception.code, "io_failed")
         for wrong in ({"formulation": "springs"}, {"period_s": 0.0}, {"stiffness_n_per_m": -1.0}, {"grid": 1,
-                      "formulation": "window"}):
+                      "formulation": "window"}, {"threads": 2}, {"threads": 17, "formulation": "planes"}):
             with self.assertRaises(asperity.Error) as caught:
                 asperity.Renderer(model("block"), model("gear"), **wrong)
             self.assertEqual(caught.exception.code, "invalid_argument")

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "asperity/core/status.hpp"
 #include "asperity/model/scene.hpp"
@@ -13,17 +12,12 @@
 namespace asperity::python {
 
 using command::gpu_use;
+struct renderer_wish;
 
-/// Which GPU, and what happens where it cannot be used.
-struct gpu_wish {
-  std::string backend;    ///< gl-compute or gl-occlusion
-  std::string device;     ///< index of a GPU or part of its name; empty: the first that works
-  bool fallback = false;  ///< the CPU answers where the GPU does not
-};
-
+/// The renderer of a wish whose backend is no cpu.
 /// @return unsupported (not part of this build; no GPU, without fallback) | limit_exceeded | invalid_argument | bad_mesh |
 ///         bad_texture
-[[nodiscard]] result<any_renderer> make_window_on_gpu(scene bodies, const gpu_wish& wish,
+[[nodiscard]] result<any_renderer> make_window_on_gpu(scene bodies, const renderer_wish& wish,
                                                       const window_renderer_settings& settings);
 
 /// What a renderer does with a GPU; null where it uses none.

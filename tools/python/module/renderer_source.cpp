@@ -8,6 +8,7 @@
 #include "asperity/window/window_renderer.hpp"
 #include "exact/exact_renderer.hpp"
 #include "gpu_renderers.hpp"
+#include "plane_reach.hpp"
 
 namespace asperity::python {
 namespace {
@@ -50,6 +51,10 @@ result<void> check(const renderer_wish& wish) {
   if (wish.gradient != "soft" && wish.gradient != "central")
     return no_choice("gradient", wish.gradient, "soft or central");
   if (wish.lookup != "exact" && wish.lookup != "paper") return no_choice("lookup", wish.lookup, "exact or paper");
+  if (const result<void> ok = check_threads(wish.threads); !ok) return ok;
+  if (wish.threads > 1 && f != "planes")
+    return error{error_code::invalid_argument,
+                 "threads share a step of planes: leave it out, or give formulation='planes'"};
   if (!(wish.period_s > 0.0 && std::isfinite(wish.period_s)))
     return error{error_code::invalid_argument, "period_s has to be above 0: the time between two steps, s"};
   if (!(wish.stiffness_n_per_m >= 0.0 && std::isfinite(wish.stiffness_n_per_m)))
@@ -57,23 +62,7 @@ result<void> check(const renderer_wish& wish) {
   return {};
 }
 
-double smallest_diagonal_m(const scene& bodies) {
-  double out_m = bodies.probe->box.diagonal();
-  for (const model_ptr& b : bodies.fixed) out_m = std::min(out_m, b->box.diagonal());
-  return out_m;
-}
-
 double seconds(std::int64_t ns) { return 1e-9 * static_cast<double>(ns); }
-
-// As the command does: a loop below 180 Hz meets fast touches a little late, one above 3.6 kHz looks further than it
-// has to. 0 is what is usual, which fits small bodies by itself.
-double reach_of(const scene& bodies, double wanted_m) {
-  constexpr double most_m = 0.01, least_m = 0.0005;
-  const double usual_m = reach_for(1e-3);
-  if (wanted_m > usual_m) return std::min(most_m, wanted_m);
-  if (wanted_m < usual_m) return std::min(0.1 * smallest_diagonal_m(bodies), std::max(least_m, wanted_m));
-  return 0.0;
-}
 
 }  // namespace
 
@@ -97,16 +86,23 @@ result<renderer_source> renderer_source::make(std::shared_ptr<scene_handle> edit
 }
 
 double renderer_source::reach_now(double wanted_m) const {
-  if (!edited_) return reach_of(bodies_, wanted_m);
+  if (!edited_) return command::plane_reach_m(bodies_, wanted_m);
   const std::lock_guard lock(edited_->busy);
-  return reach_of(edited_->now(), wanted_m);
+  return command::plane_reach_m(edited_->now(), wanted_m);
 }
 
 result<any_renderer> renderer_source::another(scene_seen* seen) const {
   if (wish_.formulation == "least-motion") return least_motion(wish_.period_s);
-  if (wish_.formulation == "planes")
-    return planes(wish_.reach_m > 0.0 ? wish_.reach_m : reach_now(reach_for(wish_.period_s)), seen);
+  if (wish_.formulation == "planes") return planes(usual_reach(), wish_.threads, seen);
   return wish_.formulation == "exact" ? exact() : window();
+}
+
+result<any_renderer> renderer_source::another_alone() const {
+  return wish_.formulation == "planes" ? planes(usual_reach(), 1, nullptr) : another();
+}
+
+double renderer_source::usual_reach() const {
+  return wish_.reach_m > 0.0 ? wish_.reach_m : reach_now(reach_for(wish_.period_s));
 }
 
 result<any_renderer> renderer_source::another_for(const loop_periods& periods, double motion_scale,
@@ -114,7 +110,7 @@ result<any_renderer> renderer_source::another_for(const loop_periods& periods, d
   if (wish_.formulation == "least-motion") return least_motion(seconds(periods.renewal_ns()));
   if (wish_.formulation == "planes" && !(wish_.reach_m > 0.0)) {
     const double wanted_m = reach_for(seconds(periods.contact_ns), seconds(periods.device_ns));
-    return planes(reach_now(std::max(1.0, motion_scale) * wanted_m), seen);
+    return planes(reach_now(std::max(1.0, motion_scale) * wanted_m), wish_.threads, seen);
   }
   return another(seen);
 }
@@ -129,9 +125,10 @@ result<any_renderer> renderer_source::least_motion(double period_s) const {
   return erased(make_least_motion_renderer(bodies_, fields_, exits_, settings));
 }
 
-result<any_renderer> renderer_source::planes(double reach_m, scene_seen* seen) const {
+result<any_renderer> renderer_source::planes(double reach_m, unsigned threads, scene_seen* seen) const {
   plane_renderer_settings settings;
   settings.reach_m = reach_m;
+  settings.threads = threads;
   if (wish_.stiffness_n_per_m > 0.0) settings.springs.stiffness_n_per_m = wish_.stiffness_n_per_m;
   if (edited_) {
     const std::lock_guard lock(edited_->busy);
@@ -149,7 +146,7 @@ result<any_renderer> renderer_source::window() const {
   settings.depth.parallax = wish_.lookup == "paper" ? parallax_mode::paper_lookup : parallax_mode::exact;
   settings.depth.grid = wish_.grid;
   if (wish_.stiffness_n_per_m > 0.0) settings.force.stiffness_n_per_m = wish_.stiffness_n_per_m;
-  if (wish_.backend != "cpu") return make_window_on_gpu(bodies_, {wish_.backend, wish_.gpu, wish_.fallback}, settings);
+  if (wish_.backend != "cpu") return make_window_on_gpu(bodies_, wish_, settings);
   return erased(make_window_renderer(bodies_, settings));
 }
 

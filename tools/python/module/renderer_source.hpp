@@ -26,6 +26,7 @@ struct renderer_wish {
   std::string backend = "cpu";               ///< of windows: or gl-compute, gl-occlusion
   std::string gpu;                           ///< index or part of the name; empty: the first that works
   bool fallback = false;                     ///< the CPU answers where the GPU does not
+  unsigned threads = 1;                      ///< that share a tick of planes
 };
 
 /// A scene, and what its renderers share.
@@ -40,6 +41,8 @@ class renderer_source {
   /// Another renderer that answers as every other one of this source, to the bit; of a scene that changes, as it is now.
   /// @param seen where what it has of that scene is written
   [[nodiscard]] result<any_renderer> another(scene_seen* seen = nullptr) const;
+  /// Another one whose steps no other thread shares, for one thread of several that have a renderer each.
+  [[nodiscard]] result<any_renderer> another_alone() const;
   /// The same for a control loop of these periods.
   /// @param motion_scale workspace_map::scale
   [[nodiscard]] result<any_renderer> another_for(const loop_periods& periods, double motion_scale,
@@ -65,12 +68,13 @@ class renderer_source {
   renderer_source(scene bodies, renderer_wish wish) : bodies_(std::move(bodies)), wish_(std::move(wish)) {}
 
   [[nodiscard]] result<any_renderer> least_motion(double period_s) const;
-  [[nodiscard]] result<any_renderer> planes(double reach_m, scene_seen* seen) const;
+  [[nodiscard]] result<any_renderer> planes(double reach_m, unsigned threads, scene_seen* seen) const;
   [[nodiscard]] result<any_renderer> window() const;
   [[nodiscard]] result<any_renderer> exact() const;
 
-  // The gaps to tell, fit for the bodies that are there now.
+  // The gaps to tell, fit for the bodies that are there now; and those of a step() that is in no loop.
   [[nodiscard]] double reach_now(double wanted_m) const;
+  [[nodiscard]] double usual_reach() const;
 
   scene bodies_;
   renderer_wish wish_;

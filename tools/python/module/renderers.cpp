@@ -56,14 +56,12 @@ void check_sizes(const scene& bodies, bool allow_scale_mismatch) {
   }
 }
 
-std::unique_ptr<renderer_handle> made_renderer(const model_handle& probe, const py::object& fixed,
-                                               const py::object& fixed_poses,
-                                               const std::optional<std::string>& formulation,
-                                               std::optional<double> stiffness_n_per_m, double period_s,
-                                               double softness_m, double sharpness, double reach_m, std::uint32_t grid,
-                                               const std::optional<std::string>& gradient,
-                                               const std::optional<std::string>& lookup, const std::string& backend,
-                                               const std::string& gpu, bool fallback, bool allow_scale_mismatch) {
+std::unique_ptr<renderer_handle> made_renderer(
+    const model_handle& probe, const py::object& fixed, const py::object& fixed_poses,
+    const std::optional<std::string>& formulation, std::optional<double> stiffness_n_per_m, double period_s,
+    double softness_m, double sharpness, double reach_m, std::uint32_t grid, const std::optional<std::string>& gradient,
+    const std::optional<std::string>& lookup, const std::string& backend, const std::string& gpu, bool fallback,
+    unsigned threads, bool allow_scale_mismatch) {
   scene bodies{probe.inside, models_of(fixed)};
   check_sizes(bodies, allow_scale_mismatch);
   auto out = std::make_unique<renderer_handle>();
@@ -83,7 +81,8 @@ std::unique_ptr<renderer_handle> made_renderer(const model_handle& probe, const 
                      lookup.value_or(queries ? "paper" : "exact"),
                      backend,
                      gpu,
-                     fallback};
+                     fallback,
+                     threads};
   const auto work = [bodies = std::move(bodies), wish = std::move(wish)](work_monitor&) mutable
       -> result<std::pair<std::shared_ptr<const renderer_source>, std::shared_ptr<any_renderer>>> {
     result<renderer_source> source = renderer_source::make(std::move(bodies), std::move(wish));
@@ -139,7 +138,7 @@ touch query(renderer_handle& self, const py::object& given) {
 
 result<void> have_renderers(renderer_handle& self, std::size_t wanted) {
   while (self.feel.size() < wanted) {
-    result<any_renderer> more = self.source->another();
+    result<any_renderer> more = self.source->another_alone();
     if (!more) return more.error();
     self.feel.push_back(std::move(*more));
   }
@@ -342,7 +341,7 @@ void add_renderers(py::module_& m) {
            py::arg("stiffness_n_per_m") = py::none(), py::arg("period_s") = 1e-3, py::arg("softness_m") = 0.0,
            py::arg("sharpness") = 0.0, py::arg("reach_m") = 0.0, py::arg("grid") = 64, py::arg("gradient") = py::none(),
            py::arg("lookup") = py::none(), py::arg("backend") = "cpu", py::arg("gpu") = "", py::arg("fallback") = false,
-           py::arg("allow_scale_mismatch") = false,
+           py::arg("threads") = 1U, py::arg("allow_scale_mismatch") = false,
            "A renderer of a Model and one or several others.\n\n"
            "fixed_poses: (M, 7), one row per fixed body; None: all at the origin.\n"
            "formulation: least-motion, the default on the CPU; planes, for control loops, the only one that feels "
@@ -361,6 +360,9 @@ void add_renderers(py::module_& m) {
            "    draw as the paper did: central, paper.\n"
            "gpu: index of a GPU, or part of its name; empty: the first that works.\n"
            "fallback: the CPU answers where the GPU does not; Renderer.gpu tells.\n"
+           "threads: that share a step of planes, 1 to 16, with the same bits for any number; they want processors of "
+           "their own.\n"
+           "    For many poses use step_batch(): its threads take a pose each.\n"
            "Raises Error.")
       .def("step", &step, py::arg("pose"),
            "The wrench on the probe (6,) at a pose (7,). Raises ValueError for another shape, Error for what is no "

@@ -121,7 +121,7 @@ void set_material(scene_handle& self, const body_handle& body, const std::option
 }
 
 std::unique_ptr<renderer_handle> made_renderer(const scene_ptr& self, std::optional<double> stiffness_n_per_m,
-                                               double period_s, double reach_m) {
+                                               double period_s, double reach_m, unsigned threads) {
   if (stiffness_n_per_m && !(*stiffness_n_per_m > 0.0))
     raise("invalid_argument", "stiffness_n_per_m has to be above 0, or None for the usual one");
   renderer_wish wish;
@@ -129,6 +129,7 @@ std::unique_ptr<renderer_handle> made_renderer(const scene_ptr& self, std::optio
   wish.stiffness_n_per_m = stiffness_n_per_m.value_or(0.0);
   wish.period_s = period_s;
   wish.reach_m = reach_m;
+  wish.threads = threads;
   return unwrap([&]() -> result<std::unique_ptr<renderer_handle>> {
     const py::gil_scoped_release others_may_run;
     result<renderer_source> source = renderer_source::make(self, std::move(wish));
@@ -189,7 +190,7 @@ void add_scenes(py::module_& m) {
       .def("set_material", &set_material, py::arg("body"), py::arg("material"),
            "Gives a body another Material all over, or None. Raises Error.")
       .def("renderer", &made_renderer, py::kw_only(), py::arg("stiffness_n_per_m") = py::none(),
-           py::arg("period_s") = 1e-3, py::arg("reach_m") = 0.0,
+           py::arg("period_s") = 1e-3, py::arg("reach_m") = 0.0, py::arg("threads") = 1U,
            "A Renderer of support planes with the scene as it is now; numbers as Renderer() takes them. Its commit() "
            "takes "
            "what is changed later. A Session takes it as any other.")

@@ -37,7 +37,7 @@ typedef struct asperity_renderer_settings {
   double softness_m;        /* least motion: depth over which the stiffness grows; 0: what fits the period */
   double sharpness;         /* least motion: how fast the force turns on a ridge; 0: what fits the period */
   uint32_t grid;            /* window: samples per side; 0: 64 */
-  uint32_t reserved;        /* 0 */
+  uint32_t threads;         /* planes: that share a tick, 1 to 16, with the same bits for any number; 0: 1 */
 } asperity_renderer_settings;
 
 /* What one tick found. World axes. */

@@ -29,6 +29,8 @@ typedef struct asperity_session_settings {
   double most_force_n;         /* the gate lets no more through (the device's own limit) */
   double most_torque_n_m;      /* the same of the torque */
   double start_pose[7];        /* of the probe, where the handle is at d's origin (3 mm above its first touch) */
+  uint32_t threads;            /* planes: that share a contact tick, 1 to 16, with the same bits for any number (1) */
+  uint32_t reserved;           /* 0 */
 } asperity_session_settings;
 
 /* The last of the device ticks that a call ran. World axes unless said otherwise. */

@@ -29,6 +29,8 @@ typedef struct asperity_tool_settings {
   double most_force_n;         /* the force on the hand is shortened to this (no limit) */
   double most_torque_n_m;      /* the same of the torque */
   double probe_on_hand[7];     /* pose of the probe's body frame on the hand (the identity) */
+  uint32_t threads;            /* that share the contact of a call, 1 to 16, with the same bits for any number (1) */
+  uint32_t reserved;           /* 0 */
 } asperity_tool_settings;
 
 /* What a hand feels. World axes. */
