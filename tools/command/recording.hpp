@@ -1,29 +1,20 @@
 // A session as a table: one row per device tick.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "asperity/control/session_record.hpp"
 #include "output_file.hpp"
+#include "recorded_row.hpp"
 #include "row_encoder.hpp"
 
 namespace asperity::command {
 
-inline constexpr std::size_t recorded_numbers = 34, recorded_words = 3;
-
-/// Names of the columns, numbers first, with the unit in every number's name.
-[[nodiscard]] const std::vector<std::string>& recording_columns();
 /// Header line of a table.
 [[nodiscard]] const std::string& recording_header();
-/// The numbers of a row, and its words. Only what belongs to the session itself, never a measured time.
-[[nodiscard]] std::array<double, recorded_numbers> numbers_of(const session_record& tick) noexcept;
-[[nodiscard]] std::array<const char*, recorded_words> words_of(const session_record& tick) noexcept;
 
 /// Appends one line: the same session gives the same bytes.
 void append_row(std::string& out, const session_record& tick);

@@ -19,7 +19,7 @@ std::string plot_title(const run_command& options, const session_summary& summar
   if (!summary.touched()) return who + " and never touches it.";
   return who + ": up to " + brief(summary.largest_hand_force_n()) + " N and " +
          brief(1e3 * summary.largest_hand_torque_n_m()) + " mN m on the hand, " + brief(summary.mean_contacts()) +
-         (summary.mean_contacts() == 1.0 ? " contact" : " contacts on average") + " while touching.";
+         (brief(summary.mean_contacts()) == "1" ? " contact" : " contacts on average") + " while touching.";
 }
 
 std::string contacts_in_words(const render_options& options) {

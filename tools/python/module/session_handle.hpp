@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "asperity/render/any_renderer.hpp"
 #include "gpu_renderers.hpp"
 #include "policies.hpp"
+#include "recorded_row.hpp"
 #include "scene_handle.hpp"
 
 namespace asperity::python {
@@ -33,16 +33,8 @@ struct recorded_rows {
   std::vector<std::uint8_t> sample, device, fault;
 
   void add(const session_record& r) {
-    const auto put = [&](std::initializer_list<double> list) { numbers.insert(numbers.end(), list); };
-    put({static_cast<double>(r.time_ns) / 1e9});
-    for (const pose& T : {r.T_dh, r.T_wa}) {
-      const auto q = to_xyzw(T.rotation);
-      put({T.position.x, T.position.y, T.position.z, q[0], q[1], q[2], q[3]});
-    }
-    for (const wrench& w : {r.on_probe_w, r.on_hand_d})
-      put({w.force.x, w.force.y, w.force.z, w.torque.x, w.torque.y, w.torque.z});
-    put({r.max_depth_m, static_cast<double>(r.contacts), static_cast<double>(r.contact_age_ns) / 1e9, r.delivered_j,
-         r.surplus_j, r.guard_alpha_per_s, r.guard_scale});
+    const auto row = command::numbers_of(r);
+    numbers.insert(numbers.end(), row.begin(), row.end());
     sample.push_back(static_cast<std::uint8_t>(r.sample));
     device.push_back(static_cast<std::uint8_t>(r.device));
     fault.push_back(static_cast<std::uint8_t>(r.fault));

@@ -16,24 +16,6 @@ namespace asperity::python {
 namespace {
 
 constexpr double clearance_m = 0.003;  // the hand starts this far above the touch, as in the command's sessions
-constexpr std::size_t number_columns = 34;
-
-/// The columns of the command's recordings, in its order; the last three are words.
-py::list column_names() {
-  py::list out;
-  out.append("time_s");
-  for (const std::string who : {"device", "probe"}) {
-    for (const char* axis : {"_x_m", "_y_m", "_z_m", "_qx", "_qy", "_qz", "_qw"}) out.append(who + axis);
-  }
-  for (const std::string who : {"contact", "hand"}) {
-    for (const char* axis : {"_fx_n", "_fy_n", "_fz_n", "_tx_n_m", "_ty_n_m", "_tz_n_m"}) out.append(who + axis);
-  }
-  for (const char* name : {"depth_m", "contacts", "contact_age_s", "delivered_j", "surplus_j", "guard_alpha_per_s",
-                           "guard_scale", "sample", "device", "fault"}) {
-    out.append(name);
-  }
-  return out;
-}
 
 motion_kind kind_of(const std::string& name) {
   constexpr std::pair<const char*, motion_kind> all[] = {{"press", motion_kind::press},
@@ -115,7 +97,7 @@ py::array words_of(const std::vector<std::uint8_t>& codes, auto&& word) {
 
 py::tuple to_python(const recorded_rows& rows) {
   const auto n = static_cast<py::ssize_t>(rows.sample.size());
-  py::array_t<double> numbers({n, static_cast<py::ssize_t>(number_columns)});
+  py::array_t<double> numbers({n, static_cast<py::ssize_t>(command::recorded_numbers)});
   std::copy(rows.numbers.begin(), rows.numbers.end(), numbers.mutable_data());
   return py::make_tuple(numbers,
                         words_of(rows.sample, [](std::uint8_t c) { return to_string(static_cast<sample_verdict>(c)); }),
@@ -294,7 +276,7 @@ py::tuple scene_in_use(session_handle& self) {
 }  // namespace
 
 void add_sessions(py::module_& m) {
-  m.attr("recording_columns") = py::tuple(column_names());
+  m.attr("recording_columns") = py::tuple(py::cast(command::recording_columns()));
   py::list faults;
   for (const auto& [word, fault] : all_faults) faults.append(word);
   m.attr("device_faults") = py::tuple(faults);
