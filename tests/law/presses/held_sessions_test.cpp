@@ -77,7 +77,8 @@ void press_every_pair(const char* name, const std::vector<press_pair>& pairs, in
 }
 
 // A hand may lean a body so far over an edge that the springs of many planes give way by more than a millimetre. That is
-// rare (one session of 56 on one day's seed, 1.6 mm), never a passage, and told. Rates are drawn from 200 Hz to 4 kHz.
+// rare, never a passage, and told: one session of 56 on one day's seed, 1.6 mm; and where a slab slid off a corner with
+// contacts at 200 Hz, another point of it was 3.6 mm deep, one of 56 on another day. Rates are drawn from 200 Hz to 4 kHz.
 TEST(held_sessions, no_hand_passes_support_planes) {
   int held = 0, deep = 0;
   press_every_pair(
@@ -88,11 +89,12 @@ TEST(held_sessions, no_hand_passes_support_planes) {
           EXPECT_FALSE(s.passed) << pair.name();
           EXPECT_FALSE(s.gave_way) << pair.name();
           EXPECT_FALSE(s.ended_early) << pair.name();
-          const bool is_deep = s.deepest_m > deepest_allowed_m;
+          const bool is_deep = std::max(s.deepest_m, s.overlap_m) > deepest_allowed_m;
           (is_deep ? deep : held) += 1;
           EXPECT_LE(s.deepest_m, 2.0 * deepest_allowed_m) << pair.name();
           EXPECT_EQ(s.reported, is_deep ? tick_flag::not_held : tick_flag::none)
-              << pair.name() << ", flags " << static_cast<int>(s.reported);
+              << pair.name() << ", flags " << static_cast<int>(s.reported) << ", overlap " << s.overlap_m * 1e3
+              << " mm";
         }
       });
   EXPECT_LE(deep, 1 + held / 50);

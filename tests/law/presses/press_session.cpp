@@ -69,6 +69,7 @@ session_result press_session(render_function render, const press_touch& touch, c
       return out;
     }
     out.reported |= now.flags;
+    out.overlap_m = std::max(out.overlap_m, now.max_depth_m);
     out.last_n = glm::length(now.on_hand_d.force);
     out.largest_n = std::max(out.largest_n, out.last_n);
     const vec3 p = now.T_wa * point_a;

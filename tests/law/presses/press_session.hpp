@@ -50,6 +50,7 @@ struct session_result {
   double largest_n = 0.0;      ///< on the hand, of the whole session
   double last_n = 0.0;         ///< on the hand, at the end
   double deepest_m = 0.0;      ///< of the probe's touching point within the fixed original, until it passed
+  double overlap_m = 0.0;      ///< largest of any point, as the contacts tell it
   bool ended_early = false;    ///< the gate shut
   tick_flag reported{};        ///< flags of all device ticks, until three after it passed
 };
