@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -18,7 +19,11 @@ namespace asperity {
 /// A plane is the surface to first order at the pose of its contact. On a texture that is soon wrong: a hand of 0.1 m/s
 /// goes half a millimetre in a period of 200 Hz, past a ridge and into the next valley. The points that the planes stand
 /// for are few, and to read them is a small part of a contact tick; to find them is the rest. So the contact thread finds
-/// them, and the device thread reads them. What a plane is not told of the points beside its own is not known here either.
+/// them, and the device thread reads them.
+///
+/// What lies beside a point is not known here. Where a probe slides off an edge the surface falls away from the points
+/// that were told, and the edge comes to ride on others. So points that have gone far_m since the contact's pose keep their
+/// planes, and from near_m on a share of them.
 /// @rt safe
 class local_model {
  public:
@@ -41,14 +46,30 @@ class local_model {
         if (p.body == then.body) p.depth_m += dot(p.gradient, moved);
       }
       contact.reader->read(there_T_wc, then.T_wb, then.body, {planes_.data(), planes_.size()});
-      for (support_plane& p : planes_) {
-        if (p.body == then.body) p.depth_m -= dot(p.gradient, moved);
+      for (std::size_t i = 0; i < planes_.size(); ++i) {
+        support_plane& p = planes_[i];
+        if (p.body != then.body) continue;
+        const support_plane& told = contact.planes[i];
+        const vec3 way_w = moved.linear + glm::cross(moved.angular, told.r_w);
+        if (const double share = share_of(std::sqrt(glm::dot(way_w, way_w))); share < 1.0) {
+          const double told_m = told.depth_m + dot(told.gradient, moved);
+          p.depth_m = told_m + share * (p.depth_m - told_m);
+          p.gradient = told.gradient + share * (p.gradient - told.gradient);
+          if (!(share > 0.0)) p.n_ab_w = told.n_ab_w;
+        }
+        p.depth_m -= dot(p.gradient, moved);
       }
     }
     return planes_;
   }
 
  private:
+  static constexpr double near_m = 5e-4, far_m = 1e-3;
+  /// What of the reading counts for a point that has gone so far.
+  [[nodiscard]] static double share_of(double way_m) noexcept {
+    return std::clamp((far_m - way_m) / (far_m - near_m), 0.0, 1.0);
+  }
+
   bool reads_;
   support_planes planes_{};
 };
