@@ -22,9 +22,9 @@ gpu_depth_maker make_gl_occlusion_depth;
 /// What computes the depths, on which GPU, and what happens where it cannot be used.
 struct gpu_wish {
   gpu_depth_maker* make_depth = make_gl_compute_depth;
-  std::string device;        ///< index of a GPU or part of its name; empty: the first that works
-  bool fallback = false;     ///< the CPU answers where the GPU does not, from the start too
-  std::string instead = "";  ///< what an error offers where the GPU cannot be used
+  std::string device;     ///< index of a GPU or part of its name; empty: the first that works
+  bool fallback = false;  ///< the CPU answers where the GPU does not, from the start too
+  std::string instead;    ///< what an error offers where the GPU cannot be used
 };
 
 /// @return invalid_argument | bad_mesh | bad_texture | without fallback also unsupported, limit_exceeded

@@ -22,8 +22,8 @@ namespace asperity {
 /// them, and the device thread reads them.
 ///
 /// What lies beside a point is not known here. Where a probe slides off an edge the surface falls away from the points
-/// that were told, and the edge comes to ride on others. So points that have gone far_m since the contact's pose keep their
-/// planes, and from near_m on a share of them.
+/// that were told, and the edge comes to ride on others. So points that have gone a millimetre since the contact's pose
+/// keep their planes, and from half of that on a share of them.
 /// @rt safe
 class local_model {
  public:
@@ -51,13 +51,13 @@ class local_model {
         if (p.body != then.body) continue;
         const support_plane& told = contact.planes[i];
         const vec3 way_w = moved.linear + glm::cross(moved.angular, told.r_w);
-        if (const double share = share_of(std::sqrt(glm::dot(way_w, way_w))); share < 1.0) {
-          const double told_m = told.depth_m + dot(told.gradient, moved);
-          p.depth_m = told_m + share * (p.depth_m - told_m);
-          p.gradient = told.gradient + share * (p.gradient - told.gradient);
-          if (!(share > 0.0)) p.n_ab_w = told.n_ab_w;
+        const double share = share_of(std::sqrt(glm::dot(way_w, way_w)));
+        if (share > 0.0) {
+          p.depth_m -= dot(p.gradient, moved);
+          if (share < 1.0) take_share(share, told, p);
+        } else {
+          p = told;
         }
-        p.depth_m -= dot(p.gradient, moved);
       }
     }
     return planes_;
@@ -68,6 +68,16 @@ class local_model {
   /// What of the reading counts for a point that has gone so far.
   [[nodiscard]] static double share_of(double way_m) noexcept {
     return std::clamp((far_m - way_m) / (far_m - near_m), 0.0, 1.0);
+  }
+  /// Moves a reading towards the plane as told, both about the contact's pose. Everything that a step uses goes along.
+  static void take_share(double share, const support_plane& told, support_plane& read) noexcept {
+    read.depth_m = told.depth_m + share * (read.depth_m - told.depth_m);
+    read.gradient = told.gradient + share * (read.gradient - told.gradient);
+    read.r_w = told.r_w + share * (read.r_w - told.r_w);
+    const vec3 n = told.n_ab_w + share * (read.n_ab_w - told.n_ab_w);
+    constexpr double opposite = 1e-6;  // only gaps can turn so far
+    const double length = std::sqrt(glm::dot(n, n));
+    read.n_ab_w = length > opposite ? n / length : told.n_ab_w;
   }
 
   bool reads_;

@@ -77,8 +77,8 @@ void press_every_pair(const char* name, const std::vector<press_pair>& pairs, in
 }
 
 // A hand may lean a body so far over an edge that the springs of many planes give way by more than a millimetre. That is
-// rare, never a passage, and told: one session of 56 on one day's seed, 1.6 mm; and where a slab slid off a corner with
-// contacts at 200 Hz, another point of it was 3.6 mm deep, one of 56 on another day. Rates are drawn from 200 Hz to 4 kHz.
+// rare, never a passage, and told: one session of 56 on one day's seed, 1.6 mm. Rates are drawn from 200 Hz to 4 kHz: at
+// 200 Hz planes that were read again however far their points had gone let a slab slide off a corner 3.6 mm deep.
 TEST(held_sessions, no_hand_passes_support_planes) {
   int held = 0, deep = 0;
   press_every_pair(
