@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -22,13 +23,18 @@ namespace asperity {
 /// them, and the device thread reads them.
 ///
 /// What lies beside a point is not known here. Where a probe slides off an edge the surface falls away from the points
-/// that were told, and the edge comes to ride on others. So points that have gone a millimetre since the contact's pose
-/// keep their planes, and from half of that on a share of them.
+/// that were told, and the edge comes to ride on others. So a plane stands for what is beside its point as well: the
+/// reading may let go of the probe by a fifth of a millimetre against the plane as told, and from there on the plane
+/// holds, that much further out. A plane whose point let go before its contact came, as an older contact's may have, is
+/// kept as far out as it takes to press on nothing: such a plane holds the probe and does not push it.
 /// @rt safe
 class local_model {
  public:
   /// @param reads false: planes stay as the contact has them
-  explicit local_model(bool reads) noexcept : reads_(reads) {}
+  explicit local_model(bool reads) noexcept : reads_(reads) { gives_m_.fill(least_give_m); }
+
+  /// The next call of planes_of() is the first for another contact.
+  void take_contact() noexcept { is_new_ = true; }
 
   /// The contact's planes as they are for a probe at T_wc, linear about the contact's pose like its own. Bodies that move
   /// are where their ways begin; carried_contact takes the planes there.
@@ -50,37 +56,26 @@ class local_model {
         support_plane& p = planes_[i];
         if (p.body != then.body) continue;
         const support_plane& told = contact.planes[i];
-        const vec3 way_w = moved.linear + glm::cross(moved.angular, told.r_w);
-        const double share = share_of(std::sqrt(glm::dot(way_w, way_w)));
-        if (share > 0.0) {
-          p.depth_m -= dot(p.gradient, moved);
-          if (share < 1.0) take_share(share, told, p);
-        } else {
+        const double told_m = told.depth_m + dot(told.gradient, moved);
+        if (is_new_) gives_m_[i] = std::max(least_give_m, told_m - std::max(p.depth_m, 0.0));
+        if (p.depth_m < told_m - gives_m_[i]) {
           p = told;
+          p.depth_m -= gives_m_[i];
+        } else {
+          p.depth_m -= dot(p.gradient, moved);
         }
       }
     }
+    is_new_ = false;
     return planes_;
   }
 
  private:
-  static constexpr double near_m = 5e-4, far_m = 1e-3;
-  /// What of the reading counts for a point that has gone so far.
-  [[nodiscard]] static double share_of(double way_m) noexcept {
-    return std::clamp((far_m - way_m) / (far_m - near_m), 0.0, 1.0);
-  }
-  /// Moves a reading towards the plane as told, both about the contact's pose. Everything that a step uses goes along.
-  static void take_share(double share, const support_plane& told, support_plane& read) noexcept {
-    read.depth_m = told.depth_m + share * (read.depth_m - told.depth_m);
-    read.gradient = told.gradient + share * (read.gradient - told.gradient);
-    read.r_w = told.r_w + share * (read.r_w - told.r_w);
-    const vec3 n = told.n_ab_w + share * (read.n_ab_w - told.n_ab_w);
-    constexpr double opposite = 1e-6;  // only gaps can turn so far
-    const double length = std::sqrt(glm::dot(n, n));
-    read.n_ab_w = length > opposite ? n / length : told.n_ab_w;
-  }
+  static constexpr double least_give_m = 2e-4;
 
   bool reads_;
+  bool is_new_ = false;
+  std::array<double, most_support_planes> gives_m_{};  // how far each plane's reading may let go
   support_planes planes_{};
 };
 

@@ -238,11 +238,12 @@ class device_loop {
     const linear_contact& contact = shared_->contacts.front();
     const std::int64_t age_ns = now_ns - (contact.answer == status::not_ready ? placed_ns_ : contact.time_ns);
     if (age_ns <= rates_.limits().surprise_age_ns) {
-      static_cast<void>(shared_->contacts.refresh());
+      if (shared_->contacts.refresh()) motion_.take_contact();
       return false;
     }
     const wrench before = motion_.push_of(contact, bodies_.ways());
     if (!shared_->contacts.refresh()) return false;
+    motion_.take_contact();
     wrench change = motion_.push_of(shared_->contacts.front(), bodies_.ways()) - before;
     change.force *= settings_.map.scale;  // as the hand would come to feel it
     return glm::length(change.force) > rates_.limits().surprise_n ||

@@ -69,6 +69,9 @@ class probe_motion {
     friction_.forget();
   }
 
+  /// Another contact comes into use. To be told of each before it is felt.
+  void take_contact() noexcept { local_.take_contact(); }
+
   /// A contact of another scene comes: the probe rubs anew on the bodies that were not where they are.
   /// @param before version of the contact that was in use   @param now comes into use
   void take_scene(std::uint64_t before, const linear_contact& now) noexcept {

@@ -21,6 +21,16 @@ using test_support::fresh_seed;
 
 constexpr double deepest_allowed_m = 1e-3;  // of the point that touched first, for the models' errors and the springs
 
+/// Whether a session was deep, by what it tells or by what the contacts saw. What was deeper by half must have been told:
+/// contacts tell at their own rate and the device thread looks in every tick, so close to the bound they may differ.
+bool expect_told(const press_pair& pair, const session_result& s) {
+  const double most_m = std::max(s.deepest_m, s.overlap_m);
+  const bool told = s.reported == tick_flag::not_held;
+  EXPECT_TRUE(told || s.reported == tick_flag::none) << pair.name() << ", flags " << static_cast<int>(s.reported);
+  EXPECT_TRUE(told || most_m <= 1.5 * deepest_allowed_m) << pair.name() << ": not told, " << most_m * 1e3 << " mm";
+  return told || most_m > deepest_allowed_m;
+}
+
 /// The pairs of an ordinary run, a thin plate and the textured bodies of the day; and those of a run at length, all.
 std::vector<press_pair> pairs_of_this_run() {
   const std::vector<press_pair> all = press_pairs();
@@ -77,8 +87,7 @@ void press_every_pair(const char* name, const std::vector<press_pair>& pairs, in
 }
 
 // A hand may lean a body so far over an edge that the springs of many planes give way by more than a millimetre. That is
-// rare, never a passage, and told: one session of 56 on one day's seed, 1.6 mm. Rates are drawn from 200 Hz to 4 kHz: at
-// 200 Hz planes that were read again however far their points had gone let a slab slide off a corner 3.6 mm deep.
+// rare, never a passage, and told: one session of 56 on one day's seed, 1.6 mm. Rates are drawn from 200 Hz to 4 kHz.
 TEST(held_sessions, no_hand_passes_support_planes) {
   int held = 0, deep = 0;
   press_every_pair(
@@ -89,15 +98,40 @@ TEST(held_sessions, no_hand_passes_support_planes) {
           EXPECT_FALSE(s.passed) << pair.name();
           EXPECT_FALSE(s.gave_way) << pair.name();
           EXPECT_FALSE(s.ended_early) << pair.name();
-          const bool is_deep = std::max(s.deepest_m, s.overlap_m) > deepest_allowed_m;
-          (is_deep ? deep : held) += 1;
+          (expect_told(pair, s) ? deep : held) += 1;
           EXPECT_LE(s.deepest_m, 2.0 * deepest_allowed_m) << pair.name();
-          EXPECT_EQ(s.reported, is_deep ? tick_flag::not_held : tick_flag::none)
-              << pair.name() << ", flags " << static_cast<int>(s.reported) << ", overlap " << s.overlap_m * 1e3
-              << " mm";
         }
       });
   EXPECT_LE(deep, 1 + held / 50);
+}
+
+// Where a body slides off an edge, the points that were told leave the surface and others come to press. Planes that were
+// read again without a bound let a slab 3.6 mm into a corner; planes that held where their points had let go long before
+// pushed it as if it were 4 mm deep.
+TEST(held_sessions, a_slab_that_slides_off_a_corner_neither_sinks_nor_is_pushed) {
+  std::vector<press_pair> pairs;
+  for (const press_pair& p : press_pairs()) {
+    if (p.name() == "slab on corner") pairs.push_back(p);
+  }
+  int sessions = 0, deep = 0;
+  for (const std::int64_t period_ns : {5'000'000, 2'500'000}) {
+    virtual_schedule late;
+    late.contact_period_ns = period_ns;
+    late.contact_one_period_late = true;
+    press_every_pair(
+        "held_sessions, corner", pairs, extent(8, 24), [&](std::uint64_t, const std::string&) { return late; },
+        [](const render_function& whole) { return whole; },
+        [&](const press_pair& pair, const session_row& row) {
+          for (const session_result& s : row.sessions) {
+            std::printf("  overlap %.2f mm\n", 1e3 * s.overlap_m);
+            EXPECT_FALSE(s.passed);
+            EXPECT_LE(s.overlap_m, 2.0 * deepest_allowed_m);
+            sessions += 1;
+            deep += expect_told(pair, s) ? 1 : 0;
+          }
+        });
+  }
+  EXPECT_LE(deep, 1 + sessions / 10);
 }
 
 /// Sessions under what is left of the plane renderer's planes; what the renderer knows of them, it tells.
