@@ -148,9 +148,9 @@ TEST(local_model, lets_go_of_a_probe_by_so_much_and_then_holds_it) {
 // A contact that comes late, when its point is off the surface, does not push the probe out, though its plane would; a
 // probe that goes on into the plane is held.
 TEST(local_model, is_not_pushed_by_a_plane_whose_point_had_let_go) {
-  drawn d(seed_of(fresh_seed("local_model.is_not_pushed_by_a_plane_whose_point_had_let_go", "300 contacts"), "late"));
+  drawn d(seed_of(fresh_seed("local_model.is_not_pushed_by_a_plane_whose_point_had_let_go", "1,000 contacts"), "late"));
   int let_go = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 1000; ++i) {
     wavy_reader reader;
     reader.of = {.amplitude_m = 1e-3, .wave_m = 6e-3};
     const linear_contact contact = contact_at(reader, {exp_rotation(d.inside(1.0)), d.inside(3e-3)});
@@ -178,7 +178,7 @@ TEST(local_model, makes_no_surprise_of_a_wave) {
     wavy_reader reader;
     reader.of = wavy(0);
     const pose now_T_wc{exp_rotation(d.inside(1.0)), {d.between(-1e-3, 1e-3), 0.0, d.between(-2e-4, 1e-4)}};
-    const pose then_T_wc{now_T_wc.rotation, now_T_wc.position + d.inside(1e-3)};
+    const pose then_T_wc{now_T_wc.rotation, now_T_wc.position + d.inside(4.5e-4)};
     const linear_contact late = contact_at(reader, then_T_wc), now = contact_at(reader, now_T_wc);
     for (const bool reads : {true, false}) {
       probe_motion motion({}, {}, contact_laws{}, 8, {}, reads);
