@@ -351,5 +351,50 @@ TEST(local_model, makes_a_slow_contact_loop_feel_like_a_fast_one) {
   EXPECT_LT(std::sqrt(read_n2), 0.5 * std::sqrt(unread_n2));
 }
 
+// The deepest plane that held the probe in a session, less how deep its point was; and in how many ticks it was off the
+// surface.
+struct false_depths {
+  wavy_reader reader{};
+  double most_m = 0.0;
+  int falls = 0;
+  void operator()(const session_record& r) noexcept {
+    if (!(r.planes > 0)) return;
+    const double true_m = reader.plane(r.T_wa, {}).depth_m;
+    falls += true_m < -2e-4 ? 1 : 0;
+    most_m = std::max(most_m, r.overlap_m - std::max(true_m, 0.0));
+  }
+};
+
+// A quick hand over high waves, whose probe leaves a crest before the contact of the crest comes.
+TEST(local_model, late_contacts_do_not_push) {
+  drawn d(seed_of(fresh_seed("local_model.late_contacts_do_not_push", "12 hands"), "quick"));
+  int falls = 0;
+  for (int i = 0; i < 12; ++i) {
+    simulated_settings hand;
+    hand.seed = d.bits();
+    hand.capabilities = strong_device(10.0);
+    hand.motion.kind = motion_kind::scrub;
+    hand.motion.T_dh.position = {0.0, 0.0, 2e-3};
+    hand.motion.depth_m = d.between(4e-3, 8e-3);
+    hand.motion.sideways_d = {1.0, 0.0, 0.0};
+    hand.motion.amplitude_m = d.between(1e-2, 1.4e-2);
+    hand.motion.frequency_hz = d.between(3.0, 5.0);
+    simulated_device dev(hand);
+    EXPECT_TRUE(dev.open() && dev.arm());
+    wavy_renderer feel;
+    feel.reader.of = {.amplitude_m = 1e-3, .wave_m = 6e-3};
+    false_depths seen;
+    seen.reader.of = feel.reader.of;
+    virtual_session session(
+        std::move(feel), {{pose{}}, vec3(0.0)}, dev, control_settings{},
+        {.device_period_ns = 1'000'000, .contact_period_ns = 5'000'000, .contact_one_period_late = true}, seen);
+    session.run_until(2'000'000'000);
+    const false_depths& o = session.device().observer();
+    EXPECT_LT(o.most_m, 5e-4) << i;
+    falls += o.falls;
+  }
+  EXPECT_GT(falls, 1000);
+}
+
 }  // namespace
 }  // namespace asperity
