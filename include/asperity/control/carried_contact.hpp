@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "asperity/control/linear_contact.hpp"
@@ -24,16 +23,15 @@ namespace asperity {
 /// them, and the device thread reads them.
 ///
 /// What lies beside a point is not known here. Where a probe slides off an edge the surface falls away from the points
-/// that it pressed, and the edge comes to ride on others. So a plane that presses, or is a quarter of a millimetre from
-/// it, stands for what is beside its point as well: its reading may let go of the probe by a fifth of a millimetre against
-/// the plane as told, and from there on the plane holds, that much further out. Where a contact comes so late that its
-/// point has let go already, the plane is kept as far out as it takes to press on nothing: it holds the probe and does not
-/// push it. A plane further away is no more than its point: as told, those of ridges raise a probe that sweeps by.
+/// that were told, and the edge comes to ride on others. So a plane stands for what is beside its point as well: the
+/// reading may let go of the probe by a fifth of a millimetre against the plane as told, and from there on the plane
+/// holds, that much further out. A plane whose point let go before its contact came, as an older contact's may have, is
+/// kept as far out as it takes to press on nothing: such a plane holds the probe and does not push it.
 /// @rt safe
 class local_model {
  public:
   /// @param reads false: planes stay as the contact has them
-  explicit local_model(bool reads) noexcept : reads_(reads) { gives_m_.fill(no_hold); }
+  explicit local_model(bool reads) noexcept : reads_(reads) { gives_m_.fill(least_give_m); }
 
   /// The next call of planes_of() is the first for another contact.
   void take_contact() noexcept { is_new_ = true; }
@@ -59,10 +57,7 @@ class local_model {
         if (p.body != then.body) continue;
         const support_plane& told = contact.planes[i];
         const double told_m = told.depth_m + dot(told.gradient, moved);
-        if (is_new_) gives_m_[i] = no_hold;
-        if (gives_m_[i] == no_hold && (p.depth_m > -near_m || (is_new_ && told.depth_m > -near_m))) {
-          gives_m_[i] = std::max(least_give_m, told_m - std::max(p.depth_m, 0.0));
-        }
+        if (is_new_) gives_m_[i] = std::max(least_give_m, told_m - std::max(p.depth_m, 0.0));
         if (p.depth_m < told_m - gives_m_[i]) {
           p = told;
           p.depth_m -= gives_m_[i];
@@ -76,11 +71,11 @@ class local_model {
   }
 
  private:
-  static constexpr double near_m = 2.5e-4, least_give_m = 2e-4, no_hold = std::numeric_limits<double>::infinity();
+  static constexpr double least_give_m = 2e-4;
 
   bool reads_;
   bool is_new_ = false;
-  std::array<double, most_support_planes> gives_m_{};  // how far each reading may let go; of those that hold
+  std::array<double, most_support_planes> gives_m_{};  // how far each plane's reading may let go
   support_planes planes_{};
 };
 
