@@ -28,6 +28,7 @@ class Renderers(unittest.TestCase):
         scene, gear = scene_with_gear()
         feel, at = scene.renderer(), poses(fresh_random(), 40)
         self.assertFeelsAs(feel, renderer("planes"), at)
+        self.assertFeelsAs(scene.renderer(threads=2), renderer("planes"), at)
         touch, fixed = feel.query(at[0]), renderer("planes").query(at[0])
         self.assertEqual([p.body for p in touch.planes], [p.body for p in fixed.planes])
         self.assertEqual(scene.body_in(touch.planes[0].body), gear)
