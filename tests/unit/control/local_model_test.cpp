@@ -118,6 +118,22 @@ depths depths_at(local_model& model, const wavy_reader& reader, const linear_con
           reader.plane(T_wc, {}).depth_m};
 }
 
+// A contact of one point with high waves, from whose slopes a reading soon lets go.
+struct contact_with_waves {
+  explicit contact_with_waves(drawn& d) {
+    reader.of = {.amplitude_m = 1e-3, .wave_m = 6e-3};
+    contact = contact_at(reader, {exp_rotation(d.inside(1.0)), d.inside(3e-3)});
+  }
+  contact_with_waves(const contact_with_waves&) = delete;  // the contact refers to the reader
+  contact_with_waves& operator=(const contact_with_waves&) = delete;
+
+  [[nodiscard]] depths after(const vec3& way_w) { return depths_at(model, reader, contact, way_w); }
+
+  wavy_reader reader{};
+  linear_contact contact{};
+  local_model model{true};
+};
+
 // A high wave, from whose slopes a plane soon lets go. The depth that is used is the true one as far as it lets go by no
 // more than 0.2 mm, then the told one less that, and steps nowhere on the way.
 TEST(local_model, lets_go_of_a_probe_by_so_much_and_then_holds_it) {
@@ -125,15 +141,12 @@ TEST(local_model, lets_go_of_a_probe_by_so_much_and_then_holds_it) {
   constexpr double give_m = 2e-4;
   int held = 0, read = 0;
   for (int i = 0; i < 100; ++i) {
-    wavy_reader reader;
-    reader.of = {.amplitude_m = 1e-3, .wave_m = 6e-3};
-    const linear_contact contact = contact_at(reader, {exp_rotation(d.inside(1.0)), d.inside(3e-3)});
+    contact_with_waves waves(d);
     const vec3 along = glm::normalize(d.inside(1.0));
-    local_model model(true);
     constexpr double step_m = 1e-5, steepest = 3.0;
-    double before_m = depths_at(model, reader, contact, vec3(0.0)).used_m;
+    double before_m = waves.after(vec3(0.0)).used_m;
     for (double way_m = 0.0; way_m < 4e-3; way_m += step_m) {
-      const depths now = depths_at(model, reader, contact, way_m * along);
+      const depths now = waves.after(way_m * along);
       const bool holds = now.true_m < now.told_m - give_m;
       (holds ? held : read) += 1;
       ASSERT_NEAR(now.used_m, holds ? now.told_m - give_m : now.true_m, 1e-12) << i << ": " << way_m;
@@ -151,19 +164,16 @@ TEST(local_model, is_not_pushed_by_a_plane_whose_point_had_let_go) {
   drawn d(seed_of(fresh_seed("local_model.is_not_pushed_by_a_plane_whose_point_had_let_go", "1,000 contacts"), "late"));
   int let_go = 0;
   for (int i = 0; i < 1000; ++i) {
-    wavy_reader reader;
-    reader.of = {.amplitude_m = 1e-3, .wave_m = 6e-3};
-    const linear_contact contact = contact_at(reader, {exp_rotation(d.inside(1.0)), d.inside(3e-3)});
+    contact_with_waves waves(d);
     const vec3 gone_w = d.inside(5e-3);
-    local_model model(true);
-    model.take_contact();
-    const depths then = depths_at(model, reader, contact, gone_w);
+    waves.model.take_contact();
+    const depths then = waves.after(gone_w);
     EXPECT_LE(then.used_m, std::max(then.true_m, 0.0) + 1e-12) << i;
     if (!(then.true_m < 0.0 && then.told_m > 2e-4)) continue;
     ++let_go;
     constexpr double further_m = 1e-4;
-    const vec3 into_w = contact.planes[0].gradient.linear / glm::length(contact.planes[0].gradient.linear);
-    const depths now = depths_at(model, reader, contact, gone_w + further_m * into_w);
+    const vec3 into_w = waves.contact.planes[0].n_ab_w;
+    const depths now = waves.after(gone_w + further_m * into_w);
     EXPECT_GE(now.used_m, now.told_m - then.told_m - 1e-12) << i;
     EXPECT_GT(now.used_m, 0.9 * further_m) << i;
   }
