@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/moving_bodies.hpp"
+#include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/render/plane_source.hpp"
@@ -23,25 +27,32 @@ namespace asperity {
 /// them, and the device thread reads them.
 ///
 /// What lies beside a point is not known here. Where a probe slides off an edge the surface falls away from the points
-/// that were told, and the edge comes to ride on others. So a plane stands for what is beside its point as well: the
-/// reading may let go of the probe by a fifth of a millimetre against the plane as told, and from there on the plane
-/// holds, that much further out. A plane whose point let go before its contact came, as an older contact's may have, is
-/// kept as far out as it takes to press on nothing: such a plane holds the probe and does not push it.
+/// that were told, and the edge comes to ride on others. So the planes of a body that is touched stand for what is beside
+/// their points as well. Such a plane is a wall without relief: the smooth shape at the point, to first order. The reading
+/// may let go of the probe by a fifth of a millimetre against the wall, and from there on the wall holds, that much
+/// further out. Where a point had let go before its body was touched, or before its contact came, as an older contact's
+/// may have, its wall is kept as far out as it takes to press on nothing: it holds the probe and does not push it.
+///
+/// A body is touched where a point is a quarter of a millimetre from it or closer, and for eight contacts after, since a
+/// probe that slides off hops. The planes of a body that the probe only sweeps by do not hold: a wall that is level with
+/// the surface at a flank or an edge stands in the way a few millimetres on.
 /// @rt safe
 class local_model {
  public:
   /// @param reads false: planes stay as the contact has them
-  explicit local_model(bool reads) noexcept : reads_(reads) { gives_m_.fill(least_give_m); }
+  explicit local_model(bool reads) noexcept : reads_(reads) {}
 
   /// The next call of planes_of() is the first for another contact.
   void take_contact() noexcept { is_new_ = true; }
 
   /// The contact's planes as they are for a probe at T_wc, linear about the contact's pose like its own. Bodies that move
   /// are where their ways begin; carried_contact takes the planes there.
+  /// @param contact the one of the last call, unless take_contact() was called since
   /// @return contact.planes where nobody can read them again   @warning until the next call
   [[nodiscard]] const support_planes& planes_of(const linear_contact& contact, std::span<const body_way> ways,
                                                 const pose& T_wc) noexcept {
     if (!reads_ || contact.reader == nullptr || contact.planes.empty()) return contact.planes;
+    if (std::exchange(is_new_, false)) begin(contact);
     planes_ = contact.planes;
     for (const body_place& then : contact.places) {
       // A depth depends on the bodies' pose to each other: the body stays where it was, and the probe is moved.
@@ -52,30 +63,74 @@ class local_model {
         if (p.body == then.body) p.depth_m += dot(p.gradient, moved);
       }
       contact.reader->read(there_T_wc, then.T_wb, then.body, {planes_.data(), planes_.size()});
-      for (std::size_t i = 0; i < planes_.size(); ++i) {
-        support_plane& p = planes_[i];
-        if (p.body != then.body) continue;
-        const support_plane& told = contact.planes[i];
-        const double told_m = told.depth_m + dot(told.gradient, moved);
-        if (is_new_) gives_m_[i] = std::max(least_give_m, told_m - std::max(p.depth_m, 0.0));
-        if (p.depth_m < told_m - gives_m_[i]) {
-          p = told;
-          p.depth_m -= gives_m_[i];
-        } else {
-          p.depth_m -= dot(p.gradient, moved);
-        }
-      }
+      hold(then.body, moved);
     }
-    is_new_ = false;
     return planes_;
   }
 
  private:
+  static constexpr double near_m = 2.5e-4;
   static constexpr double least_give_m = 2e-4;
+  static constexpr double holds_not_m = std::numeric_limits<double>::infinity();
+  static constexpr std::uint32_t contacts_after = 8;
+
+  struct touched_body {
+    std::uint32_t body = 0;
+    std::uint32_t contacts_ago = 0;
+  };
+
+  void begin(const linear_contact& contact) noexcept {
+    walls_ = contact.planes;
+    for (const body_place& then : contact.places) {
+      contact.reader->smooth_out(contact.T_wc, then.T_wb, then.body, {walls_.data(), walls_.size()});
+    }
+    gives_m_.fill(holds_not_m);
+    const auto is_over = [&](const touched_body& t) {
+      return t.contacts_ago == contacts_after || std::none_of(contact.places.begin(), contact.places.end(),
+                                                              [&](const body_place& p) { return p.body == t.body; });
+    };
+    touched_.truncate(
+        static_cast<std::size_t>(std::remove_if(touched_.begin(), touched_.end(), is_over) - touched_.begin()));
+    for (touched_body& t : touched_) ++t.contacts_ago;
+  }
+
+  // Planes that were read become linear about the contact's pose; where the body is touched, its walls hold.
+  // @param moved of the probe against the body since the contact
+  void hold(std::uint32_t body, const vec6& moved) noexcept {
+    const bool touched = is_touched(body);
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+      support_plane& p = planes_[i];
+      if (p.body != body) continue;
+      const double wall_m = walls_[i].depth_m + dot(walls_[i].gradient, moved);
+      if (touched && gives_m_[i] == holds_not_m) {
+        gives_m_[i] = std::max(least_give_m, wall_m - std::max(p.depth_m, 0.0));
+      }
+      if (p.depth_m < wall_m - gives_m_[i]) {
+        p = walls_[i];
+        p.depth_m -= gives_m_[i];
+      } else {
+        p.depth_m -= dot(p.gradient, moved);
+      }
+    }
+  }
+
+  // Whether a body is touched, by its planes as they were read, or was so a few contacts ago.
+  [[nodiscard]] bool is_touched(std::uint32_t body) noexcept {
+    const auto known =
+        std::find_if(touched_.begin(), touched_.end(), [&](const touched_body& t) { return t.body == body; });
+    const bool now = std::any_of(planes_.begin(), planes_.end(),
+                                 [&](const support_plane& p) { return p.body == body && p.depth_m > -near_m; });
+    if (!now) return known != touched_.end();
+    if (known == touched_.end()) return touched_.push_back({body, 0});
+    known->contacts_ago = 0;
+    return true;
+  }
 
   bool reads_;
-  bool is_new_ = false;
-  std::array<double, most_support_planes> gives_m_{};  // how far each plane's reading may let go
+  bool is_new_ = true;
+  fixed_vector<touched_body, most_read_bodies> touched_{};
+  support_planes walls_{};                             // the contact's planes without relief
+  std::array<double, most_support_planes> gives_m_{};  // how far each reading may let go of its wall
   support_planes planes_{};
 };
 

@@ -72,6 +72,12 @@ class plane_reader {
   virtual void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
                     std::span<support_plane> planes) const noexcept = 0;
 
+  /// Gives planes of one body the gradient and direction of the smooth shape they lie on, without its relief. Depths and
+  /// points stay. A plane whose number is 0 stays as it is.
+  /// @rt safe: one reading of a depth field for each plane
+  virtual void smooth_out(const pose& T_wc, const pose& T_wb, std::uint32_t body,
+                          std::span<support_plane> planes) const noexcept = 0;
+
  protected:
   plane_reader() = default;
   plane_reader(const plane_reader&) = default;

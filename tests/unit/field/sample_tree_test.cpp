@@ -158,7 +158,7 @@ TEST(SurfaceSamples, HoldEveryVertexAndEdge) {
     EXPECT_LT(distance_to(samples, sign * half), 1e-8);
   }
   for (double x = -0.95; x <= 0.95; x += 0.1) {
-    EXPECT_LT(distance_to(samples, {x * half.x, half.y, half.z}), 0.55e-3) << "along an edge, at " << x;
+    EXPECT_LT(distance_to(samples, {x * half.x, half.y, half.z}), 0.14e-3) << "along an edge, at " << x;
   }
 }
 
