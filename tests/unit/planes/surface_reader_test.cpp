@@ -151,7 +151,7 @@ TEST(SurfaceReader, SmoothsOutTheRelief) {
     const std::vector<support_plane> told = kept(t.planes);
     std::vector<support_plane> walls = told, unknown = told;
     for (support_plane& p : unknown) p.sample = 0;
-    const std::uint32_t body = n % 2;
+    const std::uint32_t body = n % 2 == 0 ? 0 : 1;
     t.reader->smooth_out(centre_frame(T_wa), T_wb[body], body, walls);
     t.reader->smooth_out(centre_frame(T_wa), T_wb[body], body, unknown);
     for (std::size_t i = 0; i < told.size(); ++i) {
@@ -164,7 +164,7 @@ TEST(SurfaceReader, SmoothsOutTheRelief) {
       }
       const bool of_probe = told[i].sample % 2 == 1;
       const pose& T_wy = of_probe ? T_wb[body] : T_wa;
-      const field_body& y = of_probe ? *ridged().fields.fixed[body] : *ridged().fields.probe;
+      const field_body& y = of_probe ? *ridged().fields->fixed[body] : *ridged().fields->probe;
       const vec3 slope_y = y.field.coarse(inverse(T_wy) * (t.centre_of_mass_w + told[i].r_w)).slope;
       const vec3 slope_w = (of_probe ? 1.0 : -1.0) * (T_wy.rotation * slope_y);
       EXPECT_LT(glm::length(walls[i].gradient.linear - slope_w), 1e-9) << n;
