@@ -33,8 +33,8 @@ namespace asperity {
 /// further out. Where a point had let go before its body was touched, or before its contact came, as an older contact's
 /// may have, its wall is kept as far out as it takes to press on nothing: it holds the probe and does not push it.
 ///
-/// A body is touched where a point is a quarter of a millimetre from it or closer, and for eight contacts after, since a
-/// probe that slides off hops. The planes of a body that the probe only sweeps by do not hold: a wall that is level with
+/// A body is touched where a point is a quarter of a millimetre from it or closer, and for a tenth of a second after, since
+/// a probe that slides off hops. The planes of a body that the probe only sweeps by do not hold: a wall that is level with
 /// the surface at a flank or an edge stands in the way a few millimetres on.
 /// @rt safe
 class local_model {
@@ -63,7 +63,7 @@ class local_model {
         if (p.body == then.body) p.depth_m += dot(p.gradient, moved);
       }
       contact.reader->read(there_T_wc, then.T_wb, then.body, {planes_.data(), planes_.size()});
-      hold(then.body, moved);
+      hold(then.body, contact.time_ns, moved);
     }
     return planes_;
   }
@@ -72,11 +72,11 @@ class local_model {
   static constexpr double near_m = 2.5e-4;
   static constexpr double least_give_m = 2e-4;
   static constexpr double holds_not_m = std::numeric_limits<double>::infinity();
-  static constexpr std::uint32_t contacts_after = 8;
+  static constexpr std::int64_t hop_ns = 100'000'000;
 
   struct touched_body {
     std::uint32_t body = 0;
-    std::uint32_t contacts_ago = 0;
+    std::int64_t at_ns = 0;  // time of the last contact by which it was touched
   };
 
   void begin(const linear_contact& contact) noexcept {
@@ -85,19 +85,15 @@ class local_model {
       contact.reader->smooth_out(contact.T_wc, then.T_wb, then.body, {walls_.data(), walls_.size()});
     }
     gives_m_.fill(holds_not_m);
-    const auto is_over = [&](const touched_body& t) {
-      return t.contacts_ago == contacts_after || std::none_of(contact.places.begin(), contact.places.end(),
-                                                              [&](const body_place& p) { return p.body == t.body; });
-    };
+    const auto is_over = [&](const touched_body& t) { return contact.time_ns - t.at_ns > hop_ns; };
     touched_.truncate(
         static_cast<std::size_t>(std::remove_if(touched_.begin(), touched_.end(), is_over) - touched_.begin()));
-    for (touched_body& t : touched_) ++t.contacts_ago;
   }
 
   // Planes that were read become linear about the contact's pose; where the body is touched, its walls hold.
-  // @param moved of the probe against the body since the contact
-  void hold(std::uint32_t body, const vec6& moved) noexcept {
-    const bool touched = is_touched(body);
+  // @param now_ns time of the contact   @param moved of the probe against the body since the contact
+  void hold(std::uint32_t body, std::int64_t now_ns, const vec6& moved) noexcept {
+    const bool touched = is_touched(body, now_ns);
     for (std::size_t i = 0; i < planes_.size(); ++i) {
       support_plane& p = planes_[i];
       if (p.body != body) continue;
@@ -114,15 +110,18 @@ class local_model {
     }
   }
 
-  // Whether a body is touched, by its planes as they were read, or was so a few contacts ago.
-  [[nodiscard]] bool is_touched(std::uint32_t body) noexcept {
+  // Whether a body is touched, by its planes as they were read, or was so a short time ago.
+  [[nodiscard]] bool is_touched(std::uint32_t body, std::int64_t now_ns) noexcept {
     const auto known =
         std::find_if(touched_.begin(), touched_.end(), [&](const touched_body& t) { return t.body == body; });
     const bool now = std::any_of(planes_.begin(), planes_.end(),
                                  [&](const support_plane& p) { return p.body == body && p.depth_m > -near_m; });
     if (!now) return known != touched_.end();
-    if (known == touched_.end()) return touched_.push_back({body, 0});
-    known->contacts_ago = 0;
+    if (known != touched_.end()) {
+      known->at_ns = now_ns;
+    } else {
+      static_cast<void>(touched_.push_back({body, now_ns}));  // one of more bodies does without what comes after
+    }
     return true;
   }
 
