@@ -36,13 +36,9 @@ struct texel_range {
 }
 
 /// Lays out a body's samples: on its faces the highest texel of every block a pitch wide, because peaks touch first;
-/// along its sharp edges, where no texel centre lies, points a quarter of a pitch apart; and every vertex, because the
-/// tip of a cone of many sides touches although it has no sharp edge. Valleys need no samples: only a peak of the other
-/// body reaches into them.
-///
-/// Where an edge crosses another body's edge, the depth along it is a tent, and a sample that lies aside of its ridge has
-/// less depth in proportion to the distance; on a face it is less by the square of it. So edges, which are few, have
-/// samples four times as dense, and so do the blocks in which the relief is as steep as an edge.
+/// along its sharp edges, where no texel centre lies, points a pitch apart; and every vertex, because the tip of a cone
+/// of many sides touches although it has no sharp edge. Valleys need no samples: only a peak of the other body reaches
+/// into them.
 class surface_samples {
  public:
   /// @param pitch_m distance between samples, at least a texel is used
@@ -65,11 +61,8 @@ class surface_samples {
   }
 
  private:
-  static constexpr double edge_density = 4.0;  // samples along an edge in a pitch
-  static constexpr double steep_rad = 1.0;
-
   struct texel_block {
-    std::size_t column, row, columns, rows;
+    std::size_t column, row, size;
   };
 
   static void add(const vec3& p_b, const vec3& axis_b, double cone_rad, std::vector<field_sample>& to) {
@@ -100,9 +93,9 @@ class surface_samples {
     };
     double least_cosine = 1.0;
     for (std::size_t j = block.row - std::min<std::size_t>(block.row, 1);
-         j < std::min<std::size_t>(block.row + block.rows, model_.texture.height - 1); ++j) {
+         j < std::min<std::size_t>(block.row + block.size, model_.texture.height - 1); ++j) {
       for (std::size_t i = block.column - std::min<std::size_t>(block.column, 1);
-           i < std::min<std::size_t>(block.column + block.columns, model_.texture.width - 1); ++i) {
+           i < std::min<std::size_t>(block.column + block.size, model_.texture.width - 1); ++i) {
         if (!is_inside(i, j) || !is_inside(i + 1, j) || !is_inside(i, j + 1)) continue;
         const vec3 p = model_.texture.at(i, j);
         const vec3 across = glm::cross(model_.texture.at(i + 1, j) - p, model_.texture.at(i, j + 1) - p);
@@ -131,14 +124,10 @@ class surface_samples {
     const std::size_t before = to.size();
     for (std::size_t row = rows.first / block; row <= rows.last / block; ++row) {
       for (std::size_t column = columns.first / block; column <= columns.last / block; ++column) {
-        const texel_block here{column * block, row * block, block, block};
+        const texel_block here{column * block, row * block, block};
         const double lean_rad = std::max(turn_rad, lean_in(t, here));
         most_rad = std::max(most_rad, lean_rad);
-        if (lean_rad > steep_rad && block > 1) {
-          add_quarters(t, here, turn_rad, texel_m, to);
-        } else {
-          add_highest(t, here, texel_m, lean_rad, to);
-        }
+        add_highest(t, here, texel_m, lean_rad, to);
       }
     }
     // A sliver that holds no texel centre gets a sample too.
@@ -149,35 +138,22 @@ class surface_samples {
     return most_rad;
   }
 
-  void add_quarters(std::uint32_t t, const texel_block& whole, double turn_rad, double texel_m,
-                    std::vector<field_sample>& to) const {
-    const std::size_t columns = (whole.columns + 1) / 2, rows = (whole.rows + 1) / 2;
-    for (const bool low : {true, false}) {
-      for (const bool left : {true, false}) {
-        const texel_block part{left ? whole.column : whole.column + columns, low ? whole.row : whole.row + rows,
-                               left ? columns : whole.columns - columns, low ? rows : whole.rows - rows};
-        add_highest(t, part, texel_m, std::max(turn_rad, lean_in(t, part)), to);
-      }
-    }
-  }
-
   // The highest texel of a block; between equals the one nearest to its middle.
   void add_highest(std::uint32_t t, const texel_block& block, double texel_m, double lean_rad,
                    std::vector<field_sample>& to) const {
     const auto c = corners(model_.mesh, t);
-    const double middle_x = 0.5 * static_cast<double>(block.columns - 1);
-    const double middle_y = 0.5 * static_cast<double>(block.rows - 1);
+    const double middle = 0.5 * static_cast<double>(block.size - 1);
     double best_score = -1e30;
     vec3 best(0.0);
-    for (std::size_t j = block.row; j < std::min<std::size_t>(block.row + block.rows, model_.texture.height); ++j) {
-      for (std::size_t i = block.column; i < std::min<std::size_t>(block.column + block.columns, model_.texture.width);
+    for (std::size_t j = block.row; j < std::min<std::size_t>(block.row + block.size, model_.texture.height); ++j) {
+      for (std::size_t i = block.column; i < std::min<std::size_t>(block.column + block.size, model_.texture.width);
            ++i) {
         const vec3 bary = index_.texels[t].barycentric({static_cast<double>(i), static_cast<double>(j)});
         if (!(bary.x >= 0.0 && bary.y >= 0.0 && bary.z >= 0.0)) continue;
         const vec3 p = model_.texture.at(i, j);
         if (!is_finite(p)) continue;
-        const double x = static_cast<double>(i - block.column) - middle_x;
-        const double y = static_cast<double>(j - block.row) - middle_y;
+        const double x = static_cast<double>(i - block.column) - middle;
+        const double y = static_cast<double>(j - block.row) - middle;
         const double height = glm::dot(index_.normal[t], p - (bary.x * c[0] + bary.y * c[1] + bary.z * c[2]));
         const double score = height - 1e-4 * texel_m * (x * x + y * y);
         if (score > best_score) {
@@ -198,7 +174,7 @@ class surface_samples {
     const vec3 axis = middle_of(here + there, here);
     const double leans_rad = std::max(lean_rad[t], across == surface_index::none ? 0.0 : lean_rad[across]);
     const double cone_rad = angle(axis, here) + leans_rad;
-    const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m * edge_density / pitch_m_)));
+    const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m / pitch_m_)));
     for (std::size_t i = 0; i < count; ++i) {
       const double f = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
       add(fine_edge_point(model_, index_, t, k, f), axis, cone_rad, to);

@@ -27,8 +27,7 @@ struct field_settings {
 /// Settings of make_field_body().
 struct field_body_settings {
   field_settings field{};
-  /// Distance between samples on faces, m, a quarter of it on sharp edges; 0: 0.3 % of the body's diagonal.
-  double sample_pitch_m = 0.0;
+  double sample_pitch_m = 0.0;  ///< distance between samples; 0: 0.3 % of the body's diagonal
 
   friend bool operator==(const field_body_settings&, const field_body_settings&) = default;
 };
