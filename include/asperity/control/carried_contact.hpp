@@ -93,7 +93,7 @@ class local_model {
   // Planes that were read become linear about the contact's pose; where the body is touched, its walls hold.
   // @param now_ns time of the contact   @param moved of the probe against the body since the contact
   void hold(std::uint32_t body, std::int64_t now_ns, const vec6& moved) noexcept {
-    const bool touched = is_touched(body, now_ns);
+    const bool touched = note_touch(body, now_ns);
     for (std::size_t i = 0; i < planes_.size(); ++i) {
       support_plane& p = planes_[i];
       if (p.body != body) continue;
@@ -110,8 +110,8 @@ class local_model {
     }
   }
 
-  // Whether a body is touched, by its planes as they were read, or was so a short time ago.
-  [[nodiscard]] bool is_touched(std::uint32_t body, std::int64_t now_ns) noexcept {
+  // Notes whether a body is touched, by its planes as they were read. @return whether it is, or was a short time ago
+  [[nodiscard]] bool note_touch(std::uint32_t body, std::int64_t now_ns) noexcept {
     const auto known =
         std::find_if(touched_.begin(), touched_.end(), [&](const touched_body& t) { return t.body == body; });
     const bool now = std::any_of(planes_.begin(), planes_.end(),

@@ -194,7 +194,7 @@ TEST(local_model, is_not_pushed_by_a_plane_whose_point_had_let_go) {
   EXPECT_GT(let_go, 20);
 }
 
-// A probe that sweeps by a surface, closer than the wall of its contact lies further on, is not raised by it.
+// A probe that sweeps by a surface is not raised by the wall of its contact, though that lies in its way further on.
 TEST(local_model, holds_nothing_that_is_only_swept_by) {
   drawn d(seed_of(fresh_seed("local_model.holds_nothing_that_is_only_swept_by", "300 contacts"), "ways"));
   int walls = 0;

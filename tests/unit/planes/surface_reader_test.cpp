@@ -28,6 +28,21 @@ const support_plane* same_point(std::span<const support_plane> in, const support
   return found == in.end() ? nullptr : &*found;
 }
 
+struct touched {
+  std::vector<pose> T_wb;
+  pose T_wa;
+  tick t;  // of the renderer, until its next step
+};
+
+// The probe laid down on two bodies that are turned anyhow, with about this depth.
+touched touch(draws& draw, plane_renderer& feel, double depth_m) {
+  touched out;
+  out.T_wb = {{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
+  out.T_wa = laid_down(draw, feel, out.T_wb, depth_m);
+  EXPECT_EQ(feel.step({out.T_wa, out.T_wb}, out.t), status::ok);
+  return out;
+}
+
 // Probe and bodies have moved since the tick. Another renderer's tick there tells the same points, and the planes of the
 // earlier tick, read again, are theirs. As they were, they would be off.
 TEST(SurfaceReader, TellsWhatATickThereWouldTell) {
@@ -35,10 +50,7 @@ TEST(SurfaceReader, TellsWhatATickThereWouldTell) {
   plane_renderer feel = make_ridged(), there = make_ridged();
   int compared = 0, far_off = 0;
   for (int n = 0; n < extent(40, 400); ++n) {
-    const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
-    const pose T_wa = laid_down(draw, feel, T_wb, 1e-4 * draw.unit());
-    tick t;
-    ASSERT_EQ(feel.step({T_wa, T_wb}, t), status::ok);
+    const auto [T_wb, T_wa, t] = touch(draw, feel, 1e-4 * draw.unit());
     ASSERT_NE(t.reader, nullptr);
     const double far_m = std::pow(10.0, -4.0 + draw.unit());
     const auto nudged = [&](const pose& T) {
@@ -77,10 +89,7 @@ TEST(SurfaceReader, LeavesAloneWhatItDoesNotKnow) {
   plane_renderer feel = make_ridged();
   int turned = 0, freed = 0;
   for (int n = 0; n < 20; ++n) {
-    const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
-    const pose T_wa = laid_down(draw, feel, T_wb, 1e-4);
-    tick t;
-    ASSERT_EQ(feel.step({T_wa, T_wb}, t), status::ok);
+    const auto [T_wb, T_wa, t] = touch(draw, feel, 1e-4);
     const std::vector<support_plane> told = kept(t.planes);
     const pose near_T_wc = centre_frame({T_wa.rotation, T_wa.position + 5e-5 * draw.vector()});
     const auto expect_as_told = [&](const support_plane& p, std::size_t i) {
@@ -117,10 +126,7 @@ TEST(SurfaceReader, KeepsHowFarASurfaceStandsBack) {
   draws draw{std::mt19937_64(fresh_seed("SurfaceReader.KeepsHowFarASurfaceStandsBack", "10 poses"))};
   plane_renderer feel = make_ridged();
   for (int n = 0; n < 10; ++n) {
-    const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
-    const pose T_wa = laid_down(draw, feel, T_wb, 1e-4);
-    tick t;
-    ASSERT_EQ(feel.step({T_wa, T_wb}, t), status::ok);
+    const auto [T_wb, T_wa, t] = touch(draw, feel, 1e-4);
     std::vector<support_plane> read = kept(t.planes), back = read;
     for (support_plane& p : back) p.back_m = 3e-4;
     const pose T_wc = centre_frame({T_wa.rotation, T_wa.position + 1e-4 * draw.vector()});
@@ -144,10 +150,7 @@ TEST(SurfaceReader, SmoothsOutTheRelief) {
   plane_renderer feel = make_ridged();
   int smoothed = 0, leant = 0;
   for (int n = 0; n < 20; ++n) {
-    const std::vector<pose> T_wb{{draw.rotation(), vec3(0.0)}, {draw.rotation(), {0.0, 0.02, 0.02}}};
-    const pose T_wa = laid_down(draw, feel, T_wb, 1e-4);
-    tick t;
-    ASSERT_EQ(feel.step({T_wa, T_wb}, t), status::ok);
+    const auto [T_wb, T_wa, t] = touch(draw, feel, 1e-4);
     const std::vector<support_plane> told = kept(t.planes);
     std::vector<support_plane> walls = told, unknown = told;
     for (support_plane& p : unknown) p.sample = 0;
