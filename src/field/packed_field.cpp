@@ -40,6 +40,10 @@ class field_parts {
   static void write(const sample_tree& tree, field_writer& to) {
     to.number(std::uint64_t{tree.samples_.size()});
     to.array(std::span<const field_sample>(tree.samples_));
+    to.number(std::uint64_t{tree.places_});
+    for (const sample_tree::ball& b : tree.balls_) {
+      if (b.right == 0) to.number(static_cast<std::uint8_t>(b.count));
+    }
     for (const sample_tree::ball& b : tree.balls_) to.array(std::span<const float>(numbers_of(b)));
   }
   static sample_tree read_tree(field_reader& from) {
@@ -53,8 +57,16 @@ class field_parts {
     static_assert(sizeof(field_sample) == 7 * sizeof(float), "all of its bytes are numbers");
     const std::span<const float> numbers(reinterpret_cast<const float*>(out.samples_.data()), out.samples_.size() * 7);
     if (!all_finite(numbers)) from.reject("a sample is not finite");
-    const auto balls =
-        from.array<std::array<float, ball_numbers>>(sample_tree::balls_of(out.samples_.size()), "balls of samples");
+    const auto places = from.number<std::uint64_t>("the number of places");
+    if (places < 1 || places > count) {
+      from.reject("it has " + std::to_string(places) + " places of " + std::to_string(count) + " samples");
+      return out;
+    }
+    out.places_ = static_cast<std::size_t>(places);
+    // A tree of halves has one leaf more than other balls.
+    const std::size_t all_balls = sample_tree::balls_of(out.places_);
+    const auto in_leaf = from.array<std::uint8_t>((all_balls + 1) / 2, "the numbers of samples in leaves");
+    const auto balls = from.array<std::array<float, ball_numbers>>(all_balls, "balls of samples");
     out.balls_.resize(balls.size());
     for (std::size_t i = 0; i < balls.size(); ++i) {
       if (!all_finite(balls[i])) {
@@ -63,7 +75,13 @@ class field_parts {
       }
       from_numbers(balls[i], out.balls_[i]);
     }
-    if (!out.balls_.empty()) lay_out(out.balls_, {0, out.samples_.size(), 0});
+    if (out.balls_.empty() || in_leaf.empty()) return out;
+    const auto [least, most] = std::minmax_element(in_leaf.begin(), in_leaf.end());
+    if (*least < 1 || *most > sample_tree::leaf_samples) from.reject("a leaf has no sample, or too many");
+    std::span<const std::uint8_t> leaves = in_leaf;
+    if (lay_out(out.balls_, {0, out.places_, 0}, leaves) != out.samples_.size()) {
+      from.reject("its leaves do not hold all of its samples, or more");
+    }
     return out;
   }
 
@@ -81,19 +99,26 @@ class field_parts {
     b.half_m = n[7];
   }
 
-  /// Which samples a ball holds, and where its halves are, follow from the number of samples alone.
+  /// Which samples a ball holds, and where its halves are, follow from the number of places and the samples in leaves.
   struct part {
-    std::size_t first, count, self;
+    std::size_t first, places, self;
   };
-  static void lay_out(std::vector<sample_tree::ball>& balls, const part& of) noexcept {
+  /// @param leaves from the first one of this part on; what is left are those behind it   @return its samples
+  static std::size_t lay_out(std::vector<sample_tree::ball>& balls, const part& of,
+                             std::span<const std::uint8_t>& leaves) noexcept {
     sample_tree::ball& b = balls[of.self];
     b.first = static_cast<std::uint32_t>(of.first);
-    b.count = static_cast<std::uint32_t>(of.count);
-    if (of.count <= sample_tree::leaf_samples) return;
-    const std::size_t half = of.count / 2, right = of.self + 1 + sample_tree::balls_of(half);
+    if (of.places <= sample_tree::leaf_places) {
+      b.count = leaves.front();
+      leaves = leaves.subspan(1);
+      return b.count;
+    }
+    const std::size_t half = of.places / 2, right = of.self + 1 + sample_tree::balls_of(half);
     b.right = static_cast<std::uint32_t>(right);
-    lay_out(balls, {of.first, half, of.self + 1});
-    lay_out(balls, {of.first + half, of.count - half, right});
+    const std::size_t left = lay_out(balls, {of.first, half, of.self + 1}, leaves);
+    const std::size_t all = left + lay_out(balls, {of.first + left, of.places - half, right}, leaves);
+    b.count = static_cast<std::uint32_t>(all);
+    return all;
   }
 };
 

@@ -36,9 +36,14 @@ struct texel_range {
 }
 
 /// Lays out a body's samples: on its faces the highest texel of every block a pitch wide, because peaks touch first;
-/// along its sharp edges, where no texel centre lies, points a pitch apart; and every vertex, because the tip of a cone
-/// of many sides touches although it has no sharp edge. Valleys need no samples: only a peak of the other body reaches
-/// into them.
+/// along its sharp edges, where no texel centre lies, points a quarter of a pitch apart; and every vertex, because the
+/// tip of a cone of many sides touches although it has no sharp edge. Valleys need no samples: only a peak of the other
+/// body reaches into them.
+///
+/// Where an edge crosses another body's edge, the depth along it is a tent, and a sample that lies aside of its ridge has
+/// less depth in proportion to the distance; on a face it is less by the square of it. So edges, which are few, have
+/// samples four times as dense, and so do the blocks in which the relief is as steep as an edge. Four of them share a place
+/// in the tree: as many planes are told as before, of places that are closer to where the bodies touch.
 class surface_samples {
  public:
   /// @param pitch_m distance between samples, at least a texel is used
@@ -46,8 +51,8 @@ class surface_samples {
       : model_(model), index_(index), pitch_m_(pitch_m) {}
 
   /// All samples, body frame. Points without a surface (NaN texels) are left out.
-  [[nodiscard]] std::vector<field_sample> make() const {
-    std::vector<field_sample> out;
+  [[nodiscard]] placed_samples make() const {
+    laid_out out;
     std::vector<double> lean_rad(model_.mesh.triangles.size());
     for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) lean_rad[t] = add_face(t, out);
     for (std::uint32_t t = 0; t < model_.mesh.triangles.size(); ++t) {
@@ -57,17 +62,37 @@ class surface_samples {
       }
     }
     add_vertices(lean_rad, out);
-    return out;
+    return out.take();
   }
 
  private:
+  static constexpr std::size_t edge_density = 4;  // samples of a place on an edge
+  static constexpr double steep_rad = 1.0;
+  static_assert(edge_density <= placed_samples::most);
+
   struct texel_block {
-    std::size_t column, row, size;
+    std::size_t column, row, columns, rows;
   };
 
-  static void add(const vec3& p_b, const vec3& axis_b, double cone_rad, std::vector<field_sample>& to) {
-    if (is_finite(p_b)) to.push_back({glm::vec3(p_b), glm::vec3(axis_b), static_cast<float>(cone_rad)});
-  }
+  // Samples as they are added, and which of them share a place.
+  class laid_out {
+   public:
+    void add(const vec3& p_b, const vec3& axis_b, double cone_rad) {
+      if (is_finite(p_b)) laid_.all.push_back({glm::vec3(p_b), glm::vec3(axis_b), static_cast<float>(cone_rad)});
+    }
+    // What was added since the last time is one place.
+    void end_place() {
+      if (laid_.all.size() == placed_) return;
+      laid_.at_place.push_back(static_cast<std::uint8_t>(laid_.all.size() - placed_));
+      placed_ = laid_.all.size();
+    }
+    [[nodiscard]] std::size_t size() const noexcept { return laid_.all.size(); }
+    [[nodiscard]] placed_samples take() noexcept { return std::move(laid_); }
+
+   private:
+    placed_samples laid_;
+    std::size_t placed_ = 0;
+  };
 
   // Edges that turn by less lie on a curved surface, where texels are as high as the edge.
   [[nodiscard]] bool is_sharp(std::uint32_t t, std::uint32_t across) const noexcept {
@@ -93,9 +118,9 @@ class surface_samples {
     };
     double least_cosine = 1.0;
     for (std::size_t j = block.row - std::min<std::size_t>(block.row, 1);
-         j < std::min<std::size_t>(block.row + block.size, model_.texture.height - 1); ++j) {
+         j < std::min<std::size_t>(block.row + block.rows, model_.texture.height - 1); ++j) {
       for (std::size_t i = block.column - std::min<std::size_t>(block.column, 1);
-           i < std::min<std::size_t>(block.column + block.size, model_.texture.width - 1); ++i) {
+           i < std::min<std::size_t>(block.column + block.columns, model_.texture.width - 1); ++i) {
         if (!is_inside(i, j) || !is_inside(i + 1, j) || !is_inside(i, j + 1)) continue;
         const vec3 p = model_.texture.at(i, j);
         const vec3 across = glm::cross(model_.texture.at(i + 1, j) - p, model_.texture.at(i, j + 1) - p);
@@ -109,7 +134,7 @@ class surface_samples {
   }
 
   // @return how far the fine surface leans away from the triangle, rad
-  double add_face(std::uint32_t t, std::vector<field_sample>& to) const {
+  double add_face(std::uint32_t t, laid_out& to) const {
     const texel_triangle& z = index_.texels[t];
     const double turn_rad = turn_to_neighbours(t);
     double most_rad = turn_rad;
@@ -124,36 +149,53 @@ class surface_samples {
     const std::size_t before = to.size();
     for (std::size_t row = rows.first / block; row <= rows.last / block; ++row) {
       for (std::size_t column = columns.first / block; column <= columns.last / block; ++column) {
-        const texel_block here{column * block, row * block, block};
+        const texel_block here{column * block, row * block, block, block};
         const double lean_rad = std::max(turn_rad, lean_in(t, here));
         most_rad = std::max(most_rad, lean_rad);
-        add_highest(t, here, texel_m, lean_rad, to);
+        if (lean_rad > steep_rad && block > 1) {
+          add_quarters(t, here, turn_rad, texel_m, to);
+        } else {
+          add_highest(t, here, texel_m, lean_rad, to);
+        }
+        to.end_place();
       }
     }
     // A sliver that holds no texel centre gets a sample too.
     if (to.size() == before) {
       const coarse_triangle& tri = model_.mesh.triangles[t];
-      add(model_.texture.sample((tri.uv[0] + tri.uv[1] + tri.uv[2]) / 3.0), index_.normal[t], most_rad, to);
+      to.add(model_.texture.sample((tri.uv[0] + tri.uv[1] + tri.uv[2]) / 3.0), index_.normal[t], most_rad);
+      to.end_place();
     }
     return most_rad;
   }
 
+  void add_quarters(std::uint32_t t, const texel_block& whole, double turn_rad, double texel_m, laid_out& to) const {
+    const std::size_t columns = (whole.columns + 1) / 2, rows = (whole.rows + 1) / 2;
+    for (const bool low : {true, false}) {
+      for (const bool left : {true, false}) {
+        const texel_block part{left ? whole.column : whole.column + columns, low ? whole.row : whole.row + rows,
+                               left ? columns : whole.columns - columns, low ? rows : whole.rows - rows};
+        add_highest(t, part, texel_m, std::max(turn_rad, lean_in(t, part)), to);
+      }
+    }
+  }
+
   // The highest texel of a block; between equals the one nearest to its middle.
-  void add_highest(std::uint32_t t, const texel_block& block, double texel_m, double lean_rad,
-                   std::vector<field_sample>& to) const {
+  void add_highest(std::uint32_t t, const texel_block& block, double texel_m, double lean_rad, laid_out& to) const {
     const auto c = corners(model_.mesh, t);
-    const double middle = 0.5 * static_cast<double>(block.size - 1);
+    const double middle_x = 0.5 * static_cast<double>(block.columns - 1);
+    const double middle_y = 0.5 * static_cast<double>(block.rows - 1);
     double best_score = -1e30;
     vec3 best(0.0);
-    for (std::size_t j = block.row; j < std::min<std::size_t>(block.row + block.size, model_.texture.height); ++j) {
-      for (std::size_t i = block.column; i < std::min<std::size_t>(block.column + block.size, model_.texture.width);
+    for (std::size_t j = block.row; j < std::min<std::size_t>(block.row + block.rows, model_.texture.height); ++j) {
+      for (std::size_t i = block.column; i < std::min<std::size_t>(block.column + block.columns, model_.texture.width);
            ++i) {
         const vec3 bary = index_.texels[t].barycentric({static_cast<double>(i), static_cast<double>(j)});
         if (!(bary.x >= 0.0 && bary.y >= 0.0 && bary.z >= 0.0)) continue;
         const vec3 p = model_.texture.at(i, j);
         if (!is_finite(p)) continue;
-        const double x = static_cast<double>(i - block.column) - middle;
-        const double y = static_cast<double>(j - block.row) - middle;
+        const double x = static_cast<double>(i - block.column) - middle_x;
+        const double y = static_cast<double>(j - block.row) - middle_y;
         const double height = glm::dot(index_.normal[t], p - (bary.x * c[0] + bary.y * c[1] + bary.z * c[2]));
         const double score = height - 1e-4 * texel_m * (x * x + y * y);
         if (score > best_score) {
@@ -162,11 +204,10 @@ class surface_samples {
         }
       }
     }
-    if (best_score > -1e30) add(best, index_.normal[t], lean_rad, to);
+    if (best_score > -1e30) to.add(best, index_.normal[t], lean_rad);
   }
 
-  void add_edge(std::uint32_t t, std::size_t k, const std::vector<double>& lean_rad,
-                std::vector<field_sample>& to) const {
+  void add_edge(std::uint32_t t, std::size_t k, const std::vector<double>& lean_rad, laid_out& to) const {
     const auto c = corners(model_.mesh, t);
     const double length_m = glm::length(c[(k + 1) % 3] - c[k]);
     const std::uint32_t across = index_.neighbour[t][k];
@@ -174,10 +215,14 @@ class surface_samples {
     const vec3 axis = middle_of(here + there, here);
     const double leans_rad = std::max(lean_rad[t], across == surface_index::none ? 0.0 : lean_rad[across]);
     const double cone_rad = angle(axis, here) + leans_rad;
-    const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m / pitch_m_)));
-    for (std::size_t i = 0; i < count; ++i) {
-      const double f = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
-      add(fine_edge_point(model_, index_, t, k, f), axis, cone_rad, to);
+    const auto places = static_cast<std::size_t>(std::max(1.0, std::ceil(length_m / pitch_m_)));
+    // Half a pitch from its ends, where the vertices are, no sample is closer to one of these than on a face: a tip that is
+    // pressed into something soft is one plane, whatever the density along its edges.
+    const std::size_t last = (places - 1) * edge_density;
+    for (std::size_t i = 0; i <= last; ++i) {
+      const double f = (static_cast<double>(i) / static_cast<double>(edge_density) + 0.5) / static_cast<double>(places);
+      to.add(fine_edge_point(model_, index_, t, k, f), axis, cone_rad);
+      if (i % edge_density == edge_density - 1 || i == last) to.end_place();
     }
   }
 
@@ -190,7 +235,7 @@ class surface_samples {
   }
 
   // At the mean position that the charts around a vertex give it, facing as all its triangles do.
-  void add_vertices(const std::vector<double>& lean_rad, std::vector<field_sample>& to) const {
+  void add_vertices(const std::vector<double>& lean_rad, laid_out& to) const {
     const std::size_t vertices = model_.mesh.positions.size();
     std::vector<vec3> place(vertices, vec3(0.0)), axis(vertices, vec3(0.0));
     std::vector<std::uint32_t> corners_at(vertices, 0);
@@ -213,7 +258,8 @@ class surface_samples {
     }
     for (std::size_t v = 0; v < vertices; ++v) {
       if (corners_at[v] == 0) continue;
-      add(place[v] / static_cast<double>(corners_at[v]), middle_of(axis[v], {0.0, 0.0, 1.0}), cone_rad[v], to);
+      to.add(place[v] / static_cast<double>(corners_at[v]), middle_of(axis[v], {0.0, 0.0, 1.0}), cone_rad[v]);
+      to.end_place();
     }
   }
 

@@ -29,10 +29,10 @@ class known_depths {
   explicit known_depths(std::size_t leaves) {
     for (list* l : {&now_, &before_}) {
       detail::reserve_resident(l->leaves, leaves);
-      detail::reserve_resident(l->most_m, leaves * sample_tree::leaf_samples);
+      detail::reserve_resident(l->most_m, leaves * sample_tree::leaf_places);
     }
     detail::reserve_resident(brought_m_, leaves);
-    detail::reserve_resident(asked_m_, leaves * sample_tree::leaf_samples);
+    detail::reserve_resident(asked_m_, leaves * sample_tree::leaf_places);
     detail::reserve_resident(asked_, leaves);
   }
 

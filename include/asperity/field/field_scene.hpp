@@ -27,7 +27,8 @@ struct field_settings {
 /// Settings of make_field_body().
 struct field_body_settings {
   field_settings field{};
-  double sample_pitch_m = 0.0;  ///< distance between samples; 0: 0.3 % of the body's diagonal
+  /// Distance between samples on faces, m, a quarter of it on sharp edges; 0: 0.3 % of the body's diagonal.
+  double sample_pitch_m = 0.0;
 
   friend bool operator==(const field_body_settings&, const field_body_settings&) = default;
 };

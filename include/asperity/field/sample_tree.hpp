@@ -29,6 +29,14 @@ struct field_sample {
   float cone_rad = 0.0F;               ///< half its opening: 0 on a plain face
 };
 
+/// Samples place by place. Those of one place lie within the distance between samples of each other and look alike, as
+/// four in a row on a sharp edge do: a leaf of a tree holds all of a place or none of it.
+struct placed_samples {
+  std::vector<field_sample> all;
+  std::vector<std::uint8_t> at_place;  ///< how many of them, from 1 to most; empty: each has a place of its own
+  static constexpr std::size_t most = 4;
+};
+
 /// Where a few samples lie: within radius_m of a centre, and within half_m of the plane through it across an axis. On a
 /// smooth surface half_m is far below radius_m, and a slope that is known bounds a depth by it. Body frame.
 struct sample_ball {
@@ -47,14 +55,19 @@ struct sample_ball {
 /// another body can bound what a whole branch holds by one reading. Built once, never changed.
 class sample_tree {
  public:
+  /// Most places of a leaf. A leaf tells one plane at most, so denser samples at a place make no more planes.
+  static constexpr std::size_t leaf_places = 8;
   /// Most samples of a leaf.
-  static constexpr std::size_t leaf_samples = 8;
+  static constexpr std::size_t leaf_samples = leaf_places * placed_samples::most;
 
   sample_tree() = default;
 
   /// @param samples  positions finite   @param threads  that build it; 0: as many as the machine has
-  /// @pre fewer than 2^31
-  ASPERITY_API explicit sample_tree(std::vector<field_sample> samples, unsigned threads = 1);
+  /// @pre fewer than 2^31; the numbers of samples at places add up to all
+  ASPERITY_API explicit sample_tree(placed_samples samples, unsigned threads = 1);
+  /// Each sample has a place of its own.
+  explicit sample_tree(std::vector<field_sample> samples, unsigned threads = 1)
+      : sample_tree(placed_samples{std::move(samples), {}}, threads) {}
 
   [[nodiscard]] std::span<const field_sample> samples() const noexcept { return samples_; }
 
@@ -80,10 +93,10 @@ class sample_tree {
 
   /// How many balls are numbered.
   [[nodiscard]] std::size_t balls() const noexcept { return balls_.size(); }
-  /// How many a tree of so many samples has.
-  [[nodiscard]] static constexpr std::size_t balls_of(std::size_t samples) noexcept {
-    if (samples == 0) return 0;
-    return samples <= leaf_samples ? 1 : 1 + balls_of(samples / 2) + balls_of(samples - samples / 2);
+  /// How many a tree of so many places has.
+  [[nodiscard]] static constexpr std::size_t balls_of(std::size_t places) noexcept {
+    if (places == 0) return 0;
+    return places <= leaf_places ? 1 : 1 + balls_of(places / 2) + balls_of(places - places / 2);
   }
 
   /// Calls look(branch), which answers a branch_answer, from the largest ball down, and visit(sample_ball, samples) for
@@ -145,6 +158,7 @@ class sample_tree {
 
   std::vector<field_sample> samples_;
   std::vector<ball> balls_;
+  std::size_t places_ = 0;
 };
 
 }  // namespace asperity

@@ -149,9 +149,9 @@ void print(const std::vector<double>& changed) {
               100.0 * quantile(changed, 0.5), 100.0 * quantile(changed, 0.9), 100.0 * quantile(changed, 0.99));
 }
 
-// Wished for: 1 %, which a smooth body keeps (scale_truth_test.cpp). Benchmark models meet with their edges, and along
-// an edge that crosses another one the depth is a tent: between two samples half a pitch away from its ridge it is less
-// by up to a quarter of a pitch, 0.04 to 0.17 mm.
+// Wished for: 1 %, which a smooth body keeps (scale_truth_test.cpp) and half of the presses of benchmark models do. They
+// meet with their edges, and along an edge that crosses another one the depth is a tent, so one of ten presses still
+// changes by 3 to 4 %; with as few samples on edges as on faces it was 7 %.
 TEST(force_truth, half_the_distance_of_samples_changes_little) {
   const auto half = [](const truth_body& b) {
     static std::map<std::string, field_body_ptr> made;
@@ -167,9 +167,9 @@ TEST(force_truth, half_the_distance_of_samples_changes_little) {
   const auto beyond = [](const std::vector<double>& of, double bound) {
     return static_cast<std::size_t>(std::count_if(of.begin(), of.end(), [=](double c) { return c > bound; }));
   };
-  EXPECT_FALSE(more_than(0.5, beyond(changed, 0.02), changed.size()));
-  EXPECT_FALSE(more_than(0.1, beyond(changed, 0.1), changed.size()));
-  EXPECT_FALSE(more_than(0.01, beyond(changed, 0.4), changed.size()));
+  EXPECT_FALSE(more_than(0.5, beyond(changed, 0.01), changed.size()));
+  EXPECT_FALSE(more_than(0.1, beyond(changed, 0.06), changed.size()));
+  EXPECT_FALSE(more_than(0.01, beyond(changed, 0.25), changed.size()));
   // The control: with one sample in sixty-four it does change, whichever pairs the day draws.
   const std::vector<double> poor =
       changes(seed, 2, 18, [](const truth_body& b) { return with_fewer_samples(*b.field, 64); });

@@ -136,6 +136,27 @@ TEST(PackedField, SaysWhatIsWrong) {
   EXPECT_NE(with(140, std::numeric_limits<float>::infinity()).find("a node of its grid"), std::string::npos);
 }
 
+// The numbers of samples in leaves are the only ones that say where a ball's samples are.
+TEST(PackedField, LeavesHoldEachSampleOnce) {
+  const field_body made = make_field_body(ridged_box(40e-6), small_settings()).value();
+  const std::vector<std::byte> good = pack_field(made);
+  const std::size_t balls = made.samples.balls(), leaves = (balls + 1) / 2, first = good.size() - 32 * balls - leaves;
+  const auto with = [&](std::size_t leaf, int more) {
+    std::vector<std::byte> bytes = good;
+    bytes[first + leaf] = static_cast<std::byte>(std::to_integer<int>(bytes[first + leaf]) + more);
+    const auto read = unpack_field(bytes);
+    return read ? std::string() : read.error().message;
+  };
+  EXPECT_EQ(with(0, 0), "");
+  EXPECT_NE(with(0, 1).find("its leaves do not hold"), std::string::npos) << with(0, 1);
+  EXPECT_NE(with(leaves - 1, -1).find("its leaves do not hold"), std::string::npos) << with(leaves - 1, -1);
+  EXPECT_NE(with(leaves / 2, 100).find("a leaf has no sample, or too many"), std::string::npos);
+  std::vector<std::byte> bytes = good;
+  const std::uint64_t no_places = 0;
+  std::memcpy(bytes.data() + first - sizeof no_places, &no_places, sizeof no_places);
+  EXPECT_NE(unpack_field(bytes).error().message.find("places of"), std::string::npos);
+}
+
 TEST(PackedField, EveryBeginningOfItIsRefused) {
   const std::vector<std::byte>& good = packed_box();
   std::mt19937_64 random(fresh_seed("PackedField.EveryBeginningOfItIsRefused", "300 lengths"));

@@ -116,6 +116,48 @@ TEST(SampleTree, KnowsHowFlatALeafIs) {
   EXPECT_LT(growth, 0.1 * leaves);
 }
 
+// A leaf holds all samples of a place or none, and no more leaves than if each place had one sample.
+TEST(SampleTree, KeepsPlacesWhole) {
+  std::mt19937_64 bits(fresh_seed("SampleTree.KeepsPlacesWhole", "40 trees"));
+  const auto every = [](const sample_ball&, bool is_leaf) noexcept {
+    return is_leaf ? sample_tree::branch_answer::taken : sample_tree::branch_answer::open;
+  };
+  for (int n = 0; n < 40; ++n) {
+    // The cone tells which place a sample is of.
+    const std::vector<field_sample> middles = scattered(1 + bits() % 3000, bits);
+    placed_samples placed;
+    for (const field_sample& middle : middles) {
+      placed.at_place.push_back(static_cast<std::uint8_t>(1 + bits() % placed_samples::most));
+      for (std::uint8_t i = 0; i < placed.at_place.back(); ++i) {
+        field_sample s = scattered(1, bits)[0];
+        s.position_b = middle.position_b + 0.01F * s.position_b;
+        s.cone_rad = static_cast<float>(placed.at_place.size());
+        placed.all.push_back(s);
+      }
+    }
+    const sample_tree tree(placed);
+    ASSERT_EQ(tree.samples().size(), placed.all.size());
+    EXPECT_EQ(tree.balls(), sample_tree::balls_of(middles.size()));
+    std::size_t told = 0;
+    tree.query(every, [&](const sample_ball& ball, std::span<const field_sample> leaf) noexcept {
+      told += leaf.size();
+      EXPECT_LE(leaf.size(), sample_tree::leaf_samples);
+      std::vector<float> places;
+      for (const field_sample& s : leaf) {
+        const vec3 off = vec3(s.position_b) - ball.centre_b;
+        EXPECT_LE(glm::length(off), ball.radius_m);
+        EXPECT_LE(std::fabs(glm::dot(off, ball.axis_b)), ball.half_m);
+        places.push_back(s.cone_rad);
+      }
+      for (const float place : places) {
+        EXPECT_EQ(static_cast<std::uint8_t>(std::count(places.begin(), places.end(), place)),
+                  placed.at_place[static_cast<std::size_t>(place) - 1]);
+      }
+    });
+    EXPECT_EQ(told, placed.all.size());
+  }
+}
+
 TEST(SampleTree, OfNothingBringsNothing) {
   const sample_tree tree;
   EXPECT_EQ(query_ball(tree, vec3(0.0), 1.0).points, 0U);
@@ -124,7 +166,7 @@ TEST(SampleTree, OfNothingBringsNothing) {
 
 std::vector<field_sample> samples_of(const textured_model& model, double pitch_m) {
   const detail::surface_index index(model);
-  return detail::surface_samples(model, index, pitch_m).make();
+  return detail::surface_samples(model, index, pitch_m).make().all;
 }
 
 double distance_to(const std::vector<field_sample>& samples, const vec3& p) {
@@ -158,8 +200,29 @@ TEST(SurfaceSamples, HoldEveryVertexAndEdge) {
     EXPECT_LT(distance_to(samples, sign * half), 1e-8);
   }
   for (double x = -0.95; x <= 0.95; x += 0.1) {
-    EXPECT_LT(distance_to(samples, {x * half.x, half.y, half.z}), 0.55e-3) << "along an edge, at " << x;
+    EXPECT_LT(distance_to(samples, {x * half.x, half.y, half.z}), 0.14e-3) << "along an edge, at " << x;
   }
+}
+
+// Flanks of 63 degrees have four samples for one of a plain face, and none less steep than an edge has more.
+TEST(SurfaceSamples, AreFourTimesAsManyWhereReliefIsSteep) {
+  const vec3 half(0.02, 0.015, 0.01);
+  const auto on_top = [&](double steepness) {
+    const relief_function flanks = [=](const vec3& p, const vec3&) {
+      constexpr double wave_m = 4e-3;
+      return steepness * (std::fabs(p.x / wave_m - std::round(p.x / wave_m)) - 0.25) * wave_m;
+    };
+    const std::vector<field_sample> all = samples_of(make_textured_box(half, 768, flanks), 1e-3);
+    return static_cast<double>(std::count_if(all.begin(), all.end(), [&](const field_sample& s) {
+      return std::fabs(s.position_b.x) < 0.9 * half.x && std::fabs(s.position_b.y) < 0.9 * half.y &&
+             s.position_b.z > 0.F;
+    }));
+  };
+  const double plain = on_top(0.0);
+  EXPECT_GT(plain, 500.0);
+  EXPECT_LT(on_top(1.0), 1.3 * plain);
+  EXPECT_GT(on_top(2.0), 3.5 * plain);
+  EXPECT_LT(on_top(2.0), 4.5 * plain);
 }
 
 // A tip whose edges are too blunt to be sharp has samples only because it is a vertex.
