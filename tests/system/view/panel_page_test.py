@@ -149,6 +149,9 @@ class Hostile(unittest.TestCase):
             status, said = p.ask("/do?press=x,0.5")
             self.assertEqual(status, 403)
             self.assertIn("--view-address", said)
+            until = time.monotonic() + 20  # the page is served before the device is found
+            while p.state()["device"] != "ready" and time.monotonic() < until:
+                time.sleep(0.1)
             self.assertEqual(p.state()["device"], "ready")
         finally:
             self.assertEqual(p.end()["most_force"], 0)
