@@ -34,7 +34,7 @@ struct exit_body {
         relief(usual_relief(body->field, body->samples.samples())),
         shape(make_moving_shape(body->field, relief, threads)),
         bounds(shape, threads),
-        marks(body->samples.samples()) {}
+        marks(body->samples) {}
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(shape, bounds, marks); }
 };
 

@@ -24,18 +24,18 @@ struct branch {
   std::uint32_t right = 0;             ///< the second child; 0 for a leaf. The first child follows its parent
 };
 
-/// Branches over samples in the order of their sample_tree, whose neighbours in the list are neighbours in space.
-/// Made once, beside the samples; never changed.
+/// Branches over the samples of a sample_tree: its balls, and halves of its leaves, where neighbours in the list are
+/// neighbours in space. Made once, beside the samples; never changed.
 class mark_tree {
  public:
   /// Most samples of a leaf.
   static constexpr std::size_t leaf_samples = 6;
 
   mark_tree() = default;
-  explicit mark_tree(std::span<const field_sample> samples) : samples_(samples) {
-    if (samples.empty()) return;
-    branches_.reserve(samples.size());
-    build(0, samples.size());
+  explicit mark_tree(const sample_tree& tree) : samples_(tree.samples()) {
+    if (samples_.empty()) return;
+    branches_.reserve(samples_.size());
+    build(tree.at(0));
     branches_.shrink_to_fit();
   }
 
@@ -44,6 +44,20 @@ class mark_tree {
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(branches_); }
 
  private:
+  void build(const sample_tree::branch& of) {
+    const std::span<const field_sample> part = of.samples();
+    const auto first = static_cast<std::size_t>(part.data() - samples_.data());
+    if (of.is_leaf()) {
+      build(first, part.size());
+      return;
+    }
+    const std::size_t self = branches_.size();
+    branches_.push_back(around(first, part.size()));
+    build(of.of->at(of.left));
+    branches_[self].right = static_cast<std::uint32_t>(branches_.size());
+    build(of.of->at(of.right));
+  }
+
   void build(std::size_t first, std::size_t count) {
     const std::size_t self = branches_.size();
     branches_.push_back(around(first, count));

@@ -91,6 +91,10 @@ class sample_tree {
     }
   };
 
+  /// A ball by its number; 0 is the largest. @pre number < balls()
+  [[nodiscard]] branch at(std::uint32_t number) const noexcept {
+    return {number, number + 1, balls_[number].right, this};
+  }
   /// How many balls are numbered.
   [[nodiscard]] std::size_t balls() const noexcept { return balls_.size(); }
   /// How many a tree of so many places has.
