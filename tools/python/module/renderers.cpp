@@ -368,7 +368,7 @@ void add_renderers(py::module_& m) {
            "The wrench on the probe (6,) at a pose (7,). Raises ValueError for another shape, Error for what is no "
            "pose.\n\n"
            ">>> print(renderer.step([0, 0, z, 0, 0, 0, 1])[:3])  # N\n"
-           "[6.28922128e-05 1.03080702e-01 1.87488875e+00]\n")
+           "[1.53258676e-04 9.98003320e-02 1.87556295e+00]\n")
       .def("step_batch", &step_batch, py::arg("poses"), py::kw_only(), py::arg("threads") = 0U,
            "The wrenches (N, 6) at poses (N, 7), on several threads, 0: as many as the machine has. Each row has the "
            "bits of step() at that pose, whatever the threads. Windows depend on the pose before: theirs are computed "

@@ -104,7 +104,7 @@ void add_touches(py::module_& m) {
                     ">>> len(touch.contacts), touch.contacts[0].body, touch.complete\n"
                     "(1, 0, True)\n"
                     ">>> print(touch.contacts[0].normal)  # n_ab: down, from the block to the gear\n"
-                    "[-8.08111640e-05 -5.50511788e-02 -9.98483531e-01]\n")
+                    "[-8.50318294e-05 -5.32151847e-02 -9.98583065e-01]\n")
       .def_property_readonly(
           "wrench", [](const touch& t) { return to_array(t.on_probe_w); },
           "On the probe (6,): force (N) and torque (N m) about its centre of mass.")
