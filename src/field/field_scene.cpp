@@ -12,6 +12,7 @@
 #include "field/make_body_field.hpp"
 #include "field/model_digest.hpp"
 #include "field/surface_samples.hpp"
+#include "field/thin_plain.hpp"
 #include "field/threads.hpp"
 #include "model/surface_index.hpp"
 
@@ -28,20 +29,25 @@ result<field_body> make_field_body(const textured_model& model, const field_body
   if (const result<void> ok = check_field_model(model, settings.field); !ok) return ok.error();
   const unsigned threads = detail::resolve_threads(settings.field.threads);
   std::optional<result<body_field>> field;
-  sample_tree samples;
+  sample_tree samples, plain;
   detail::for_each_task(2, threads, [&](std::size_t task) {
     if (task == 0) {
       field = make_body_field(model, settings.field);
     } else {
       const detail::surface_index index(model);
-      samples = sample_tree(detail::surface_samples(model, index, pitch_m).make(), threads);
+      const placed_samples all = detail::surface_samples(model, index, pitch_m).make();
+      // With a map, a plain face may be of several materials, and each sample tells of what it is.
+      detail::thinned_samples apart = model.surface_map.empty() ? detail::plain_thinning(all, pitch_m).apart(threads)
+                                                                : detail::thinned_samples{all, {}};
+      samples = sample_tree(std::move(apart.told), threads);
+      plain = sample_tree(std::move(apart.plain), threads);
     }
   });
   if (!*field) return field->error();
   if (samples.samples().empty()) {
     return error{error_code::bad_texture, "the model " + model.name + " has no texel that holds a surface point"};
   }
-  return field_body{std::move(*field).value(), std::move(samples), without_threads(settings),
+  return field_body{std::move(*field).value(), std::move(samples), std::move(plain), without_threads(settings),
                     detail::model_digest(model)};
 }
 

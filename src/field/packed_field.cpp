@@ -39,6 +39,7 @@ class field_parts {
 
   static void write(const sample_tree& tree, field_writer& to) {
     to.number(std::uint64_t{tree.samples_.size()});
+    if (tree.samples_.empty()) return;
     to.array(std::span<const field_sample>(tree.samples_));
     to.number(std::uint64_t{tree.places_});
     for (const sample_tree::ball& b : tree.balls_) {
@@ -46,12 +47,12 @@ class field_parts {
     }
     for (const sample_tree::ball& b : tree.balls_) to.array(std::span<const float>(numbers_of(b)));
   }
-  static sample_tree read_tree(field_reader& from) {
+  static sample_tree read_tree(field_reader& from, bool may_be_empty) {
     sample_tree out;
     const auto count = from.number<std::uint64_t>("the number of samples");
     out.samples_ = from.array<field_sample>(static_cast<std::size_t>(count), "samples");
     if (out.samples_.empty()) {
-      from.reject("it has no samples");
+      if (!may_be_empty) from.reject("it has no samples");
       return out;
     }
     static_assert(sizeof(field_sample) == 7 * sizeof(float), "all of its bytes are numbers");
@@ -234,6 +235,7 @@ std::vector<std::byte> pack_field(const field_body& body) {
   write(f.fine, to);
   field_parts::write(f.slopes, to);
   field_parts::write(body.samples, to);
+  field_parts::write(body.plain, to);
   return to.take();
 }
 
@@ -256,7 +258,8 @@ result<field_body> unpack_field(std::span<const std::byte> bytes, unsigned threa
   f.smooth = read_grid(from);
   f.fine = read_bricks(from);
   if (from.wrong().empty()) f.slopes = field_parts::read_slopes(f.smooth, from);
-  out.samples = field_parts::read_tree(from);
+  out.samples = field_parts::read_tree(from, false);
+  out.plain = field_parts::read_tree(from, true);
   if (from.wrong().empty() && from.left() != 0) from.reject("bytes follow after its end");
   if (!from.wrong().empty()) return error{error_code::bad_format, "the field is damaged: " + from.wrong()};
   for_each_task(2, resolve_threads(threads), [&](std::size_t task) {
@@ -270,7 +273,9 @@ result<field_body> unpack_field(std::span<const std::byte> bytes, unsigned threa
 }
 
 bool is_made_of(const field_body& body, const textured_model& model, const field_body_settings& settings) {
-  return body.made_with == without_threads(settings) && body.of_model == model_digest(model);
+  // Without a map plain samples are left out, and with one each tells of what it is.
+  const bool tells_materials = model.surface_map.empty() || body.plain.samples().empty();
+  return tells_materials && body.made_with == without_threads(settings) && body.of_model == model_digest(model);
 }
 
 }  // namespace asperity

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "field/thinnest.hpp"
 #include "field/threads.hpp"
 
 namespace asperity {
@@ -20,34 +21,6 @@ struct numbered_place {
   glm::vec3 at;
   std::uint32_t place;
 };
-
-/// The direction along which points spread least, by the power method on the trace of their covariance less the
-/// covariance. A direction that is not quite the best makes bounds a little wider, not wrong.
-vec3 thinnest(std::span<const glm::vec3> points, const vec3& middle_b) noexcept {
-  vec3 sum(0.0), squares(0.0), mixed(0.0);  // xx, yy, zz; xy, xz, yz
-  double trace = 1e-30;
-  for (const glm::vec3& p : points) {
-    const vec3 d = vec3(p) - middle_b, square = d * d;
-    sum += d;
-    squares += square;
-    mixed += vec3(d.x * d.y, d.x * d.z, d.y * d.z);
-    trace += square.x + square.y + square.z;
-  }
-  mat3 rest(-squares.x, -mixed.x, -mixed.y, -mixed.x, -squares.y, -mixed.z, -mixed.y, -mixed.z, -squares.z);
-  const double per_sample = 1.0 / static_cast<double>(points.size());
-  rest += per_sample * glm::outerProduct(sum, sum);
-  trace -= per_sample * glm::dot(sum, sum);
-  for (int k = 0; k < 3; ++k) rest[k][k] += trace;
-  constexpr int steps = 20;
-  vec3 axis(0.48, 0.6, 0.64);
-  for (int i = 0; i < steps; ++i) {
-    const vec3 next = rest * axis;
-    const double squared = glm::dot(next, next);
-    if (!(squared > 0.0)) break;
-    axis = next / std::sqrt(squared);
-  }
-  return axis;
-}
 
 }  // namespace
 
@@ -196,7 +169,7 @@ class sample_tree::builder {
   // Rounding a radius down would leave a sample outside, so both extents are rounded up.
   [[nodiscard]] static ball around(std::span<const glm::vec3> points, const glm::vec3& middle_b) noexcept {
     ball out;
-    out.axis_b = glm::vec3(thinnest(points, vec3(middle_b)));
+    out.axis_b = glm::vec3(detail::thinnest(points, vec3(middle_b)));
     double bottom = 1e30, top = -1e30;
     for (const glm::vec3& p : points) {
       const double z = glm::dot(vec3(p) - vec3(middle_b), vec3(out.axis_b));

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "asperity/core/memory.hpp"
 #include "asperity/field/field_body.hpp"
 #include "asperity/field/field_scene.hpp"
+#include "asperity/field/sample_tree.hpp"
 #include "field/threads.hpp"
 #include "least_motion/field_bounds.hpp"
 #include "least_motion/kept_relief.hpp"
@@ -19,9 +21,19 @@
 
 namespace asperity::exits {
 
+/// The samples of a body and those in the middle of its plain faces, in one tree; empty where it has no plain ones.
+[[nodiscard]] inline sample_tree all_samples(const field_body& body, unsigned threads) {
+  const std::span<const field_sample> told = body.samples.samples(), plain = body.plain.samples();
+  if (plain.empty()) return {};
+  std::vector<field_sample> all(told.begin(), told.end());
+  all.insert(all.end(), plain.begin(), plain.end());
+  return sample_tree(std::move(all), threads);
+}
+
 /// One body. Immutable once made.
 struct exit_body {
   field_body_ptr body;
+  sample_tree with_plain;  ///< all of its samples; empty where the body's own tree has all
   kept_relief relief;
   moving_shape shape;
   field_bounds bounds;
@@ -31,11 +43,23 @@ struct exit_body {
   /// @pre made
   exit_body(field_body_ptr made, unsigned threads)
       : body(std::move(made)),
-        relief(usual_relief(body->field, body->samples.samples())),
+        with_plain(all_samples(*body, threads)),
+        relief(usual_relief(body->field, samples().samples())),
         shape(make_moving_shape(body->field, relief, threads)),
         bounds(shape, threads),
-        marks(body->samples) {}
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(shape, bounds, marks); }
+        marks(samples()) {}
+  exit_body(const exit_body&) = delete;  // marks look at its samples
+  exit_body& operator=(const exit_body&) = delete;
+  exit_body(exit_body&&) = delete;
+  exit_body& operator=(exit_body&&) = delete;
+  ~exit_body() = default;
+
+  [[nodiscard]] const sample_tree& samples() const noexcept {
+    return body->plain.samples().empty() ? body->samples : with_plain;
+  }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept {
+    return asperity::heap_bytes(with_plain, shape, bounds, marks);
+  }
 };
 
 using exit_body_ptr = std::shared_ptr<const exit_body>;

@@ -83,14 +83,18 @@ json to_json(const field_body& body) {
           {"pitch", body.field.smooth.pitch_m},
           {"relief_pitch", body.field.fine.pitch_m},
           {"thickness", body.field.thickness_m > 0.0 ? json(body.field.thickness_m) : json()},
-          {"samples", body.samples.samples().size()}};
+          {"samples", body.samples.samples().size()},
+          {"plain_samples", body.plain.samples().size()}};
 }
 
-// "16 MB, smooth part every 1.2 mm, relief every 0.2 mm, 119827 samples; thinnest parts 2.1 mm"
+// "16 MB, smooth part every 1.2 mm, relief every 0.2 mm, 119827 samples and 13000 on plain faces; thinnest parts 2.1 mm"
 std::string to_text(const field_body& body) {
   std::string out = memory_text(memory_bytes(body)) + ", smooth part every " + length_text(body.field.smooth.pitch_m) +
                     ", relief every " + length_text(body.field.fine.pitch_m) + ", " +
                     std::to_string(body.samples.samples().size()) + " samples";
+  if (!body.plain.samples().empty()) {
+    out += " and " + std::to_string(body.plain.samples().size()) + " on plain faces";
+  }
   if (body.field.thickness_m > 0.0) out += "; thinnest parts " + length_text(body.field.thickness_m);
   return out;
 }

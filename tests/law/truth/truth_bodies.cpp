@@ -73,7 +73,9 @@ textured_model with_shifted_relief(const textured_model& model) {
 
 field_body_ptr with_fewer_samples(const field_body& body, std::size_t kept) {
   std::vector<field_sample> left;
-  for (std::size_t i = 0; i < body.samples.samples().size(); i += kept) left.push_back(body.samples.samples()[i]);
+  for (const sample_tree* of : {&body.samples, &body.plain}) {
+    for (std::size_t i = 0; i < of->samples().size(); i += kept) left.push_back(of->samples()[i]);
+  }
   return std::make_shared<const field_body>(field_body{body.field, sample_tree(std::move(left))});
 }
 

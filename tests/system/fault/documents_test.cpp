@@ -59,7 +59,7 @@ TEST_F(documents, bake_and_inspect_report_the_same) {
   EXPECT_LT(but_field, 1.5 * texels);
   EXPECT_EQ(seen["warnings"], json::array());
 
-  expect_keys(seen["field"], {"memory", "pitch", "relief_pitch", "thickness", "samples"});
+  expect_keys(seen["field"], {"memory", "pitch", "relief_pitch", "thickness", "samples", "plain_samples"});
   EXPECT_EQ(seen["field"], baked["field"]);
   EXPECT_GT(seen["field"]["samples"], 1000);
   const json without = expect_document({"bake", block("block.ply"), "--coarse", block("block_coarse.ply"), "--texture",

@@ -57,6 +57,7 @@ inline void expect_same(const field_body& one, const field_body& other) {
   EXPECT_EQ(a.thickness_m, b.thickness_m);
   EXPECT_EQ(a.thinnest_resolved_m, b.thinnest_resolved_m);
   EXPECT_TRUE(same_bytes(numbers_of(one.samples), numbers_of(other.samples)));
+  EXPECT_TRUE(same_bytes(numbers_of(one.plain), numbers_of(other.plain)));
 }
 
 }  // namespace asperity::field_test

@@ -269,8 +269,8 @@ TEST(PosedSamples, FindTheDeepestInANotch) {
     samples.place({T_wa, {&T_wb, 1}}, 10'000'000);
     double most = -1.0;
     vec3 deepest_b(0.0);
-    const auto look = [&](const field_body& of, const exit_body& in, const pose& T_yx, const vec3& moved_y, bool own) {
-      for (const field_sample& s : of.samples.samples()) {
+    const auto look = [&](const exit_body& of, const exit_body& in, const pose& T_yx, const vec3& moved_y, bool own) {
+      for (const field_sample& s : of.samples().samples()) {
         const vec3 p_y = T_yx * vec3(s.position_b);
         const double depth_m = in.shape.value_m(p_y + moved_y) + in.relief.read(in.body->field, p_y).value_m;
         if (depth_m <= most) continue;
@@ -278,8 +278,8 @@ TEST(PosedSamples, FindTheDeepestInANotch) {
         deepest_b = own ? p_y + moved_y : vec3(1.0);
       }
     };
-    look(*probe, *scene->fixed[0], T_wa, x_w, true);
-    look(*block().body, *scene->probe, inverse(T_wa), -(glm::conjugate(T_wa.rotation) * x_w), false);
+    look(*scene->probe, *scene->fixed[0], T_wa, x_w, true);
+    look(*scene->fixed[0], *scene->probe, inverse(T_wa), -(glm::conjugate(T_wa.rotation) * x_w), false);
     in_notch += scene->fixed[0]->shape.is_finer(deepest_b) ? 1 : 0;
     mark m;
     EXPECT_FALSE(samples.deepest(x_w, most + 1e-12, m));

@@ -33,16 +33,16 @@ const two_boxes& boxes() {
 // D of every sample by its definition, the probe's first.
 std::vector<double> all_depths(const pose& T_wa, const pose& T_wb, const vec3& x_w) {
   std::vector<double> out;
-  const auto add = [&](const field_body& of, const exit_body& in, const pose& T_wx, const pose& T_wy, double sign) {
-    for (const field_sample& s : of.samples.samples()) {
+  const auto add = [&](const exit_body& of, const exit_body& in, const pose& T_wx, const pose& T_wy, double sign) {
+    for (const field_sample& s : of.samples().samples()) {
       const vec3 p_w = T_wx * vec3(s.position_b);
       const body_field& f = in.body->field;
       out.push_back(in.shape.read(inverse(T_wy) * (p_w + sign * x_w)).value_m +
                     in.relief.read(f, inverse(T_wy) * p_w).value_m);
     }
   };
-  add(*boxes().probe, *boxes().scene->fixed[0], T_wa, T_wb, 1.0);
-  add(*boxes().fixed, *boxes().scene->probe, T_wb, T_wa, -1.0);
+  add(*boxes().scene->probe, *boxes().scene->fixed[0], T_wa, T_wb, 1.0);
+  add(*boxes().scene->fixed[0], *boxes().scene->probe, T_wb, T_wa, -1.0);
   return out;
 }
 
@@ -116,17 +116,16 @@ TEST(PosedSamples, FindsTheDeepestOfAllAtTurns) {
     for (int n = 0; n < 6; ++n) {
       const motion x(draw.between(0.0, 1.0) * mm * draw.vector(), draw.between(0.0, 0.1) * draw.vector());
       double most = -1.0;
-      const auto look = [&](const field_body& of, const exit_body& in, const pose& T_wx, const pose& T_wy,
-                            double sign) {
-        for (const field_sample& s : of.samples.samples()) {
+      const auto look = [&](const exit_body& of, const exit_body& in, const pose& T_wx, const pose& T_wy, double sign) {
+        for (const field_sample& s : of.samples().samples()) {
           const vec3 p_w = T_wx * vec3(s.position_b), moved = x.shift_w + glm::cross(x.turn_w, p_w - pivot_w);
           const double depth = in.shape.read(inverse(T_wy) * (p_w + sign * moved)).value_m +
                                in.relief.read(in.body->field, inverse(T_wy) * p_w).value_m;
           most = std::max(most, depth);
         }
       };
-      look(*boxes().probe, *boxes().scene->fixed[0], T_wa, T_wb, 1.0);
-      look(*boxes().fixed, *boxes().scene->probe, T_wb, T_wa, -1.0);
+      look(*boxes().scene->probe, *boxes().scene->fixed[0], T_wa, T_wb, 1.0);
+      look(*boxes().scene->fixed[0], *boxes().scene->probe, T_wb, T_wa, -1.0);
       mark m;
       ASSERT_FALSE(samples.deepest(x, most + 1e-12, m)) << i << ", " << n;
       ASSERT_TRUE(samples.deepest(x, most - draw.between(0.0, 0.3) * mm - 1e-9, m)) << i << ", " << n;
@@ -170,7 +169,7 @@ TEST(PosedSamples, GathersAllAboveALimit) {
     double above_m = *std::max_element(all.begin(), all.end()) - draw.between(0.0, 0.5) * mm;
     std::set<std::pair<std::uint32_t, std::uint32_t>> found;
     samples.walk(x_w, above_m, [&](const mark& m) { found.insert({m.meeting, m.sample}); });
-    const std::size_t of_probe = boxes().probe->samples.samples().size();
+    const std::size_t of_probe = boxes().scene->probe->samples().samples().size();
     std::size_t expected = 0;
     for (std::size_t s = 0; s < all.size(); ++s) {
       if (!(all[s] > above_m + 1e-12)) continue;
