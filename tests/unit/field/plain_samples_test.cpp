@@ -77,6 +77,30 @@ TEST(PlainSamples, LieInTheMiddleOfPlainFaces) {
   }
 }
 
+// A sheet of samples by itself: nothing lies beyond its rim, as where a texture ends.
+TEST(PlainSamples, HaveSamplesAllAroundThatLookOneWay) {
+  constexpr int side = 40;
+  constexpr float pitch_m = 1e-4F;
+  placed_samples sheet;
+  const auto is_leaning = [](int i, int j) { return i > 20 && j > 20; };
+  for (int i = 0; i < side; ++i) {
+    for (int j = 0; j < side; ++j) {
+      const glm::vec3 at(pitch_m * static_cast<float>(i), pitch_m * static_cast<float>(j), 0.0F);
+      sheet.all.push_back({at, {0.0F, 0.0F, 1.0F}, is_leaning(i, j) ? 0.15F : 0.0F});
+    }
+  }
+  const placed_samples plain = detail::plain_thinning(sheet, static_cast<double>(pitch_m)).apart(1).plain;
+  const auto cubes = static_cast<std::size_t>(side / 8 * side / 8);
+  const auto looking = static_cast<std::size_t>((side - 2) * (side - 2) - 18 * 18);
+  EXPECT_LE(plain.all.size(), looking - cubes + 4) << "one stays in every cube, but for those that lean";
+  EXPECT_GT(plain.all.size(), looking - cubes - 40);
+  for (const field_sample& s : plain.all) {
+    const glm::vec3 at = s.position_b / pitch_m;
+    EXPECT_GT(std::min({at.x, at.y, side - 1 - at.x, side - 1 - at.y}), 0.5F) << "one at the rim";
+    EXPECT_EQ(s.cone_rad, 0.0F);
+  }
+}
+
 TEST(PlainSamples, AreNoneWhereTheSurfaceIsNotPlain) {
   const auto plain_of = [](const textured_model& model) {
     const placed_samples all = all_of(model, pitch_of(model));
