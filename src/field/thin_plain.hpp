@@ -32,8 +32,13 @@ class plain_thinning {
   /// @param all  of a body   @param pitch_m  distance between samples on its faces
   plain_thinning(const placed_samples& all, double pitch_m) : all_(all), pitch_m_(pitch_m) {
     if (all.all.empty()) return;
-    low_ = all.all[0].position_b;
-    for (const field_sample& s : all.all) low_ = glm::min(low_, s.position_b);
+    glm::vec3 high = low_ = all.all[0].position_b;
+    for (const field_sample& s : all.all) {
+      low_ = glm::min(low_, s.position_b);
+      high = glm::max(high, s.position_b);
+    }
+    const glm::vec3 size = high - low_;
+    least_cell_m_ = static_cast<double>(std::max({size.x, size.y, size.z})) / most_cells;
     by_cell_.reserve(all.all.size());
     for (std::uint32_t i = 0; i < all.all.size(); ++i) by_cell_.push_back({key_of(cell_of(i, around)), i});
     std::sort(by_cell_.begin(), by_cell_.end());
@@ -68,12 +73,9 @@ class plain_thinning {
   };
 
   [[nodiscard]] cell cell_of(std::size_t sample, double pitches) const noexcept {
-    const vec3 at = vec3(all_.all[sample].position_b - low_) / (pitches * pitch_m_);
+    const vec3 at = vec3(all_.all[sample].position_b - low_) / std::max(pitches * pitch_m_, least_cell_m_);
     cell out{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Clamped, neighbours stay neighbours; no pitch is so small that more than one of the last cells is used.
-      out[k] = static_cast<std::int64_t>(std::clamp(std::floor(at[static_cast<int>(k)]), 0.0, last_cell)) + 1;
-    }
+    for (std::size_t k = 0; k < 3; ++k) out[k] = static_cast<std::int64_t>(at[static_cast<int>(k)]) + 1;
     return out;
   }
   [[nodiscard]] static std::uint64_t key_of(const cell& of) noexcept {
@@ -166,9 +168,9 @@ class plain_thinning {
     return std::all_of(has.begin(), has.end(), [](bool one) { return one; });
   }
 
-  static constexpr double last_cell = (1U << 21U) - 4.0;
+  static constexpr double most_cells = 1e6;  // along an axis: a key has 21 bits for each
   const placed_samples& all_;
-  double pitch_m_;
+  double pitch_m_, least_cell_m_ = 0.0;
   glm::vec3 low_{0.0F};
   std::vector<sample_in_cell> by_cell_;
 };

@@ -125,7 +125,10 @@ inline void plant(triangle_mesh& m, kind k, shapes::dice& dice) {
       break;
     case kind::inner_wall: {  // a closed ring of three edges, walled within
       const auto t = m.triangles[any()];
-      const std::uint32_t v = fresh((m.positions[t[0]] + m.positions[t[1]] + m.positions[t[2]]) / 3.0 * 0.9);
+      const vec3 middle = (m.positions[t[0]] + m.positions[t[1]] + m.positions[t[2]]) / 3.0;
+      // Meshes lie about the origin, and the second ball of a pair about this: towards the origin its wall went through it.
+      const vec3 inside = middle.x > 0.12 ? vec3(0.2, 0.0, 0.0) : vec3(0.0);
+      const std::uint32_t v = fresh(middle + 0.1 * (inside - middle));
       m.triangles.push_back({t[0], t[1], v});
       m.triangles.push_back({t[1], t[2], v});
       m.triangles.push_back({t[2], t[0], v});
