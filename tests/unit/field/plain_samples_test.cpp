@@ -168,7 +168,9 @@ pose laid_on(const textured_model& x, const textured_model& y, const quat& turn,
 }
 
 // The deepest of all samples of two bodies is one that is told, or no deeper than one. Depths are of closed forms, because
-// this is a statement about planes and samples; that fields are those depths is tested elsewhere.
+// this is a statement about planes and samples; that fields are those depths is tested elsewhere. One case is left: a ball
+// that is deeper than it is near to an edge. Its lowest samples leave by the other face, and the deepest of the rest lies
+// aside by so much.
 TEST(PlainSamples, AreNoDeeperThanWhatIsTold) {
   std::mt19937_64 random(fresh_seed("PlainSamples.AreNoDeeperThanWhatIsTold", "3 pairs, 60 poses each, 500 at length"));
   std::normal_distribution<double> normal;
@@ -189,15 +191,18 @@ TEST(PlainSamples, AreNoDeeperThanWhatIsTold) {
       quat turn = glm::normalize(quat(normal(random), normal(random), normal(random), normal(random)));
       if (i % 2 == 0) turn = exp_rotation({0.0, 0.0, 3.0 * side(random)});
       const vec2 off(side(random), side(random));
-      const pose T_yx = laid_on(x.model, under.model, turn, off, 1e-3 * std::pow(unit(random), 2));
+      const double depth_m = 1e-3 * std::pow(unit(random), 2);
+      const double aside_m = x.radius_m > 0.0 ? 0.5 * depth_m * depth_m / x.radius_m : 0.0;
+      const pose T_yx = laid_on(x.model, under.model, turn, off, depth_m);
       const pose T_xy = inverse(T_yx);
       const double told_m = std::max(deepest_m(of_x.told.all, under, T_yx), deepest_m(of_under.told.all, x, T_xy));
       const double plain_m = std::max(deepest_m(of_x.plain.all, under, T_yx), deepest_m(of_under.plain.all, x, T_xy));
       if (!(plain_m > 0.0)) continue;
       ++plain_deep;
-      worst_m = std::max(worst_m, plain_m - told_m);
+      worst_m = std::max(worst_m, plain_m - told_m - aside_m);
     }
-    std::printf("  in %d poses plain samples are in; they are deeper by at most %.3f um\n", plain_deep, 1e6 * worst_m);
+    std::printf("  in %d poses plain samples are in; they are deeper by at most %.3f um, but for what lies aside\n",
+                plain_deep, 1e6 * worst_m);
     EXPECT_GT(plain_deep, poses / 4);
     EXPECT_LT(worst_m, 0.5e-6);
   }
