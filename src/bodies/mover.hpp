@@ -49,12 +49,11 @@ struct other_body {
 
 /// The contacts of one mover with bodies that come after it: other movers first to last, then what stands.
 struct mover_contacts {
-  std::vector<other_body> others;                       ///< support_plane::body is an index into it
-  contact_laws laws{};                                  ///< by the same index
-  linear_contact contact{};                             ///< planes and poses as last told ...
-  std::vector<pose> T_wb;                               ///< ... with the others here
-  std::array<double, most_support_planes> lambda_n{};   ///< of its planes, in the last step
-  std::array<double, most_support_planes> carried_m{};  ///< so far a plane has been carried on since it was told
+  std::vector<other_body> others;                      ///< support_plane::body is an index into it
+  contact_laws laws{};                                 ///< by the same index
+  linear_contact contact{};                            ///< planes and poses as last told ...
+  std::vector<pose> T_wb;                              ///< ... with the others here
+  std::array<double, most_support_planes> lambda_n{};  ///< of its planes, in the last step
 };
 
 /// A plane of a mover with another mover that has gone from where it was when the plane was told: it goes with both, which

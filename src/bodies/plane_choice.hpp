@@ -3,36 +3,38 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "asperity/control/plane_selection.hpp"
 #include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/memory.hpp"
+#include "asperity/render/plane_source.hpp"
 #include "bodies/mover.hpp"
 
 namespace asperity::detail {
 
 /// The planes that pressed, and those that small motions meet first.
 ///
-/// Those that press stay as long as they are told: a body at rest on many points of the same height would be given others
-/// in every period, and tremble. Of a few neighbouring samples the deepest alone is told; where that is another one than
-/// before, the plane that pressed is carried on until it has slid by 0.2 mm. Between free bodies and what they lie on the
-/// samples of the smaller body are taken where those of the larger are not deeper by 10 um: a block that slides takes its
-/// own corners along, and loses the table's points behind it one by one.
+/// Those that press stay: a body at rest on many points of the same height would be given others in every period, and
+/// tremble. Of a few neighbouring samples the deepest alone is told; where that is another one than before, the point of
+/// the plane that pressed is read again, and stays while it touches. A block that was pushed over a table lost one of two
+/// planes at its corner otherwise, and hopped. Between free bodies and what they lie on the samples of the smaller body are
+/// taken where those of the larger are not deeper by 10 um: a block that slides takes its own corners along, and loses the
+/// table's points behind it one by one.
 class plane_choice {
  public:
   /// Takes the memory. @param most planes that are told of a mover
   explicit plane_choice(std::size_t most) { reserve_resident(biased_, most); }
 
   /// Puts the planes of `told` that count into of.contact, in the place of those of the telling before.
-  /// @param now_T_wb the others, where they are
+  /// @param now_T_wb the others, where they are   @param reader of the renderer that told
   /// @return as select_planes()   @rt safe
   [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection, const mover& body,
-                              std::span<const pose> now_T_wb, mover_contacts& of) noexcept {
-    const kept_planes pressed = pressed_of(body, now_T_wb, of);
+                              std::span<const pose> now_T_wb, const plane_reader& reader, mover_contacts& of) noexcept {
+    const kept_planes pressed = pressed_of(body, now_T_wb, reader, of);
     of.lambda_n.fill(0.0);
-    of.carried_m.fill(0.0);
     of.contact.planes.clear();
     biased_.assign(told.begin(), told.end());
     for (support_plane& p : biased_) p.depth_m -= held_back_m(p, of);
@@ -41,8 +43,6 @@ class plane_choice {
     for (support_plane& p : chosen_) p.depth_m += held_back_m(p, of);
     for (const kept_plane& q : pressed) {
       const auto* const now = find(told, q.plane);
-      if (now == nullptr && !(q.carried_m < furthest_carried_m)) continue;
-      of.carried_m[of.contact.planes.size()] = now != nullptr ? 0.0 : q.carried_m;
       of.lambda_n[of.contact.planes.size()] = q.lambda_n;
       static_cast<void>(of.contact.planes.push_back(now != nullptr ? *now : q.plane));
     }
@@ -58,12 +58,11 @@ class plane_choice {
 
  private:
   static constexpr std::size_t most_kept = most_support_planes / 2;
-  static constexpr double less_deep_m = 1e-5, furthest_carried_m = 2e-4;
+  static constexpr double less_deep_m = 1e-5;
 
-  // A plane that pressed, where it is now.
+  // A plane that pressed, as it is now.
   struct kept_plane {
     support_plane plane{};
-    double carried_m = 0.0;
     double lambda_n = 0.0;  // what a body that sleeps goes on pressing with
   };
   using kept_planes = fixed_vector<kept_plane, most_kept>;
@@ -80,18 +79,14 @@ class plane_choice {
   }
 
   [[nodiscard]] static kept_planes pressed_of(const mover& body, std::span<const pose> now_T_wb,
-                                              const mover_contacts& of) noexcept {
+                                              const plane_reader& reader, const mover_contacts& of) noexcept {
     kept_planes out;
     for (std::size_t i = 0; i < of.contact.planes.size() && out.size() < most_kept; ++i) {
-      const support_plane& p = of.contact.planes[i];
+      support_plane p = of.contact.planes[i];
       if (!(of.lambda_n[i] > 0.0) || p.sample == 0) continue;
-      const pose &T_wb = now_T_wb[p.body], &then_T_wb = of.T_wb[p.body];
-      const support_plane now = carried(p, body.T_wc, of.contact.T_wc, T_wb, then_T_wb);
-      // How far the mover's point has slid against the other body's; a plane that is neared or left goes on being one.
-      const vec3 then_w = of.contact.T_wc.position + p.r_w;
-      const vec3 gone_w = body.T_wc * (inverse(of.contact.T_wc) * then_w) - T_wb * (inverse(then_T_wb) * then_w);
-      const double slid_m = glm::length(gone_w - glm::dot(gone_w, now.n_ab_w) * now.n_ab_w);
-      static_cast<void>(out.push_back({now, of.carried_m[i] + slid_m, of.lambda_n[i]}));
+      p.depth_m = -std::numeric_limits<double>::infinity();  // what the reader cannot read ends here
+      reader.read(body.T_wc, now_T_wb[p.body], p.body, {&p, 1});
+      if (p.depth_m > -less_deep_m) static_cast<void>(out.push_back({p, of.lambda_n[i]}));
     }
     return out;
   }
