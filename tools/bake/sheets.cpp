@@ -11,10 +11,11 @@
 namespace asperity::bake {
 namespace {
 
-constexpr double largest_wall_share = 0.35;  // of the whole area: what is larger is no wall but the body
+constexpr double largest_wall_share = 0.35;  // of the area of all that hangs together: what is larger is the body
 
 struct region {
   double area = 0.0;
+  double area_of_piece = 0.0;  // of all that it hangs together with
   bounds box;
   std::vector<std::uint32_t> triangles;
   std::vector<std::size_t> hangs_on;  // numbers of edges of more than two
@@ -27,6 +28,11 @@ std::vector<region> regions_of(const triangle_mesh& mesh, const std::vector<edge
   for_each_edge(edges, [&](std::span<const edge_use> uses) {
     if (uses.size() == 2) sets.join(uses[0].halfedge / 3, uses[1].halfedge / 3);
   });
+  disjoint_sets pieces = sets;
+  for_each_edge(edges, [&](std::span<const edge_use> uses) {
+    for (const edge_use& e : uses) pieces.join(uses[0].halfedge / 3, e.halfedge / 3);
+  });
+  std::vector<double> area_of_piece(mesh.triangles.size(), 0.0);
   std::vector<std::uint32_t> number(mesh.triangles.size(), no_halfedge);
   std::vector<region> out;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -34,11 +40,13 @@ std::vector<region> regions_of(const triangle_mesh& mesh, const std::vector<edge
     const std::uint32_t root = sets.find(t);
     if (root == t) {
       number[t] = static_cast<std::uint32_t>(out.size());
-      out.push_back({0.0, {c[0], c[0]}, {}, {}});
+      out.push_back({0.0, 0.0, {c[0], c[0]}, {}, {}});
     }
     region& r = out[number[root]];
     r.triangles.push_back(t);
-    r.area += 0.5 * glm::length(area_normal(c));
+    const double area = 0.5 * glm::length(area_normal(c));
+    r.area += area;
+    area_of_piece[pieces.find(t)] += area;
     for (const vec3& p : c) {
       r.box.low = glm::min(r.box.low, p);
       r.box.high = glm::max(r.box.high, p);
@@ -49,6 +57,7 @@ std::vector<region> regions_of(const triangle_mesh& mesh, const std::vector<edge
     for (const edge_use& e : uses) out[number[sets.find(e.halfedge / 3)]].hangs_on.push_back(uses_at.size());
     uses_at.push_back(uses.size());
   });
+  for (region& r : out) r.area_of_piece = area_of_piece[pieces.find(r.triangles.front())];
   return out;
 }
 
@@ -179,13 +188,13 @@ void part_long_pinches(triangle_mesh& mesh, const std::vector<std::uint32_t>& ma
 // What hangs on edges of three and leaves edges of two behind: fins, and walls within. The smallest first.
 void drop_inner_walls(triangle_mesh& mesh, repair_report& report) {
   constexpr int most_rounds = 16;
-  const double whole = area_of(mesh);
   for (int round = 0; round < most_rounds; ++round) {
     const std::vector<edge_use> edges = edges_of(mesh.triangles);
     std::vector<std::size_t> uses_at;
     std::vector<region> regions = regions_of(mesh, edges, uses_at);
     if (uses_at.empty()) return;
-    std::erase_if(regions, [&](const region& r) { return r.hangs_on.empty() || r.area > largest_wall_share * whole; });
+    std::erase_if(regions,
+                  [&](const region& r) { return r.hangs_on.empty() || r.area > largest_wall_share * r.area_of_piece; });
     std::ranges::sort(regions, {}, [](const region& r) { return std::pair(r.area, r.triangles.front()); });
     std::vector<bool> gone(mesh.triangles.size(), false);
     bool any = false;

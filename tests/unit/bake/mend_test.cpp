@@ -1,4 +1,5 @@
 // Repair of whole meshes: what is clean stays as it is, and what is dirty comes out closed, near to what it was.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -112,6 +113,33 @@ TEST(Mend, DirtyMeshesComeOutClosedAndNearToWhatTheyWere) {
       EXPECT_EQ(again->actions[k].count, 0U) << to_string(static_cast<repair_kind>(k)) << ": what is repaired is clean";
     }
     if (HasFailure() && run > 20) break;
+  }
+}
+
+// Two walls beside each other share an edge of four, and only the rest of their ball hangs on edges of three alone.
+TEST(Mend, WallsSideBySideAreNotTakenForTheBody) {
+  const triangle_mesh clean = clean_meshes().back();
+  for (const std::size_t first :
+       {std::size_t{0}, clean.triangles.size() - 30}) {  // on the large ball, on the small one
+    triangle_mesh m = clean;
+    const vec3 middle = first == 0 ? vec3(0.0) : vec3(0.2, 0.0, 0.0);
+    std::size_t second = first + 1;
+    const auto shared = [&] {
+      return std::ranges::count_if(m.triangles[second],
+                                   [&](auto v) { return std::ranges::count(m.triangles[first], v) > 0; });
+    };
+    while (shared() != 2) ++second;
+    for (const std::size_t of : {first, second}) {
+      const auto t = m.triangles[of];
+      const vec3 centre = (m.positions[t[0]] + m.positions[t[1]] + m.positions[t[2]]) / 3.0;
+      const auto v = static_cast<std::uint32_t>(m.positions.size());
+      m.positions.push_back(centre + 0.1 * (middle - centre));
+      for (std::size_t k = 0; k < 3; ++k) m.triangles.push_back({t[k], t[(k + 1) % 3], v});
+    }
+    ASSERT_TRUE(repair(m));
+    EXPECT_TRUE(check(m));
+    EXPECT_NEAR(dirt::area(m), dirt::area(clean), 0.01 * dirt::area(clean)) << first;
+    EXPECT_NEAR(dirt::volume(m), dirt::volume(clean), 0.01 * dirt::volume(clean)) << first;
   }
 }
 
