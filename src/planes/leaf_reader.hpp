@@ -36,7 +36,8 @@ struct sample_number {
 };
 
 /// Reads samples of a body X in the field of a body Y at one pose. What a sample tells is read in double precision with
-/// exact slopes; quick readings with a stated error only tell which samples need that, so they change no result.
+/// exact slopes. Where many samples are asked about, quick readings with a stated error tell first which of them need that;
+/// they change no result.
 class leaf_reader {
  public:
   /// @param of_probe whether X is the probe; its motion takes Y's field along otherwise, and the slope's sign turns
@@ -106,10 +107,9 @@ class leaf_reader {
       std::size_t count = 0;
       for (std::size_t i = first; i < std::min(samples.size(), first + of.size()); ++i) {
         const double most_m = i < known.size() ? static_cast<double>(known[i]) : depth_bound::unknown;
-        if (most_m > above_m) of[count++] = {i, most_m, false};
+        if (most_m > above_m) of[count++] = {i, most_m};
       }
-      // The sample that may be the deepest is read first, quickly and then in full: what it says dismisses most others by
-      // what is known of them.
+      // The sample that may be the deepest is read first: what it says dismisses most others by what is known of them.
       for (;;) {
         candidate* next = of.data();
         for (std::size_t i = 1; i < count; ++i) {
@@ -117,13 +117,11 @@ class leaf_reader {
         }
         if (count == 0 || !(next->most_m >= above_m)) break;
         const field_sample& sample = samples[next->index];
-        if (!std::exchange(next->is_read, true)) {
-          next->most_m = std::min(next->most_m, most_of(sample, centre_y, near, above_m));
-          if (next->index < known.size()) known[next->index] = rounded_up(next->most_m);
-          continue;
-        }
+        double most_m = std::min(next->most_m, near.most_at(T_yx_ * vec3(sample.position_b) - centre_y));
+        const sample_depth now = most_m >= above_m ? exact(sample) : sample_depth{};
+        if (now.sample != nullptr) most_m = std::min(most_m, now.most_m);
+        if (next->index < known.size()) known[next->index] = rounded_up(most_m);
         next->most_m = -std::numeric_limits<double>::infinity();
-        const sample_depth now = exact(sample);
         const bool first_of_equals = best.sample != nullptr && now.depth_m == best.depth_m && now.sample < best.sample;
         if (!(now.depth_m > above_m) && !first_of_equals) continue;
         best = now;
@@ -141,7 +139,7 @@ class leaf_reader {
     const std::span<const field_sample> samples = leaf.samples();
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (i < known.size() && !(static_cast<double>(known[i]) > above_m)) continue;
-      const double most_m = most_of(samples[i], vec3(0.0), depth_bound{}, above_m);
+      const double most_m = most_of(samples[i], above_m);
       if (i < known.size()) known[i] = rounded_up(most_m);
       if (!(most_m > above_m)) continue;
       const sample_depth now = exact(samples[i]);
@@ -175,28 +173,23 @@ class leaf_reader {
   struct candidate {
     std::size_t index;
     double most_m;
-    bool is_read;  // quickly
   };
   struct sample_depth {
     const field_sample* sample = nullptr;
     double depth_m = -std::numeric_limits<double>::infinity();
     vec3 slope_y{0.0};
     double sunk_m = 0.0;
+    double most_m = 0.0;  // with any facing, and with the relief wherever it moves next
   };
 
-  // A sample is no deeper than this: bounds from the cheap to the sharp, as far as they are needed.
-  [[nodiscard]] double most_of(const field_sample& s, const vec3& centre_y, const depth_bound& near,
-                               double above_m) const noexcept {
+  // A sample is no deeper than this, by one quick reading or two.
+  [[nodiscard]] double most_of(const field_sample& s, double above_m) const noexcept {
     const vec3 p_y = T_yx_ * vec3(s.position_b);
-    const double by_leaf_m = near.most_at(p_y - centre_y);
-    if (!(by_leaf_m > above_m)) return by_leaf_m;
-    ++work_->quick;
     const detail::quick_reading q = detail::quick_read<detail::quick_part::slope>(in_y_->smooth, p_y);
     const double smooth_m = q.at.value_m + q.error_m;
-    const double by_highest_m = smooth_m + std::min(near.relief_m, in_y_->highest_relief_m);
+    const double by_highest_m = smooth_m + in_y_->highest_relief_m;
     if (!(by_highest_m > above_m)) return by_highest_m;
-    // The relief ends with the grid, no closer to the surface than three pitches. What is kept holds on either side.
-    if (!(q.at.value_m > -2.0 * in_y_->smooth.pitch_m)) return smooth_m + in_y_->highest_relief_m;
+    if (!(q.at.value_m > -2.0 * in_y_->smooth.pitch_m)) return by_highest_m;
     const foot_and_fade to = in_y_->foot(p_y, q.at);
     if (!(to.fade > 0.0)) return smooth_m;
     return smooth_m + q.error_m + to.fade * detail::quick_relief(in_y_->fine, to.foot_b);
@@ -204,12 +197,17 @@ class leaf_reader {
 
   [[nodiscard]] sample_depth exact(const field_sample& s) const noexcept {
     ++work_->exact;
-    const field_reading d = in_y_->read(T_yx_ * vec3(s.position_b));
+    const vec3 p_y = T_yx_ * vec3(s.position_b);
+    const coarse_reading smooth = in_y_->coarse(p_y);
+    const field_reading fine = in_y_->relief(p_y, smooth);
+    const field_reading d{smooth.value_m + fine.value_m, smooth.slope + fine.slope};
     const double squared = glm::dot(d.slope, d.slope);
     if (!(squared > facing::least_slope * facing::least_slope)) return {};
     const double cosine = glm::dot(vec3(s.axis_b), rotation_xy_ * d.slope) / std::sqrt(squared);
     const double sunk_m = sinking_m_ * (1.0 - facing_share(cosine, static_cast<double>(s.cone_rad)));
-    return {&s, d.value_m - sunk_m, d.slope, sunk_m};
+    // The relief ends with the grid, no closer to the surface than three pitches.
+    const bool has_relief = smooth.value_m > -2.0 * in_y_->smooth.pitch_m;
+    return {&s, d.value_m - sunk_m, d.slope, sunk_m, has_relief ? d.value_m : smooth.value_m + in_y_->highest_relief_m};
   }
 
   [[nodiscard]] static double facing_share(double cosine, double cone_rad) noexcept {

@@ -58,7 +58,6 @@ class readers_of_threads {
     for (const std::optional<patch_readers>& r : readers_) {
       if (!r) continue;
       sum.bounded += r->work().bounded;
-      sum.quick += r->work().quick;
       sum.exact += r->work().exact;
     }
     return sum;

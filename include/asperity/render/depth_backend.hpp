@@ -57,7 +57,6 @@ struct depth_work {
   std::uint32_t looked_at = 0;  ///< balls of samples, large and small, that a finder could not leave unread
   std::uint32_t listed = 0;     ///< samples that may be within reach
   std::uint32_t bounded = 0;    ///< leaves, a few samples each, that a reading bounded
-  std::uint32_t quick = 0;      ///< samples that were read in single precision, to tell whether they need more
   std::uint32_t exact = 0;      ///< samples that were read in double precision with all derivatives
 };
 
