@@ -33,7 +33,7 @@ class plane_choice {
   /// @return as select_planes()   @rt safe
   [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection, const mover& body,
                               std::span<const pose> now_T_wb, const plane_reader& reader, mover_contacts& of) noexcept {
-    const kept_planes pressed = pressed_of(body, now_T_wb, reader, of);
+    const kept_planes pressed = pressed_of(told, body, now_T_wb, reader, of);
     of.lambda_n.fill(0.0);
     of.contact.planes.clear();
     biased_.assign(told.begin(), told.end());
@@ -42,9 +42,8 @@ class plane_choice {
     if (out != status::ok && out != status::capacity_reached) return out;
     for (support_plane& p : chosen_) p.depth_m += held_back_m(p, of);
     for (const kept_plane& q : pressed) {
-      const auto* const now = find(told, q.plane);
       of.lambda_n[of.contact.planes.size()] = q.lambda_n;
-      static_cast<void>(of.contact.planes.push_back(now != nullptr ? *now : q.plane));
+      static_cast<void>(of.contact.planes.push_back(q.plane));
     }
     const std::size_t kept = of.contact.planes.size();
     for (const support_plane& p : chosen_) {
@@ -78,14 +77,19 @@ class plane_choice {
     return o.holds_back != 0 && p.sample != 0 && p.sample % 2 == o.holds_back % 2 ? less_deep_m : 0.0;
   }
 
-  [[nodiscard]] static kept_planes pressed_of(const mover& body, std::span<const pose> now_T_wb,
-                                              const plane_reader& reader, const mover_contacts& of) noexcept {
+  [[nodiscard]] static kept_planes pressed_of(std::span<const support_plane> told, const mover& body,
+                                              std::span<const pose> now_T_wb, const plane_reader& reader,
+                                              const mover_contacts& of) noexcept {
     kept_planes out;
     for (std::size_t i = 0; i < of.contact.planes.size() && out.size() < most_kept; ++i) {
       support_plane p = of.contact.planes[i];
       if (!(of.lambda_n[i] > 0.0) || p.sample == 0) continue;
-      p.depth_m = -std::numeric_limits<double>::infinity();  // what the reader cannot read ends here
-      reader.read(body.T_wc, now_T_wb[p.body], p.body, {&p, 1});
+      if (const support_plane* const now = find(told, p); now != nullptr) {
+        p = *now;
+      } else {
+        p.depth_m = -std::numeric_limits<double>::infinity();  // what the reader cannot read ends here
+        reader.read(body.T_wc, now_T_wb[p.body], p.body, {&p, 1});
+      }
       if (p.depth_m > -less_deep_m) static_cast<void>(out.push_back({p, of.lambda_n[i]}));
     }
     return out;

@@ -154,8 +154,7 @@ class plain_thinning {
   // Whether there is a sample in every sixth of the circle around one.
   [[nodiscard]] bool is_surrounded(const vec3& middle, const vec3& normal,
                                    const std::vector<glm::vec3>& near) const noexcept {
-    const vec3 any = std::fabs(normal.x) < 0.7 ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
-    const vec3 u = glm::normalize(glm::cross(normal, any)), v = glm::cross(normal, u);
+    const vec3 u = any_orthogonal(normal), v = glm::cross(normal, u);
     std::array<bool, sectors> has{};
     const double own_m = 0.1 * pitch_m_;
     for (const glm::vec3& p : near) {
