@@ -103,7 +103,7 @@ void lay_relief(body_field& out, const bounds& box, const field_settings& settin
     const auto add = [&](std::size_t n, const vec3& foot_b, const vec3& inwards) {
       if (n % 2 != 0) return;
       const vec3 p_b = foot_b + off_surface[n / 2 % off_surface.size()] * of.smooth.pitch_m * inwards;
-      const coarse_reading at = quick_read<quick_part::bend>(of.smooth, p_b).at;
+      const coarse_reading at = quick_read(of.smooth, p_b).at;
       boxes[part].add(p_b, at.slope + of.relief(p_b, at).slope);
     };
     points.for_each_foot(part_begin(points.points(), parts, part), part_begin(points.points(), parts, part + 1), add);

@@ -22,7 +22,7 @@ namespace asperity {
   constexpr double steepest = 1.2, steepest_beyond = 1.5;
   const vec3 centre_y = T_yx * ball_x.centre_b;
   const double radius_m = ball_x.radius_m;
-  const detail::quick_reading read = detail::quick_read<detail::quick_part::bend>(in_y.smooth, centre_y);
+  const detail::quick_reading read = detail::quick_read(in_y.smooth, centre_y);
   depth_bound out;
   out.smooth_m = read.at.value_m + read.error_m;
   out.slope = read.at.slope;

@@ -13,6 +13,7 @@
 #include "asperity/core/memory.hpp"
 #include "asperity/field/field_scene.hpp"
 #include "asperity/planes/near_samples.hpp"
+#include "field/lanes.hpp"
 #include "planes/slope_spread.hpp"
 
 namespace asperity {
@@ -34,6 +35,7 @@ class known_depths {
     detail::reserve_resident(brought_m_, leaves);
     detail::reserve_resident(asked_m_, leaves * sample_tree::leaf_places);
     detail::reserve_resident(asked_, leaves);
+    for (std::vector<float>* of : {&deepest_m_, &since_m_, &arm_m_}) detail::reserve_resident(*of, leaves);
   }
 
   /// Begins a tick with these leaves: brings the bounds of the tick before, which grow() brings up to date. Leaves come in
@@ -87,21 +89,13 @@ class known_depths {
   [[nodiscard]] std::span<float> of(std::size_t leaf) noexcept { return now_.range(leaf, std::span(now_.most_m)); }
 
   /// None of a patch's samples is deeper, m; +infinity where not all of them have a bound.
-  [[nodiscard]] float most_m(const near_patch& patch) noexcept {
-    if (!complete(patch)) return std::numeric_limits<float>::infinity();
-    float most_m = -std::numeric_limits<float>::infinity();
-    for (const float m : part_of(patch, now_.most_m)) most_m = std::max(most_m, m);
-    return most_m;
-  }
+  [[nodiscard]] float most_m(const near_patch& patch) noexcept { return largest_of(patch, now_.most_m); }
 
-  /// What is known of a patch at the pose that was asked for last.
+  /// What is known of a patch at the pose that was asked for last, beside how deep it is.
   struct asked_patch {
     vec3 middle_y{0.0};    ///< of its ball in the other body's frame at the tick's pose
-    double arm_m = 0.0;    ///< from the probe's centre of mass to its furthest sample
     vec3 asked_y{0.0};     ///< the middle at the last pose of which more is known
     vec3 turned{0.0};      ///< from the tick's pose to that one, rotation vector
-    float most_m = 0.0F;   ///< none of its samples is deeper there
-    float since_m = 0.0F;  ///< how much deeper they can have come on the poses since
     float grown_m = 0.0F;  ///< by what the bounds of its samples have grown since they were written
     bool has_slopes = false;
     slope_spread slopes{};  ///< about it, once they were needed
@@ -110,38 +104,72 @@ class known_depths {
   /// Ends the tick: from here on questions are for poses near by, and bounds those of the pose that was asked for last.
   /// Each patch is then placed, see ask_of().   @rt safe
   void ask(const near_samples& found) noexcept {
+    const std::size_t patches = found.patches().size();
     asked_m_.assign(now_.most_m.begin(), now_.most_m.end());
-    asked_.resize(found.patches().size());
+    asked_.resize(patches);
+    deepest_m_.resize(patches);
+    since_m_.assign(patches, 0.0F);
+    arm_m_.resize(patches);
   }
-  /// @param at its middle and arm. From several threads, for patches of their own.   @rt safe
-  void ask_of(std::size_t patch, const near_patch& of, const asked_patch& at) noexcept {
-    asked_[patch] = at;
-    asked_[patch].asked_y = at.middle_y;
-    close(asked_[patch], of);
+  /// @param middle_y of its ball in the other body's frame
+  /// @param arm_m from the probe's centre of mass to its furthest sample. From several threads, for patches of their
+  /// own.   @rt safe
+  void ask_of(std::size_t patch, const near_patch& of, const vec3& middle_y, double arm_m) noexcept {
+    asked_[patch] = {.middle_y = middle_y, .asked_y = middle_y};
+    arm_m_[patch] = static_cast<float>(arm_m);
+    close(patch, of);
   }
-  [[nodiscard]] std::span<asked_patch> asked() noexcept { return asked_; }
+  [[nodiscard]] asked_patch& asked(std::size_t patch) noexcept { return asked_[patch]; }
+  /// None of a patch's samples is deeper at the pose that is asked for, m; before come_to() with what every sample can
+  /// have come deeper since, afterwards by its own way.
+  [[nodiscard]] double asked_most_m(std::size_t patch) const noexcept {
+    return static_cast<double>(deepest_m_[patch] + since_m_[patch]);
+  }
   /// The bounds of a leaf's samples, of a patch that is open.
   [[nodiscard]] std::span<float> asked_of(std::size_t leaf) noexcept { return now_.range(leaf, std::span(asked_m_)); }
 
-  /// The pose that is asked for has moved.
-  static void grow(asked_patch& patch, double by_m) noexcept {
-    patch.grown_m += static_cast<float>(by_m) + rounding_m;
-    patch.most_m += static_cast<float>(by_m) + rounding_m;
+  /// The pose that is asked for has slid and turned so much further. Calls visit(patch) for each patch from begin to end
+  /// that can be deeper than above_m there. Most patches are too far away for any motion of this length, so they are
+  /// compared four at a time. From several threads, for patches of their own.   @rt safe
+  template <class Visit>
+  void move_on(std::size_t begin, std::size_t end, double slid_m, double turned_rad, double above_m,
+               Visit&& visit) noexcept {
+    using detail::lanes;
+    const auto slid = static_cast<float>(steepest_depth * slid_m) + rounding_m;
+    const auto turned = static_cast<float>(steepest_depth * turned_rad);
+    const auto above = static_cast<float>(above_m) - rounding_m;
+    std::size_t p = begin;
+    for (; p + 4 <= end; p += 4) {
+      const lanes since = detail::load_lanes(&since_m_[p]) + turned * detail::load_lanes(&arm_m_[p]) + slid;
+      detail::store_lanes(since, &since_m_[p]);
+      const auto is_near = detail::load_lanes(&deepest_m_[p]) + since > above;
+      if ((is_near[0] | is_near[1] | is_near[2] | is_near[3]) == 0) continue;
+      for (std::size_t i = 0; i < 4; ++i) {
+        if (is_near[i] != 0) visit(p + i);
+      }
+    }
+    for (; p < end; ++p) {
+      since_m_[p] += turned * arm_m_[p] + slid;
+      if (deepest_m_[p] + since_m_[p] > above) visit(p);
+    }
+  }
+  /// A patch's samples can have come deeper by this on the way to the pose that is asked for, by their own way.
+  void come_to(std::size_t patch, double by_m) noexcept {
+    const float grown_m = std::min(static_cast<float>(by_m) + rounding_m, std::exchange(since_m_[patch], 0.0F));
+    asked_[patch].grown_m += grown_m;
+    deepest_m_[patch] += grown_m;
   }
   /// Brings the bounds of a patch's samples up to date.
-  void open(asked_patch& patch, const near_patch& of) noexcept {
-    for (float& m : part_of(of, asked_m_)) m += patch.grown_m;
-    patch.grown_m = 0.0F;
+  void open(std::size_t patch, const near_patch& of) noexcept {
+    for (float& m : part_of(of, asked_m_)) m += asked_[patch].grown_m;
+    asked_[patch].grown_m = 0.0F;
   }
   /// Notes the largest of the bounds.
-  void close(asked_patch& patch, const near_patch& of) noexcept {
-    const std::span<const float> samples = part_of(of, asked_m_);
-    patch.most_m = complete(of) ? -std::numeric_limits<float>::infinity() : std::numeric_limits<float>::infinity();
-    for (const float m : samples) patch.most_m = std::max(patch.most_m, m);
-  }
+  void close(std::size_t patch, const near_patch& of) noexcept { deepest_m_[patch] = largest_of(of, asked_m_); }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
-    return asperity::heap_bytes(now_.leaves, now_.most_m, before_.leaves, before_.most_m, brought_m_, asked_m_, asked_);
+    return asperity::heap_bytes(now_.leaves, now_.most_m, before_.leaves, before_.most_m, brought_m_, asked_m_, asked_,
+                                deepest_m_, since_m_, arm_m_);
   }
 
  private:
@@ -181,10 +209,20 @@ class known_depths {
     return patch.leaf_count == 0 || now_.leaves[patch.first_leaf + patch.leaf_count - 1].complete;
   }
 
+  [[nodiscard]] float largest_of(const near_patch& patch, std::span<float> of_samples) const noexcept {
+    if (!complete(patch)) return std::numeric_limits<float>::infinity();
+    float most_m = -std::numeric_limits<float>::infinity();
+    for (const float m : part_of(patch, of_samples)) most_m = std::max(most_m, m);
+    return most_m;
+  }
+
   list now_, before_;
   std::vector<float> brought_m_;  // per patch
   std::vector<float> asked_m_;
   std::vector<asked_patch> asked_;
+  // Per patch: none of its samples was deeper at the last pose of which more is known, how much deeper they can have come
+  // on the poses since, and how far they are from the probe's centre of mass.
+  std::vector<float> deepest_m_, since_m_, arm_m_;
 };
 
 }  // namespace asperity

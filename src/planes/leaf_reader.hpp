@@ -50,7 +50,7 @@ class leaf_reader {
         in_y_(&y.field),
         T_wx_(T_wx),
         T_yx_(inverse(T_wy) * T_wx),
-        rotation_xy_(glm::conjugate(T_yx_.rotation)),
+        rotation_yx_(glm::mat3_cast(T_yx_.rotation)),
         rotation_wy_(T_wy.rotation),
         body_(body),
         of_probe_(of_probe),
@@ -74,7 +74,7 @@ class leaf_reader {
   }
 
   /// A point of X in Y's frame.
-  [[nodiscard]] vec3 in_field(const vec3& point_x) const noexcept { return T_yx_ * point_x; }
+  [[nodiscard]] vec3 in_field(const vec3& point_x) const noexcept { return T_yx_.position + rotation_yx_ * point_x; }
   /// The slopes of Y's field within far_m of where the middle of a patch was found.
   [[nodiscard]] slope_spread slopes_about(const near_patch& patch, const vec3& middle_y, double far_m) const noexcept {
     return spread_about(*in_y_, middle_y, far_m, patch.in_other);
@@ -100,7 +100,8 @@ class leaf_reader {
                                    std::span<float> known) const noexcept {
     near_plane out;
     sample_depth best;
-    const vec3 centre_y = T_yx_ * leaf.ball.centre_b;
+    const vec3 centre_y = in_field(leaf.ball.centre_b);
+    const double relief_m = std::min(near.relief_m, in_y_->highest_relief_m);
     std::array<candidate, sample_tree::leaf_samples> of;
     const std::span<const field_sample> samples = leaf.samples();
     for (std::size_t first = 0; first < samples.size(); first += of.size()) {
@@ -117,9 +118,11 @@ class leaf_reader {
         }
         if (count == 0 || !(next->most_m >= above_m)) break;
         const field_sample& sample = samples[next->index];
-        double most_m = std::min(next->most_m, near.most_at(T_yx_ * vec3(sample.position_b) - centre_y));
-        const sample_depth now = most_m >= above_m ? exact(sample) : sample_depth{};
-        if (now.sample != nullptr) most_m = std::min(most_m, now.most_m);
+        const vec3 p_y = in_field(vec3(sample.position_b));
+        double most_m = std::min(next->most_m, near.most_at(p_y - centre_y));
+        const sample_depth now =
+            most_m >= above_m ? read(sample, p_y, above_m, relief_m) : sample_depth{.most_m = most_m};
+        most_m = std::min(most_m, now.most_m);
         if (next->index < known.size()) known[next->index] = rounded_up(most_m);
         next->most_m = -std::numeric_limits<double>::infinity();
         const bool first_of_equals = best.sample != nullptr && now.depth_m == best.depth_m && now.sample < best.sample;
@@ -139,10 +142,9 @@ class leaf_reader {
     const std::span<const field_sample> samples = leaf.samples();
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (i < known.size() && !(static_cast<double>(known[i]) > above_m)) continue;
-      const double most_m = most_of(samples[i], above_m);
-      if (i < known.size()) known[i] = rounded_up(most_m);
-      if (!(most_m > above_m)) continue;
-      const sample_depth now = exact(samples[i]);
+      const sample_depth now =
+          read(samples[i], in_field(vec3(samples[i].position_b)), above_m, in_y_->highest_relief_m);
+      if (i < known.size()) known[i] = rounded_up(now.most_m);
       if (!(now.depth_m > above_m)) continue;
       near_plane out;
       report(now, out);
@@ -153,14 +155,15 @@ class leaf_reader {
   /// The plane of one sample; its depth is -infinity where the field has no direction there.
   [[nodiscard]] support_plane plane_of(std::uint32_t index) const noexcept {
     near_plane out;
-    const sample_depth now = exact(x_->samples.samples()[index]);
+    const field_sample& s = x_->samples.samples()[index];
+    const sample_depth now = read(s, in_field(vec3(s.position_b)), -depth_bound::unknown, in_y_->highest_relief_m);
     if (now.sample != nullptr) report(now, out);
     return out.plane;
   }
 
   /// The slope that a sample's depth has without Y's relief, as the derivative by the probe's position.
   [[nodiscard]] vec3 smooth_slope_w(std::uint32_t index) const noexcept {
-    return by_probe_w(in_y_->coarse(T_yx_ * vec3(x_->samples.samples()[index].position_b)).slope);
+    return by_probe_w(in_y_->coarse(in_field(vec3(x_->samples.samples()[index].position_b))).slope);
   }
 
   /// A bound as it is kept.
@@ -179,35 +182,33 @@ class leaf_reader {
     double depth_m = -std::numeric_limits<double>::infinity();
     vec3 slope_y{0.0};
     double sunk_m = 0.0;
-    double most_m = 0.0;  // with any facing, and with the relief wherever it moves next
+    double most_m = depth_bound::unknown;  // it is no deeper, whatever it faces
   };
 
-  // A sample is no deeper than this, by one quick reading or two.
-  [[nodiscard]] double most_of(const field_sample& s, double above_m) const noexcept {
-    const vec3 p_y = T_yx_ * vec3(s.position_b);
-    const detail::quick_reading q = detail::quick_read<detail::quick_part::slope>(in_y_->smooth, p_y);
-    const double smooth_m = q.at.value_m + q.error_m;
-    const double by_highest_m = smooth_m + in_y_->highest_relief_m;
-    if (!(by_highest_m > above_m)) return by_highest_m;
-    if (!(q.at.value_m > -2.0 * in_y_->smooth.pitch_m)) return by_highest_m;
-    const foot_and_fade to = in_y_->foot(p_y, q.at);
-    if (!(to.fade > 0.0)) return smooth_m;
-    return smooth_m + q.error_m + to.fade * detail::quick_relief(in_y_->fine, to.foot_b);
-  }
-
-  [[nodiscard]] sample_depth exact(const field_sample& s) const noexcept {
+  // How deep a sample is. Where it cannot be deeper than above_m, no more is read than says so.
+  // @param p_y its place in Y's frame   @param relief_m no relief at its foot is higher
+  [[nodiscard]] sample_depth read(const field_sample& s, const vec3& p_y, double above_m,
+                                  double relief_m) const noexcept {
     ++work_->exact;
-    const vec3 p_y = T_yx_ * vec3(s.position_b);
-    const coarse_reading smooth = in_y_->coarse(p_y);
-    const field_reading fine = in_y_->relief(p_y, smooth);
-    const field_reading d{smooth.value_m + fine.value_m, smooth.slope + fine.slope};
-    const double squared = glm::dot(d.slope, d.slope);
-    if (!(squared > facing::least_slope * facing::least_slope)) return {};
-    const double cosine = glm::dot(vec3(s.axis_b), rotation_xy_ * d.slope) / std::sqrt(squared);
-    const double sunk_m = sinking_m_ * (1.0 - facing_share(cosine, static_cast<double>(s.cone_rad)));
+    const detail::quick_reading q = detail::quick_read(in_y_->smooth, p_y);
+    sample_depth out{.most_m = q.at.value_m + q.error_m + relief_m};
+    if (!(out.most_m >= above_m)) return out;
+    const foot_and_fade to = in_y_->foot(p_y, q.at);
+    const bool has_relief = q.in_grid && to.fade > 0.0;
+    const detail::relief_bricks::reading t =
+        has_relief ? detail::quick_relief(in_y_->fine, to.foot_b) : detail::relief_bricks::reading{};
+    const double depth_m = q.at.value_m + to.fade * t.value;
     // The relief ends with the grid, no closer to the surface than three pitches.
-    const bool has_relief = smooth.value_m > -2.0 * in_y_->smooth.pitch_m;
-    return {&s, d.value_m - sunk_m, d.slope, sunk_m, has_relief ? d.value_m : smooth.value_m + in_y_->highest_relief_m};
+    if (q.at.value_m > -2.0 * in_y_->smooth.pitch_m) out.most_m = std::min(out.most_m, depth_m + 2.0 * q.error_m);
+    if (!(depth_m >= above_m)) return out;
+    out.slope_y = has_relief ? q.at.slope + body_field::faded(t, to, q.at).slope : q.at.slope;
+    const double squared = glm::dot(out.slope_y, out.slope_y);
+    if (!(squared > facing::least_slope * facing::least_slope)) return out;
+    const double cosine = glm::dot(rotation_yx_ * vec3(s.axis_b), out.slope_y) / std::sqrt(squared);
+    out.sample = &s;
+    out.sunk_m = sinking_m_ * (1.0 - facing_share(cosine, static_cast<double>(s.cone_rad)));
+    out.depth_m = depth_m - out.sunk_m;
+    return out;
   }
 
   [[nodiscard]] static double facing_share(double cosine, double cone_rad) noexcept {
@@ -235,7 +236,7 @@ class leaf_reader {
 
   // The point of Y's fine surface that a sample has its depth from.
   [[nodiscard]] vec3 foot_y(const sample_depth& of) const noexcept {
-    const vec3 p_y = T_yx_ * vec3(of.sample->position_b);
+    const vec3 p_y = in_field(vec3(of.sample->position_b));
     const vec3 slope = in_y_->coarse(p_y).slope;
     return p_y - (of.depth_m + of.sunk_m) / (glm::dot(slope, slope) + 1e-3) * slope;
   }
@@ -243,7 +244,8 @@ class leaf_reader {
   const field_body* x_;
   const body_field* in_y_;
   pose T_wx_, T_yx_;
-  quat rotation_xy_, rotation_wy_;
+  mat3 rotation_yx_;
+  quat rotation_wy_;
   std::uint32_t body_;
   bool of_probe_;
   vec3 c_a_w_;

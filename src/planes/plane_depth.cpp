@@ -150,9 +150,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
     const leaf_reader& reader = reader_of(patches[p], thread);
     const sample_ball& ball = patches[p].ball;
     const vec3 r_w = reader.from_centre_of_mass_w(ball.centre_b);
-    known_->ask_of(
-        p, patches[p],
-        {.middle_y = reader.in_field(ball.centre_b), .arm_m = std::sqrt(glm::dot(r_w, r_w)) + ball.radius_m});
+    known_->ask_of(p, patches[p], reader.in_field(ball.centre_b), std::sqrt(glm::dot(r_w, r_w)) + ball.radius_m);
   });
   *asked_at_ = {};
   work_ = reading.work();

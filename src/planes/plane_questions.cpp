@@ -24,10 +24,11 @@ void keep_deepest(const support_plane& p, plane_list& in) noexcept {
 
 // Brings what is known of a patch to the pose that is asked for, turned by so much from the tick's. Returns how much
 // deeper its samples can be there than at the tick's pose.
-double come_to(known_depths::asked_patch& asked, const near_patch& patch, const leaf_reader& there,
+double come_to(known_depths& known, std::size_t p, const near_patch& patch, const leaf_reader& there,
                const vec3& turned) noexcept {
   constexpr double asked_pitches = 0.4;  // of the smooth part: the poses that are asked for are mostly no further
   const double radius_m = patch.ball.radius_m;
+  known_depths::asked_patch& asked = known.asked(p);
   if (!std::exchange(asked.has_slopes, true)) {
     asked.slopes = there.slopes_about(patch, asked.middle_y, radius_m + asked_pitches * there.pitch_m());
   }
@@ -36,8 +37,7 @@ double come_to(known_depths::asked_patch& asked, const near_patch& patch, const 
   const patch_way gone{now_y - before_y, std::sqrt(glm::dot(turn, turn)) * radius_m};
   const patch_way come{now_y - asked.middle_y, std::sqrt(glm::dot(turned, turned)) * radius_m};
   const double here_m = glm::length(come.of_middle), before_m = glm::distance(before_y, asked.middle_y);
-  const double grown_m = asked.slopes.growth_m(gone, radius_m + std::max(here_m, before_m));
-  known_depths::grow(asked, std::min(grown_m, static_cast<double>(std::exchange(asked.since_m, 0.0F))));
+  known.come_to(p, asked.slopes.growth_m(gone, radius_m + std::max(here_m, before_m)));
   return asked.slopes.growth_m(come, radius_m + here_m);
 }
 
@@ -53,16 +53,14 @@ double come_to(known_depths::asked_patch& asked, const near_patch& patch, const 
   const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
   const std::span<const near_patch> patches = found.patches();
   const auto look = [&](std::size_t p, unsigned thread, plane_list& to) noexcept {
-    known_depths::asked_patch& asked = known_->asked()[p];
     const near_patch& patch = patches[p];
     const way& of = ways_[patch.body];
     const double deeper_m = above_m + of.back_m;
-    // Most patches are too far away for any motion of this length.
-    if (of.away || !(static_cast<double>(asked.most_m + asked.since_m) > deeper_m)) return;
+    if (of.away || !(known_->asked_most_m(p) > deeper_m)) return;
     const leaf_reader& reader = reading.of(thread).of(patch, of.sinking_m);
-    const double least_m = std::max(deeper_m, come_to(asked, patch, reader, moved.angular) - told_m_ + of.back_m);
-    if (!(static_cast<double>(asked.most_m) > least_m)) return;
-    known_->open(asked, patch);
+    const double least_m = std::max(deeper_m, come_to(*known_, p, patch, reader, moved.angular) - told_m_ + of.back_m);
+    if (!(known_->asked_most_m(p) > least_m)) return;
+    known_->open(p, patch);
     const bool has_map = materials_->has_map(patch.body);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
       reader.each_deeper(found.leaves()[i], least_m, known_->asked_of(i), [&](support_plane plane) noexcept {
@@ -76,24 +74,21 @@ double come_to(known_depths::asked_patch& asked, const near_patch& patch, const 
         if (plane.depth_m > above_m) keep_deepest(plane, to);
       });
     }
-    known_->close(asked, patch);
+    known_->close(p, patch);
   };
-  const auto come_and_look = [&](std::size_t p, unsigned thread, plane_list& to) noexcept {
-    known_depths::asked_patch& asked = known_->asked()[p];
-    asked.since_m +=
-        static_cast<float>(steepest_depth * (slid_m + turned_rad * asked.arm_m)) + known_depths::rounding_m;
-    look(p, thread, to);
+  const auto look_from = [&](std::size_t begin, std::size_t end, unsigned thread, plane_list& to) noexcept {
+    known_->move_on(begin, end, slid_m, turned_rad, above_m, [&](std::size_t p) noexcept { look(p, thread, to); });
   };
   const std::size_t parts = parts_.size();
   if (parts <= 1) {
-    for (std::size_t p = 0; p < patches.size(); ++p) come_and_look(p, 0, out);
+    look_from(0, patches.size(), 0, out);
     return out.dropped() > 0 ? status::capacity_reached : status::ok;
   }
   share(team_.get(), parts, [&](std::size_t part, unsigned thread) noexcept {
     parts_[part].clear();
     const std::size_t begin = detail::part_begin(patches.size(), parts, part);
     const std::size_t end = detail::part_begin(patches.size(), parts, part + 1);
-    for (std::size_t p = begin; p < end; ++p) come_and_look(p, thread, parts_[part]);
+    look_from(begin, end, thread, parts_[part]);
   });
   bool all = true;
   for (const plane_list& part : parts_) {

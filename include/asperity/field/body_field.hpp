@@ -62,9 +62,15 @@ struct body_field {
     if (smooth.clamped(p_b) != p_b) return {};
     const foot_and_fade to = foot(p_b, at);
     if (!(to.fade > 0.0)) return {};
+    return faded(fine.read(to.foot_b), to, at);
+  }
+
+  /// A relief as a function of the point, from what was read at its foot.
+  /// @param to foot(p_b, at)   @param at coarse(p_b)
+  [[nodiscard]] static field_reading faded(const detail::relief_bricks::reading& t, const foot_and_fade& to,
+                                           const coarse_reading& at) noexcept {
     const vec3& g = at.slope;
     const double s = at.value_m, a = to.per_square;
-    const detail::relief_bricks::reading t = fine.read(to.foot_b);
     const vec3 bent = at.hessian_per_m * g;
     const double along = glm::dot(g, t.slope);
     const vec3 by_foot =

@@ -91,7 +91,7 @@ class GlPlaneBatch : public gl_test {
 };
 
 struct differences {
-  double depth_m = 0.0;               // the largest
+  std::vector<double> depth_m;        // the largest at each pose
   std::vector<double> force, torque;  // of the push at each pose, in units of the largest
   std::size_t other_planes = 0, pushed = 0;
 
@@ -119,11 +119,13 @@ differences beside_ticks(plane_batch& batch, const drawn_poses& drawn) {
     out.other_planes += told[i].deepest.size() != pushing ? 1U : 0U;
     planes += pushing;
     out.pushed += pushing > 0 ? 1U : 0U;
+    double depth_m = 0.0;
     for (std::size_t k = 0; k < std::min(pushing, told[i].deepest.size()); ++k) {
       const support_plane& p = told[i].deepest[k].plane;
-      out.depth_m = std::max(out.depth_m, std::fabs(p.depth_m - t.depths[k].depth_m));
+      depth_m = std::max(depth_m, std::fabs(p.depth_m - t.depths[k].depth_m));
       out.other_planes += p.body != t.contacts[k].body ? 1U : 0U;
     }
+    out.depth_m.push_back(depth_m);
     const wrench mine = push_of(told[i], stiffness);
     out.force.push_back(glm::length(mine.force - t.force.on_probe_w.force));
     out.torque.push_back(glm::length(mine.torque - t.force.on_probe_w.torque));
@@ -133,8 +135,8 @@ differences beside_ticks(plane_batch& batch, const drawn_poses& drawn) {
   for (double& f : out.force) f /= most_force;
   for (double& t : out.torque) t /= most_torque;
   std::printf("  %zu poses, %zu push with %zu planes; other planes in %zu; depth %.2g m, force %.2g, torque %.2g\n",
-              at.size(), out.pushed, planes, out.other_planes, out.depth_m, differences::share(out.force, 1.0),
-              differences::share(out.torque, 1.0));
+              at.size(), out.pushed, planes, out.other_planes, differences::share(out.depth_m, 1.0),
+              differences::share(out.force, 1.0), differences::share(out.torque, 1.0));
   return out;
 }
 
@@ -150,14 +152,17 @@ TEST_F(GlPlaneBatch, FeelsWhatATickFeels) {
       const differences d = beside_ticks(exact, drawn);
       EXPECT_GT(2 * d.pushed, count);
       EXPECT_EQ(d.other_planes, 0U);
-      EXPECT_LT(d.depth_m, 1e-9);
-      EXPECT_LT(differences::share(d.force, 1.0), 1e-6);
-      EXPECT_LT(differences::share(d.torque, 1.0), 1e-6);
+      // A tick reads in single precision. A slope that is off by 1e-6 moves the foot of a sample, where its relief is
+      // read, by 4 nm where it is 4 mm deep.
+      EXPECT_LT(differences::share(d.depth_m, 1.0), 2e-8);
+      EXPECT_LT(differences::share(d.force, 1.0), 1e-4);
+      EXPECT_LT(differences::share(d.torque, 1.0), 1e-4);
     }
     plane_batch quick = make({.arithmetic = arithmetic::single_precision});
     const differences s = beside_ticks(quick, drawn);
     EXPECT_GT(2 * s.pushed, count);
-    EXPECT_LT(s.depth_m, 5e-6);
+    // At the hundredth another sample may be as deep, and its direction another one.
+    EXPECT_LT(differences::share(s.depth_m, 0.99), 5e-6);
     EXPECT_LT(differences::share(s.force, 0.99), 1e-2);
     EXPECT_LT(differences::share(s.torque, 0.99), 1e-2);
   }
