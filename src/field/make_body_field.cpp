@@ -91,22 +91,39 @@ void lay_relief(body_field& out, const bounds& box, const field_settings& settin
   }
 }
 
-/// Measures slopes at every second point of the fine surface, and above and below it.
+/// Measures slopes at every second point of the fine surface, above and below it, and all over the blocks near it: beside
+/// an edge no point of the surface lies straight below.
 [[nodiscard]] slope_boxes measure_slopes(const relief_points& points, const body_field& of, unsigned threads) {
   constexpr std::array<double, 11> off_surface{0.0, -0.4, 0.2, -0.9, 0.7, -1.5, 1.3, -2.2, 2.1, -3.0, 3.0};  // pitches
   static_assert(off_surface.back() == body_field::slopes_to);
+  constexpr std::size_t in_block = 4;  // along each axis
+  const double farthest_m = body_field::slopes_to * of.smooth.pitch_m;
   // Boxes for each part, because a point's block may be any thread's; not more than memory is there for.
   const std::size_t parts = std::min(8U, threads);
   std::vector<slope_boxes> boxes(parts);
   for_each_task(parts, threads, [&](std::size_t part) {
-    boxes[part] = slope_boxes(of.smooth);
+    slope_boxes& out = boxes[part] = slope_boxes(of.smooth);
+    const auto measure = [&](const vec3& p_b, const coarse_reading& at) {
+      out.add(p_b, at.slope + of.relief(p_b, at).slope);
+    };
     const auto add = [&](std::size_t n, const vec3& foot_b, const vec3& inwards) {
       if (n % 2 != 0) return;
       const vec3 p_b = foot_b + off_surface[n / 2 % off_surface.size()] * of.smooth.pitch_m * inwards;
-      const coarse_reading at = quick_read(of.smooth, p_b).at;
-      boxes[part].add(p_b, at.slope + of.relief(p_b, at).slope);
+      measure(p_b, quick_read(of.smooth, p_b).at);
     };
     points.for_each_foot(part_begin(points.points(), parts, part), part_begin(points.points(), parts, part + 1), add);
+    const std::size_t end = part_begin(out.blocks(), parts, part + 1);
+    for (std::size_t block = part_begin(out.blocks(), parts, part); block < end; ++block) {
+      const vec3 middle_b = out.place_in(block, vec3(0.5));
+      if (!(std::fabs(of.smooth.most_beside(of.smooth.clamped(middle_b))) < 2.0 * farthest_m)) continue;
+      for (std::size_t n = 0; n < in_block * in_block * in_block; ++n) {
+        const vec3 place(static_cast<double>(n % in_block), static_cast<double>(n / in_block % in_block),
+                         static_cast<double>(n / (in_block * in_block)));
+        const vec3 p_b = out.place_in(block, (place + 0.5) / static_cast<double>(in_block));
+        const quick_reading q = quick_read(of.smooth, p_b);
+        if (q.in_grid && std::fabs(q.at.value_m) < farthest_m) measure(p_b, q.at);
+      }
+    }
   });
   for (std::size_t i = 1; i < parts; ++i) boxes[0].add(boxes[i]);
   return std::move(boxes[0]);

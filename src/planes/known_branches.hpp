@@ -14,7 +14,7 @@
 #include "asperity/field/field_scene.hpp"
 #include "asperity/field/sample_tree.hpp"
 #include "asperity/model/scene.hpp"
-#include "planes/slope_spread.hpp"
+#include "planes/patch_slopes.hpp"
 
 namespace asperity {
 

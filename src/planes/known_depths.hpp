@@ -14,7 +14,7 @@
 #include "asperity/field/field_scene.hpp"
 #include "asperity/planes/near_samples.hpp"
 #include "field/lanes.hpp"
-#include "planes/slope_spread.hpp"
+#include "planes/patch_slopes.hpp"
 
 namespace asperity {
 
@@ -98,7 +98,7 @@ class known_depths {
     vec3 turned{0.0};      ///< from the tick's pose to that one, rotation vector
     float grown_m = 0.0F;  ///< by what the bounds of its samples have grown since they were written
     bool has_slopes = false;
-    slope_spread slopes{};  ///< about it, once they were needed
+    patch_slopes slopes{};  ///< about it, once they were needed
   };
 
   /// Ends the tick: from here on questions are for poses near by, and bounds those of the pose that was asked for last.

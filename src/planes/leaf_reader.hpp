@@ -19,7 +19,7 @@
 #include "model/material_places.hpp"
 #include "planes/ball_bound.hpp"
 #include "planes/facing.hpp"
-#include "planes/slope_spread.hpp"
+#include "planes/patch_slopes.hpp"
 
 namespace asperity {
 
@@ -76,8 +76,8 @@ class leaf_reader {
   /// A point of X in Y's frame.
   [[nodiscard]] vec3 in_field(const vec3& point_x) const noexcept { return T_yx_.position + rotation_yx_ * point_x; }
   /// The slopes of Y's field within far_m of where the middle of a patch was found.
-  [[nodiscard]] slope_spread slopes_about(const near_patch& patch, const vec3& middle_y, double far_m) const noexcept {
-    return spread_about(*in_y_, middle_y, far_m, patch.in_other);
+  [[nodiscard]] patch_slopes slopes_about(const near_patch& patch, const vec3& middle_y, double far_m) const noexcept {
+    return asperity::slopes_about(*in_y_, middle_y, far_m, patch.in_other);
   }
   /// m, of Y's smooth part.
   [[nodiscard]] double pitch_m() const noexcept { return in_y_->smooth.pitch_m; }

@@ -15,7 +15,7 @@ namespace asperity {
 
 /// Which bytes these are. It goes up whenever make_field_body() makes another field of the same model, or the bytes lie
 /// in another way: a reader passes over fields of other versions, and they are made at load.
-inline constexpr std::uint32_t packed_field_version = 4;
+inline constexpr std::uint32_t packed_field_version = 5;
 
 /// The bytes of a field and its samples, little-endian; docs/reference/asset-format.md has their layout. Bounds that
 /// follow from them are left out. Allocates.

@@ -43,6 +43,16 @@ class slope_boxes {
     in.high = glm::max(in.high, glm::vec3(slope));
   }
 
+  [[nodiscard]] std::size_t blocks() const noexcept { return blocks_.size(); }
+  /// A place in a block.
+  /// @param share 0 to 1 along each axis
+  [[nodiscard]] vec3 place_in(std::size_t block, const vec3& share) const noexcept {
+    const std::size_t row = block / along_[0];
+    const vec3 first(static_cast<double>(block % along_[0]), static_cast<double>(row % along_[1]),
+                     static_cast<double>(row / along_[1]));
+    return low_ + block_m_ * (first + share);
+  }
+
   /// Adds what was measured at other points of the same grid.
   void add(const slope_boxes& others) noexcept {
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
@@ -51,33 +61,38 @@ class slope_boxes {
     }
   }
 
-  /// How much a slope within radius_m of a point can differ from this one; infinity where a block has
-  /// none, and for radii of more than two cells.
+  /// Lowest and highest slopes by component.
+  struct box {
+    vec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+
+    /// Whether there is one.
+    [[nodiscard]] bool known() const noexcept { return low.x <= high.x; }
+  };
+
+  /// Holds all slopes within radius_m of a point. Not known where a block has none, and for radii of more than two cells.
   /// @rt safe: 27 boxes at most
-  [[nodiscard]] double furthest(const vec3& p_b, double radius_m, const vec3& from) const noexcept {
-    constexpr double unknown = std::numeric_limits<double>::infinity();
-    if (!(radius_m <= block_m_)) return unknown;
+  [[nodiscard]] box around(const vec3& p_b, double radius_m) const noexcept {
+    if (!(radius_m <= block_m_)) return {};
     std::array<std::size_t, 3> first{}, last{};
     for (std::size_t k = 0; k < 3; ++k) {
       const double g = (p_b[static_cast<int>(k)] - low_[static_cast<int>(k)]) / block_m_, r = radius_m / block_m_;
       const double end = static_cast<double>(along_[k]);
-      if (!(g - r >= 0.0 && g + r < end)) return unknown;
+      if (!(g - r >= 0.0 && g + r < end)) return {};
       first[k] = static_cast<std::size_t>(g - r);
       last[k] = static_cast<std::size_t>(g + r);
     }
-    const glm::vec3 slope(from);
-    float most = 0.0F;
+    slopes all;
     for (std::size_t z = first[2]; z <= last[2]; ++z) {
       for (std::size_t y = first[1]; y <= last[1]; ++y) {
         for (std::size_t x = first[0]; x <= last[0]; ++x) {
           const slopes& in = blocks_[place(x, y, z)];
-          if (!(in.low.x <= in.high.x)) return unknown;
-          const glm::vec3 off = glm::max(slope - in.low, in.high - slope);
-          most = std::max(most, glm::dot(off, off));
+          if (!(in.low.x <= in.high.x)) return {};
+          all.low = glm::min(all.low, in.low);
+          all.high = glm::max(all.high, in.high);
         }
       }
     }
-    return std::sqrt(static_cast<double>(most));
+    return {vec3(all.low), vec3(all.high)};
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(blocks_); }

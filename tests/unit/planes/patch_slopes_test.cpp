@@ -1,5 +1,5 @@
 // What a motion adds to depths, against exact readings at places drawn anew in each run.
-#include "planes/slope_spread.hpp"
+#include "planes/patch_slopes.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -28,8 +28,8 @@ struct drawn_motions {
 };
 
 // Of balls next to the surface, the points that lie as close to it as a reach, each moved within the ball.
-TEST(SlopeSpread, NoMotionAddsMore) {
-  drawn_motions draw{std::mt19937_64(fresh_seed("SlopeSpread.NoMotionAddsMore", "20000 balls at each of 3 bodies"))};
+TEST(PatchSlopes, NoMotionAddsMore) {
+  drawn_motions draw{std::mt19937_64(fresh_seed("PatchSlopes.NoMotionAddsMore", "20000 balls at each of 3 bodies"))};
   const std::vector<textured_model> models{make_textured_box({0.012, 0.01, 0.008}, 256, ridges(60e-6, 1.7e-3)),
                                            make_textured_box({0.03, 0.03, 0.01}, 384, ridges(90e-6, 2.3e-3)),
                                            make_flat_box({0.006, 0.009, 0.007}, 128)};
@@ -45,8 +45,8 @@ TEST(SlopeSpread, NoMotionAddsMore) {
       const double radius_m = pitch_m * (0.1 + 0.9 * draw.unit()), far_m = radius_m + 0.3 * pitch_m * draw.unit();
       const vec3 middle = on_surface + draw.in_ball(0.8 * pitch_m);
       const depth_bound at = bound_of_ball(f, pose{}, {.centre_b = middle, .radius_m = radius_m, .half_m = radius_m});
-      const slope_spread slopes = spread_about(f, middle, far_m, at);
-      if (!std::isfinite(slopes.spread)) continue;
+      const patch_slopes slopes = slopes_about(f, middle, far_m, at);
+      if (slopes.within_m < 0.0) continue;
       ++known;
       for (int i = 0; i < 10; ++i) {
         const vec3 from = middle + draw.in_ball(radius_m), to = middle + draw.in_ball(far_m);
@@ -69,13 +69,16 @@ TEST(SlopeSpread, NoMotionAddsMore) {
 }
 
 // A turn adds what it moves the points of the patch by.
-TEST(SlopeSpread, CountsTurnsAndLeaps) {
-  const slope_spread slopes{.slope = {0.0, 0.0, 1.0}, .spread = 0.25, .within_m = 1e-3};
-  EXPECT_DOUBLE_EQ(slopes.growth_m({{1e-4, 0.0, 0.0}, 0.0}, 1e-3), 0.25e-4);
-  EXPECT_DOUBLE_EQ(slopes.growth_m({{0.0, 0.0, -1e-4}, 0.0}, 1e-3), -0.75e-4);
-  EXPECT_DOUBLE_EQ(slopes.growth_m({{1e-4, 0.0, 0.0}, 1e-5}, 1e-3), 0.25e-4 + 1.25e-5);
+TEST(PatchSlopes, CountsTurnsAndLeaps) {
+  const patch_slopes slopes{.measured = {{-0.25, 0.0, 1.0}, {0.5, 0.0, 1.0}}, .within_m = 1e-3};
+  constexpr double beside = patch_slopes::not_measured;
+  EXPECT_DOUBLE_EQ(slopes.growth_m({{1e-4, 0.0, 0.0}, 0.0}, 1e-3), (0.5 + beside) * 1e-4);
+  EXPECT_DOUBLE_EQ(slopes.growth_m({{-1e-4, 0.0, 0.0}, 0.0}, 1e-3), (0.25 + beside) * 1e-4);
+  EXPECT_DOUBLE_EQ(slopes.growth_m({{0.0, 0.0, -1e-4}, 0.0}, 1e-3), (-1.0 + beside) * 1e-4);
+  EXPECT_DOUBLE_EQ(slopes.growth_m({{1e-4, 0.0, 0.0}, 1e-5}, 1e-3),
+                   (0.5 + beside) * 1e-4 + (std::sqrt(0.25 + 1.0) + beside) * 1e-5);
   EXPECT_DOUBLE_EQ(slopes.growth_m({{1e-4, 0.0, 0.0}, 1e-5}, 1.1e-3), steepest_depth * 1.1e-4);
-  EXPECT_DOUBLE_EQ(slope_spread{}.growth_m({{1e-4, 0.0, 0.0}, 0.0}, 0.0), steepest_depth * 1e-4);
+  EXPECT_DOUBLE_EQ(patch_slopes{}.growth_m({{1e-4, 0.0, 0.0}, 0.0}, 0.0), steepest_depth * 1e-4);
 }
 
 }  // namespace
