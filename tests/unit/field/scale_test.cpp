@@ -57,7 +57,7 @@ TEST(BodyFieldScale, IsTheSameFromAMillimetreToTenMetres) {
     const differences d = between(of_one, 1.0, f, size, vec3(0.0), seed);
     std::printf("  radius %g m: values differ by %.5f pitches, slopes by %.5f\n", size, d.value, d.slope);
     EXPECT_LE(d.value, 0.08) << size;  // where two triangles are as near, rounding chooses
-    EXPECT_LE(d.slope, 0.05) << size;
+    EXPECT_LE(d.slope, 0.1) << size;
   }
 }
 
