@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <gtest/gtest.h>
 #include <set>
 #include <utility>
@@ -54,7 +55,9 @@ TEST(PosedSamples, FindsTheDeepestOfAll) {
   int inside = 0;
   const int poses = extent(20, 60);
   for (int i = 0; i < poses; ++i) {
-    const pose T_wa = drawn_pose(draw), T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
+    pose T_wa = drawn_pose(draw);
+    if (i % 8 == 0) T_wa.position.z += 14.0 * mm;  // mostly apart
+    const pose T_wb{draw.rotation(), 0.5 * mm * draw.vector()};
     const vec3 x_w = 2.0 * mm * draw.vector();
     samples.place({T_wa, {&T_wb, 1}}, 10'000'000);
     const std::vector<double> all = all_depths(T_wa, T_wb, x_w);
@@ -72,6 +75,7 @@ TEST(PosedSamples, FindsTheDeepestOfAll) {
   if (at_length()) {  // few poses may all be inside
     EXPECT_LT(inside, poses);
   }
+  std::printf("  %d of %d overlap\n", inside, poses);
 }
 
 // What a search has read at a pose bounds what it asks for next; a bound that is too low hides a sample.
