@@ -189,7 +189,7 @@ class leaf_reader {
   // @param p_y its place in Y's frame   @param relief_m no relief at its foot is higher
   [[nodiscard]] sample_depth read(const field_sample& s, const vec3& p_y, double above_m,
                                   double relief_m) const noexcept {
-    ++work_->exact;
+    ++work_->read;
     const detail::quick_reading q = detail::quick_read(in_y_->smooth, p_y);
     sample_depth out{.most_m = q.at.value_m + q.error_m + relief_m};
     if (!(out.most_m >= above_m)) return out;

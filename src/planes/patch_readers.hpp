@@ -58,7 +58,7 @@ class readers_of_threads {
     for (const std::optional<patch_readers>& r : readers_) {
       if (!r) continue;
       sum.bounded += r->work().bounded;
-      sum.exact += r->work().exact;
+      sum.read += r->work().read;
     }
     return sum;
   }

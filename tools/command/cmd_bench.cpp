@@ -93,7 +93,7 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                    {{"balls_looked_at", mean_of(&depth_work::looked_at)},
                     {"near", mean_of(&depth_work::listed)},
                     {"leaves_bounded", mean_of(&depth_work::bounded)},
-                    {"read_exactly", mean_of(&depth_work::exact)}}},
+                    {"read", mean_of(&depth_work::read)}}},
                   {"threads", options.motion.threads},
                   {"time_is", "cpu"},
                   {"seconds",
@@ -144,7 +144,7 @@ answer report(const scene& bodies, const bench_command& options, const stage_tim
                                           ratio_text(every_sample.p50_s / planes_tick.p50_s) + " tick, planes)");
   out.text += row("samples of that tick", brief(mean_of(&depth_work::looked_at)) + " balls looked at, " +
                                               brief(mean_of(&depth_work::listed)) + " samples near, " +
-                                              brief(mean_of(&depth_work::exact)) + " read in full; " +
+                                              brief(mean_of(&depth_work::read)) + " read; " +
                                               brief(mean_of(&depth_work::bounded)) + " leaves bounded");
   out.text += row("tick that follows", to_text(follow) + " on the wall");
   out.text +=

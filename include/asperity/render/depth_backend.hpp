@@ -57,7 +57,7 @@ struct depth_work {
   std::uint32_t looked_at = 0;  ///< balls of samples, large and small, that a finder could not leave unread
   std::uint32_t listed = 0;     ///< samples that may be within reach
   std::uint32_t bounded = 0;    ///< leaves, a few samples each, that a reading bounded
-  std::uint32_t exact = 0;      ///< samples that were read in double precision with all derivatives
+  std::uint32_t read = 0;       ///< samples that were read, as far as it took to dismiss them or in full
 };
 
 /// A stage of a renderer that counts what its last tick took.

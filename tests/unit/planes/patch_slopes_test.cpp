@@ -60,10 +60,10 @@ TEST(PatchSlopes, NoMotionAddsMore) {
     }
     std::printf("  %d of 20000 balls known, %d of %d motions have a sharper bound; %d add more, by up to %.2g um\n",
                 known, sharper, moved, wrong, 1e6 * most_wrong_m);
-    EXPECT_GT(known, 10000);
+    EXPECT_GT(known, 19000);
     EXPECT_GT(sharper, moved / 2);
     // A measured bound: see "What a motion adds" in wall-that-holds.md.
-    EXPECT_LE(wrong, moved / 2000);
+    EXPECT_LE(wrong, moved / 50000);
     EXPECT_LT(most_wrong_m, 0.1 * pitch_m);
   }
 }
