@@ -115,6 +115,10 @@ inline plane_outcome run(const plane_case& c) {
   std::vector<vec3> forces;
   vec3 slow{0.0};
   double shake = 0.0;
+  // What the coupling's spring holds at the device's peak force was lent, and is not made when it comes back.
+  const double at_hand_n_per_m = c.control.coupling.stiffness_n_per_m * c.control.map.scale * c.control.map.scale;
+  const double peak_n = simulated_capabilities().peak_force_n;
+  const double credit_j = std::max(0.1, 0.5 * peak_n * peak_n / at_hand_n_per_m);
   double surplus = 0.0;
   double before = 0.0;
   double settled = 0.0;
@@ -135,7 +139,7 @@ inline plane_outcome run(const plane_case& c) {
     }
     out.step_n_per_ms = std::max(out.step_n_per_ms, step);
     const double delivered = dev.delivered_j();
-    surplus = std::max(-0.1, surplus + delivered - before);
+    surplus = std::max(-credit_j, surplus + delivered - before);
     before = delivered;
     out.surplus_j = std::max(out.surplus_j, surplus);
     const vec3 v = dev.true_velocity_d().linear;
