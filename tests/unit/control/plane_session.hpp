@@ -115,10 +115,12 @@ inline plane_outcome run(const plane_case& c) {
   std::vector<vec3> forces;
   vec3 slow{0.0};
   double shake = 0.0;
-  // What the coupling's spring holds at the device's peak force was lent, and is not made when it comes back.
-  const double at_hand_n_per_m = c.control.coupling.stiffness_n_per_m * c.control.map.scale * c.control.map.scale;
-  const double peak_n = simulated_capabilities().peak_force_n;
-  const double credit_j = std::max(0.1, 0.5 * peak_n * peak_n / at_hand_n_per_m);
+  // What the coupling's springs hold at the device's peak wrench was lent, and is not made when it comes back.
+  const auto& k = c.control.coupling;
+  const double peak_n = simulated_capabilities().peak_force_n / c.control.map.scale;  // in the world
+  const double peak_n_m = simulated_capabilities().peak_torque_n_m;
+  const double credit_j =
+      std::max(0.1, 0.5 * peak_n * peak_n / k.stiffness_n_per_m + 0.5 * peak_n_m * peak_n_m / k.stiffness_n_m_per_rad);
   double surplus = 0.0;
   double before = 0.0;
   double settled = 0.0;
