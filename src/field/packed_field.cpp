@@ -21,12 +21,12 @@ namespace detail {
 class field_parts {
  public:
   static void write(const slope_boxes& boxes, field_writer& to) {
-    to.sparse(std::span<const slope_boxes::slopes>(boxes.blocks_), slope_boxes::slopes{});
+    to.sparse(std::span<const slope_boxes::box>(boxes.blocks_), slope_boxes::box{});
   }
   static slope_boxes read_slopes(const coarse_grid& of, field_reader& from) {
     slope_boxes out(of);
     from.sparse(std::span(out.blocks_), "slopes");
-    for (const slope_boxes::slopes& s : out.blocks_) {
+    for (const slope_boxes::box& s : out.blocks_) {
       const bool is_empty = !(s.low.x <= s.high.x);
       const bool is_finite = all_finite({&s.low.x, 3}) && all_finite({&s.high.x, 3});
       if (!is_finite && !(is_empty && std::memcmp(&s, &no_slopes, sizeof s) == 0)) {
@@ -88,7 +88,7 @@ class field_parts {
 
  private:
   static constexpr std::size_t ball_numbers = 8;
-  static constexpr slope_boxes::slopes no_slopes{};
+  static constexpr slope_boxes::box no_slopes{};
 
   static std::array<float, ball_numbers> numbers_of(const sample_tree::ball& b) noexcept {
     return {b.centre_b.x, b.centre_b.y, b.centre_b.z, b.axis_b.x, b.axis_b.y, b.axis_b.z, b.radius_m, b.half_m};

@@ -17,7 +17,7 @@ struct quick_reading {
   bool in_grid = false;  ///< beyond the grid there is no relief
 };
 
-/// coarse_grid::read() at a third of its cost: four nodes in a row are one register, on every processor. What is added
+/// coarse_grid::read() in six tenths of its time: four nodes in a row are one register, on every processor. What is added
 /// are differences from the node next to the point, so single precision is wrong by 6e-8 of a few pitches however deep
 /// the point lies: error_m allows for a hundred times that.
 /// @rt safe: 64 nodes

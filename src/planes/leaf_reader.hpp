@@ -15,7 +15,6 @@
 #include "asperity/planes/near_samples.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "field/quick_read.hpp"
-#include "field/quick_relief.hpp"
 #include "model/material_places.hpp"
 #include "planes/ball_bound.hpp"
 #include "planes/facing.hpp"
@@ -196,7 +195,7 @@ class leaf_reader {
     const foot_and_fade to = in_y_->foot(p_y, q.at);
     const bool has_relief = q.in_grid && to.fade > 0.0;
     const detail::relief_bricks::reading t =
-        has_relief ? detail::quick_relief(in_y_->fine, to.foot_b) : detail::relief_bricks::reading{};
+        has_relief ? in_y_->fine.read(to.foot_b) : detail::relief_bricks::reading{};
     const double depth_m = q.at.value_m + to.fade * t.value;
     // The relief ends with the grid, no closer to the surface than three pitches.
     if (q.at.value_m > -2.0 * in_y_->smooth.pitch_m) out.most_m = std::min(out.most_m, depth_m + 2.0 * q.error_m);

@@ -39,8 +39,8 @@ struct patch_slopes {
     const double along_m = std::sqrt(glm::dot(way.of_middle, way.of_middle));
     const double at_most_m = steepest_depth * (along_m + way.of_turn_m);
     if (!(far_m <= within_m)) return at_most_m;
-    const vec3 by_axis = glm::max(measured.low * way.of_middle, measured.high * way.of_middle);
-    const vec3 longest = glm::max(-measured.low, measured.high);
+    const vec3 low(measured.low), high(measured.high);
+    const vec3 by_axis = glm::max(low * way.of_middle, high * way.of_middle), longest = glm::max(-low, high);
     const double steep = std::sqrt(glm::dot(longest, longest)) + not_measured;
     return std::min(at_most_m, by_axis.x + by_axis.y + by_axis.z + not_measured * along_m + steep * way.of_turn_m);
   }

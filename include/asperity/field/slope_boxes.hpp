@@ -20,6 +20,15 @@ class field_parts;
 /// no point had is not in it. Made once, beside the field; never changed.
 class slope_boxes {
  public:
+  /// Lowest and highest slopes by component.
+  struct box {
+    glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+
+    /// Whether it holds any.
+    [[nodiscard]] bool known() const noexcept { return low.x <= high.x; }
+    friend bool operator==(const box&, const box&) = default;
+  };
+
   slope_boxes() = default;
 
   /// Allocates six numbers per eight nodes.
@@ -38,7 +47,7 @@ class slope_boxes {
       if (!(g >= 0.0 && g < static_cast<double>(along_[k]))) return;
       at[k] = static_cast<std::size_t>(g);
     }
-    slopes& in = blocks_[place(at[0], at[1], at[2])];
+    box& in = blocks_[place(at[0], at[1], at[2])];
     in.low = glm::min(in.low, glm::vec3(slope));
     in.high = glm::max(in.high, glm::vec3(slope));
   }
@@ -61,14 +70,6 @@ class slope_boxes {
     }
   }
 
-  /// Lowest and highest slopes by component.
-  struct box {
-    vec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-
-    /// Whether there is one.
-    [[nodiscard]] bool known() const noexcept { return low.x <= high.x; }
-  };
-
   /// Holds all slopes within radius_m of a point. Not known where a block has none, and for radii of more than two cells.
   /// @rt safe: 27 boxes at most
   [[nodiscard]] box around(const vec3& p_b, double radius_m) const noexcept {
@@ -81,18 +82,18 @@ class slope_boxes {
       first[k] = static_cast<std::size_t>(g - r);
       last[k] = static_cast<std::size_t>(g + r);
     }
-    slopes all;
+    box all;
     for (std::size_t z = first[2]; z <= last[2]; ++z) {
       for (std::size_t y = first[1]; y <= last[1]; ++y) {
         for (std::size_t x = first[0]; x <= last[0]; ++x) {
-          const slopes& in = blocks_[place(x, y, z)];
-          if (!(in.low.x <= in.high.x)) return {};
+          const box& in = blocks_[place(x, y, z)];
+          if (!in.known()) return {};
           all.low = glm::min(all.low, in.low);
           all.high = glm::max(all.high, in.high);
         }
       }
     }
-    return {vec3(all.low), vec3(all.high)};
+    return all;
   }
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(blocks_); }
@@ -102,12 +103,6 @@ class slope_boxes {
  private:
   friend class field_parts;  // reads and writes boxes
 
-  /// Of points in a block; empty while low is above high.
-  struct slopes {
-    glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
-    friend bool operator==(const slopes&, const slopes&) = default;
-  };
-
   [[nodiscard]] std::size_t place(std::size_t x, std::size_t y, std::size_t z) const noexcept {
     return (z * along_[1] + y) * along_[0] + x;
   }
@@ -115,7 +110,7 @@ class slope_boxes {
   vec3 low_{0.0};
   double block_m_ = 1.0;
   std::array<std::size_t, 3> along_{};
-  std::vector<slopes> blocks_;
+  std::vector<box> blocks_;
 };
 
 }  // namespace asperity::detail

@@ -193,7 +193,8 @@ TEST(PackedField, DamageDoesNoHarm) {
     double sum = 0.0;
     for (int k = 0; k < 50; ++k) {
       const vec3 p(place(random), place(random), place(random));
-      sum += read->field.read(p).value_m + read->field.most_near(p, 1e-3) + read->field.slopes.around(p, 1e-4).low.x +
+      sum += read->field.read(p).value_m + read->field.most_near(p, 1e-3) +
+             static_cast<double>(read->field.slopes.around(p, 1e-4).low.x) +
              read->field.most_third.most_per_m2(p, 1e-4) + read->field.most_relief.most_m(p, 1e-4);
     }
     std::size_t samples = 0;

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "field/quick_relief.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
+#include "unit/field/drawn_places.hpp"
 #include "unit/field/field_measures.hpp"
 
 namespace asperity {
@@ -28,13 +28,7 @@ const std::vector<body_field>& fields() {
   return made;
 }
 
-struct places {
-  std::mt19937_64 bits;
-  double unit() { return std::uniform_real_distribution<double>(0.0, 1.0)(bits); }
-  vec3 direction() {
-    std::normal_distribution<double> n;
-    return glm::normalize(vec3(n(bits), n(bits), n(bits)));
-  }
+struct places : drawn_places {
   // In the grid and a little beyond it.
   vec3 in(const body_field& f) {
     const detail::coarse_grid& g = f.smooth;
@@ -48,7 +42,7 @@ struct places {
 };
 
 TEST(QuickRead, IsWrongByLessThanItSays) {
-  places draw{std::mt19937_64(fresh_seed("QuickRead.IsWrongByLessThanItSays", "20000 points in each of 3 fields"))};
+  places draw{{std::mt19937_64(fresh_seed("QuickRead.IsWrongByLessThanItSays", "20000 points in each of 3 fields"))}};
   for (const body_field& f : fields()) {
     const double extent = f.smooth.pitch_m;
     double worst_slope = 0.0;
@@ -65,9 +59,7 @@ TEST(QuickRead, IsWrongByLessThanItSays) {
       EXPECT_EQ(q.in_grid, f.smooth.clamped(p) == p);
       // A depth read by it, as a sample's is.
       if (!q.in_grid) continue;
-      const field_reading relief = f.relief(p, exact);
-      const foot_and_fade to = f.foot(p, q.at);
-      const field_reading quick = body_field::faded(detail::quick_relief(f.fine, to.foot_b), to, q.at);
+      const field_reading relief = f.relief(p, exact), quick = f.relief(p, q.at);
       EXPECT_LE(std::fabs(quick.value_m - relief.value_m), q.error_m + 1e-12);
       worst_slope = std::max(worst_slope, glm::length(quick.slope - relief.slope));
     }
@@ -75,28 +67,9 @@ TEST(QuickRead, IsWrongByLessThanItSays) {
   }
 }
 
-TEST(QuickRelief, IsTheRelief) {
-  places draw{std::mt19937_64(fresh_seed("QuickRelief.IsTheRelief", "20000 points near each of 3 surfaces"))};
-  for (const body_field& f : fields()) {
-    int felt = 0;
-    for (int i = 0; i < 20000; ++i) {
-      vec3 p = draw.in(f);
-      for (int n = 0; n < 8; ++n) p = f.foot(p, f.coarse(p)).foot_b;  // to the surface
-      p += f.fine.pitch_m * draw.unit() * draw.direction();
-      const detail::relief_bricks::reading exact = f.fine.read(p), quick = detail::quick_relief(f.fine, p);
-      felt += exact.value != 0.0 ? 1 : 0;
-      const double range_m = f.highest_relief_m - f.lowest_relief_m;
-      EXPECT_NEAR(quick.value, exact.value, 1e-6 * range_m);
-      EXPECT_LT(glm::length(quick.slope - exact.slope), 2e-6 * range_m / f.fine.pitch_m);
-    }
-    EXPECT_GT(felt, 5000);
-    EXPECT_EQ(detail::quick_relief(f.fine, f.fine.low - 1.0).value, 0.0);
-  }
-}
-
 // The second-order expansion at a point is wrong by at most a sixth of the bound times the distance's cube.
 TEST(ThirdBounds, HoldInEveryBall) {
-  places draw{std::mt19937_64(fresh_seed("ThirdBounds.HoldInEveryBall", "20000 balls in each of 3 fields"))};
+  places draw{{std::mt19937_64(fresh_seed("ThirdBounds.HoldInEveryBall", "20000 balls in each of 3 fields"))}};
   for (const body_field& f : fields()) {
     int known = 0;
     double sharpest = 0.0;
@@ -110,7 +83,7 @@ TEST(ThirdBounds, HoldInEveryBall) {
       ++known;
       const coarse_reading at = f.coarse(c);
       for (int n = 0; n < 5; ++n) {
-        const vec3 off = radius * std::cbrt(draw.unit()) * draw.direction();
+        const vec3 off = draw.in_ball(radius);
         const double far = glm::length(off);
         const double expanded = at.value_m + glm::dot(at.slope, off) + 0.5 * glm::dot(off, at.hessian_per_m * off);
         const double wrong = std::fabs(f.coarse(c + off).value_m - expanded);

@@ -9,6 +9,7 @@
 
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
+#include "unit/field/drawn_places.hpp"
 #include "unit/field/field_measures.hpp"
 
 namespace asperity {
@@ -16,18 +17,9 @@ namespace {
 
 using namespace test_support;
 
-struct drawn_balls {
-  std::mt19937_64 bits;
-  double unit() { return std::uniform_real_distribution<double>(0.0, 1.0)(bits); }
-  vec3 direction() {
-    std::normal_distribution<double> n;
-    return glm::normalize(vec3(n(bits), n(bits), n(bits)));
-  }
-};
-
 // Balls up to the largest that are asked about, at most a pitch off the surface.
 TEST(SlopeBoxes, HoldTheSlopesOfEveryBall) {
-  drawn_balls draw{
+  drawn_places draw{
       std::mt19937_64(fresh_seed("SlopeBoxes.HoldTheSlopesOfEveryBall", "4000 balls on each of 3 bodies"))};
   const std::vector<textured_model> models{make_textured_box({0.02, 0.015, 0.01}, 256, ridges(50e-6, 2e-3)),
                                            make_textured_box({0.2, 0.1, 0.15}, 256, ridges(1e-3, 9e-3)),
@@ -44,15 +36,16 @@ TEST(SlopeBoxes, HoldTheSlopesOfEveryBall) {
       if (!box.known()) continue;
       ++known;
       for (int i = 0; i < 10; ++i) {
-        const vec3 p = c + radius * std::cbrt(draw.unit()) * draw.direction();
+        const vec3 p = c + draw.in_ball(radius);
         const vec3 slope = f.read(p).slope;
-        const double off = glm::length(glm::max(vec3(0.0), glm::max(box.low - slope, slope - box.high)));
+        const vec3 low(box.low), high(box.high);
+        const double off = glm::length(glm::max(vec3(0.0), glm::max(low - slope, slope - high)));
         ++read;
         wrong += off > 0.05 ? 1 : 0;
         far_wrong += off > 0.3 ? 1 : 0;
         most_wrong = std::max(most_wrong, off);
         // How far to the border of its box, as a share of what is between the borders.
-        const vec3 wide = box.high - box.low, beside = glm::min(slope - box.low, box.high - slope);
+        const vec3 wide = high - low, beside = glm::min(slope - low, high - slope);
         for (int k = 0; k < 3; ++k) near += wide[k] > 0.1 && beside[k] < 0.1 * wide[k] ? 1 : 0;
       }
     }
@@ -77,8 +70,8 @@ TEST(SlopeBoxes, SayNothingOfWhereNothingWasMeasured) {
   boxes.add(middle, slope);
   boxes.add(middle, {0.3, 0.0, 1.0});
   const detail::slope_boxes::box of = boxes.around(middle, 1e-4);
-  EXPECT_EQ(of.low, vec3(0.0, 0.0, 1.0));
-  EXPECT_EQ(of.high, vec3(static_cast<double>(0.3F), 0.0, 1.0));
+  EXPECT_EQ(of.low, glm::vec3(0.0F, 0.0F, 1.0F));
+  EXPECT_EQ(of.high, glm::vec3(0.3F, 0.0F, 1.0F));
   // Its neighbours have none, nor has what is beside the grid; a leap is not answered.
   EXPECT_FALSE(boxes.around(middle, 1.9e-3).known());
   EXPECT_FALSE(boxes.around(vec3(-0.01), 1e-4).known());

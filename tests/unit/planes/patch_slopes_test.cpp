@@ -11,25 +11,16 @@
 #include "planes/ball_bound.hpp"
 #include "support/fresh_seed.hpp"
 #include "support/small_models.hpp"
+#include "unit/field/drawn_places.hpp"
 
 namespace asperity {
 namespace {
 
 using namespace test_support;
 
-struct drawn_motions {
-  std::mt19937_64 bits;
-  double unit() { return std::uniform_real_distribution<double>(0.0, 1.0)(bits); }
-  vec3 direction() {
-    std::normal_distribution<double> n;
-    return glm::normalize(vec3(n(bits), n(bits), n(bits)));
-  }
-  vec3 in_ball(double radius_m) { return radius_m * std::cbrt(unit()) * direction(); }
-};
-
 // Of balls next to the surface, the points that lie as close to it as a reach, each moved within the ball.
 TEST(PatchSlopes, NoMotionAddsMore) {
-  drawn_motions draw{std::mt19937_64(fresh_seed("PatchSlopes.NoMotionAddsMore", "20000 balls at each of 3 bodies"))};
+  drawn_places draw{std::mt19937_64(fresh_seed("PatchSlopes.NoMotionAddsMore", "20000 balls at each of 3 bodies"))};
   const std::vector<textured_model> models{make_textured_box({0.012, 0.01, 0.008}, 256, ridges(60e-6, 1.7e-3)),
                                            make_textured_box({0.03, 0.03, 0.01}, 384, ridges(90e-6, 2.3e-3)),
                                            make_flat_box({0.006, 0.009, 0.007}, 128)};
