@@ -57,8 +57,9 @@ class slope_boxes {
   /// @param share 0 to 1 along each axis
   [[nodiscard]] vec3 place_in(std::size_t block, const vec3& share) const noexcept {
     const std::size_t row = block / along_[0];
+    const std::size_t sheet = row / along_[1];
     const vec3 first(static_cast<double>(block % along_[0]), static_cast<double>(row % along_[1]),
-                     static_cast<double>(row / along_[1]));
+                     static_cast<double>(sheet));
     return low_ + block_m_ * (first + share);
   }
 
