@@ -44,7 +44,7 @@ inline constexpr std::uint32_t of_mover = 1, of_other = 2;
 /// A body that a mover may touch.
 struct other_body {
   std::uint32_t number = 0;      ///< movers, then standing bodies
-  std::uint32_t holds_back = 0;  ///< of_mover or of_other: those samples are taken where no others are as deep; 0: none
+  std::uint32_t holds_back = 0;  ///< of_mover or of_other: those samples lie further back; 0: none
 };
 
 /// The contacts of one mover with bodies that come after it: other movers first to last, then what stands.

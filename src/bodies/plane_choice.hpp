@@ -15,32 +15,32 @@
 
 namespace asperity::detail {
 
-/// The planes that pressed, and those that small motions meet first.
+/// The planes that pressed, those that small motions meet first, and others that touch while there is room.
 ///
 /// Those that press stay: a body at rest on many points of the same height would be given others in every period, and
 /// tremble. Of a few neighbouring samples the deepest alone is told; where that is another one than before, the point of
 /// the plane that pressed is read again, and stays while it touches. A block that was pushed over a table lost one of two
-/// planes at its corner otherwise, and hopped. Between free bodies and what they lie on the samples of the smaller body are
-/// taken where those of the larger are not deeper by 10 um: a block that slides takes its own corners along, and loses the
-/// table's points behind it one by one.
+/// planes at its corner otherwise, and hopped. A plane that touches and that no motion meets first is given as well: left
+/// out until one does, it came with a depth of some micrometres at once, and blocks on each other rocked without end.
+/// Between free bodies and what they lie on the samples of the larger body lie 10 um further back: a block that slides
+/// takes its own corners along, and loses the table's points behind it one by one.
 class plane_choice {
  public:
   /// Takes the memory. @param most planes that are told of a mover
-  explicit plane_choice(std::size_t most) { reserve_resident(biased_, most); }
+  explicit plane_choice(std::size_t most) { reserve_resident(set_back_, most); }
 
   /// Puts the planes of `told` that count into of.contact, in the place of those of the telling before.
   /// @param now_T_wb the others, where they are   @param reader of the renderer that told
   /// @return as select_planes()   @rt safe
   [[nodiscard]] status choose(std::span<const support_plane> told, const plane_selection& selection, const mover& body,
                               std::span<const pose> now_T_wb, const plane_reader& reader, mover_contacts& of) noexcept {
-    const kept_planes pressed = pressed_of(told, body, now_T_wb, reader, of);
+    set_back_.assign(told.begin(), told.end());
+    for (support_plane& p : set_back_) p.depth_m -= set_back_m(p, of);
+    const kept_planes pressed = pressed_of(set_back_, body, now_T_wb, reader, of);
     of.lambda_n.fill(0.0);
     of.contact.planes.clear();
-    biased_.assign(told.begin(), told.end());
-    for (support_plane& p : biased_) p.depth_m -= held_back_m(p, of);
-    const status out = select_planes(biased_, selection, chosen_, most_support_planes - most_kept);
+    const status out = select_planes(set_back_, selection, chosen_, most_support_planes - most_kept);
     if (out != status::ok && out != status::capacity_reached) return out;
-    for (support_plane& p : chosen_) p.depth_m += held_back_m(p, of);
     for (const kept_plane& q : pressed) {
       of.lambda_n[of.contact.planes.size()] = q.lambda_n;
       static_cast<void>(of.contact.planes.push_back(q.plane));
@@ -50,14 +50,19 @@ class plane_choice {
       const bool is_kept = p.sample != 0 && find({of.contact.planes.data(), kept}, p) != nullptr;
       if (!is_kept) static_cast<void>(of.contact.planes.push_back(p));
     }
+    for (const support_plane& p : set_back_) {
+      if (of.contact.planes.size() == most_support_planes) break;
+      const bool is_new = p.depth_m > 0.0 && find({of.contact.planes.data(), of.contact.planes.size()}, p) == nullptr;
+      if (is_new) static_cast<void>(of.contact.planes.push_back(p));
+    }
     return out;
   }
 
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(biased_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(set_back_); }
 
  private:
   static constexpr std::size_t most_kept = most_support_planes / 2;
-  static constexpr double less_deep_m = 1e-5;
+  static constexpr double further_back_m = 1e-5, lets_go_m = 1e-5;
 
   // A plane that pressed, as it is now.
   struct kept_plane {
@@ -72,9 +77,9 @@ class plane_choice {
     return found == in.end() ? nullptr : &*found;
   }
 
-  [[nodiscard]] static double held_back_m(const support_plane& p, const mover_contacts& of) noexcept {
+  [[nodiscard]] static double set_back_m(const support_plane& p, const mover_contacts& of) noexcept {
     const other_body& o = of.others[p.body];
-    return o.holds_back != 0 && p.sample != 0 && p.sample % 2 == o.holds_back % 2 ? less_deep_m : 0.0;
+    return o.holds_back != 0 && p.sample != 0 && p.sample % 2 == o.holds_back % 2 ? further_back_m : 0.0;
   }
 
   [[nodiscard]] static kept_planes pressed_of(std::span<const support_plane> told, const mover& body,
@@ -89,14 +94,15 @@ class plane_choice {
       } else {
         p.depth_m = -std::numeric_limits<double>::infinity();  // what the reader cannot read ends here
         reader.read(body.T_wc, now_T_wb[p.body], p.body, {&p, 1});
+        p.depth_m -= set_back_m(p, of);
       }
-      if (p.depth_m > -less_deep_m) static_cast<void>(out.push_back({p, of.lambda_n[i]}));
+      if (p.depth_m > -lets_go_m) static_cast<void>(out.push_back({p, of.lambda_n[i]}));
     }
     return out;
   }
 
   support_planes chosen_{};
-  std::vector<support_plane> biased_;
+  std::vector<support_plane> set_back_;
 };
 
 }  // namespace asperity::detail
