@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "asperity/core/memory.hpp"
+#include "bodies/free_turn.hpp"
 #include "control/bristle.hpp"
 
 namespace asperity::detail {
@@ -19,27 +20,17 @@ pose moved(const pose& T_wc, const vec6& by) noexcept {
   return {glm::normalize(exp_rotation(by.angular) * T_wc.rotation), T_wc.position + by.linear};
 }
 
+// In the spring of a plane, which has come by way_m since the step began.
+double stored_j(const joint_plane& p, double way_m) noexcept {
+  const double depth_m = std::max(0.0, p.depth_m + way_m);
+  return 0.5 * p.stiffness_n_per_m * depth_m * depth_m;
+}
+
 // A finite load can give a velocity that no body has. NaN fails too.
 bool plausible(const vec6& v) noexcept {
   constexpr double fastest_m_per_s = 1e3, fastest_rad_per_s = 1e5;
   return glm::dot(v.linear, v.linear) <= fastest_m_per_s * fastest_m_per_s &&
          glm::dot(v.angular, v.angular) <= fastest_rad_per_s * fastest_rad_per_s;
-}
-
-// The body's angular velocity after h_s without any torque: I (w - w0) + h w x I w = 0 in the body's axes. Its energy
-// is that of w0 less half of (w - w0) I (w - w0).
-vec3 after_free_turn(const mat3& inertia, const vec3& w0, double h_s) noexcept {
-  const auto cross_of = [](const vec3& x) {
-    return mat3(vec3(0.0, x.z, -x.y), vec3(-x.z, 0.0, x.x), vec3(x.y, -x.x, 0.0));
-  };
-  vec3 w = w0;
-  for (int i = 0; i < 3; ++i) {
-    const vec3 momentum = inertia * w;
-    const vec3 off = inertia * (w - w0) + h_s * glm::cross(w, momentum);
-    const mat3 slope = inertia + h_s * (cross_of(w) * inertia - cross_of(momentum));
-    w -= glm::inverse(slope) * off;
-  }
-  return is_finite(w) ? w : w0;
 }
 
 }  // namespace
@@ -59,6 +50,7 @@ body_step::body_step(const free_bodies_settings& settings, const virtual_couplin
   reserve_resident(bodies_, settings.most_planes);
   reserve_resident(turned_, settings.most_planes);
   reserve_resident(told_, settings.most_planes);
+  reserve_resident(calming_s_, settings.most_planes);
   reserve_resident(bristles_, most_pairs);
   reserve_resident(springs_, most_pairs);
   reserve_resident(at_place_, movers);
@@ -71,8 +63,9 @@ body_step::body_step(const free_bodies_settings& settings, const virtual_couplin
 }
 
 std::size_t body_step::heap_bytes() const noexcept {
-  return solver_.heap_bytes() + asperity::heap_bytes(planes_, bodies_, turned_, told_, bristles_, springs_, place_,
-                                                     at_place_, inertia_, a_, load_, v0_, v_, brake_, impulses_);
+  return solver_.heap_bytes() + asperity::heap_bytes(planes_, bodies_, turned_, told_, calming_s_, bristles_, springs_,
+                                                     place_, at_place_, inertia_, a_, load_, v0_, v_, brake_,
+                                                     impulses_);
 }
 
 void body_step::begin() noexcept {
@@ -159,6 +152,36 @@ bool body_step::gather(double h_s, std::span<const mover> movers, std::span<cons
     }
   }
   return all;
+}
+
+// The planes of a pair damp its motion while its springs hold energy that no motion gave them, the more the larger a part
+// of what they hold it is. What the damping takes is taken from what was made.
+void body_step::calm(double h_s, std::span<const mover> movers, std::span<mover_contacts> contacts) noexcept {
+  constexpr double longest_s = 0.02;  // so long it takes a plane that came with a depth to press the bodies apart
+  constexpr double forget_s = 0.3;    // blocks on each other rock once in some 50 ms
+  const auto for_each_pair = [&](auto&& visit) noexcept {
+    for (std::uint32_t a = 0; a < movers_; ++a) {
+      for (std::size_t i = 0; i < contacts[a].others.size(); ++i) {
+        if (moves(movers, a) || moves(movers, contacts[a].others[i].number)) visit(contacts[a].springs[i]);
+      }
+    }
+  };
+  for_each_pair([](pair_springs& s) noexcept { s.now_j = 0.0; });
+  for (std::size_t i = 0; i < planes_.size(); ++i) springs_of(i, contacts).now_j += stored_j(planes_[i], 0.0);
+  double springs_j = 0.0;
+  for_each_pair([&](pair_springs& s) noexcept {
+    springs_j += s.now_j;
+    s.made_j = std::max(0.0, (1.0 - h_s / forget_s) * s.made_j + s.now_j - s.held_j);
+    s.held_j = 0.0;
+  });
+  energy_.by_rendering_j += springs_j - energy_.springs_j;
+  energy_.springs_j = springs_j;
+  calming_s_.clear();
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    const pair_springs& s = springs_of(i, contacts);
+    calming_s_.push_back(s.made_j > 0.0 ? longest_s * std::min(1.0, s.made_j / s.now_j) : 0.0);
+    planes_[i].horizon_s += calming_s_.back();
+  }
 }
 
 // Bodies that touch get places next to each other: from each body that has none, its neighbours, theirs, and so on.
@@ -359,17 +382,21 @@ bool body_step::brake(double h_s, std::span<const mover> movers) noexcept {
   return any;
 }
 
-void body_step::settle(double h_s, std::span<mover> movers, std::span<const vec3> standing_centres_w) noexcept {
+void body_step::settle(double h_s, std::span<mover> movers, std::span<mover_contacts> contacts,
+                       std::span<const vec3> standing_centres_w) noexcept {
   const double k = settings_.friction.stiffness_n_per_m;
   double given_j = 0.0, kept_j = 0.0, springs_j = 0.0;
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const joint_plane& p = planes_[i];
+    pair_springs& of_pair = springs_of(i, contacts);
     double way_m = h_s * dot(p.gradient_a, v_[p.a]);
     if (p.b != unmoved) way_m += h_s * dot(p.gradient_b, v_[p.b]);
-    const double before_m = std::max(0.0, p.depth_m), after_m = std::max(0.0, p.depth_m + way_m);
-    kept_j += 0.5 * p.stiffness_n_per_m * (after_m - before_m) * (after_m + before_m);
-    springs_j += 0.5 * p.stiffness_n_per_m * after_m * after_m;
+    const double held_j = stored_j(p, way_m);
+    kept_j += held_j - stored_j(p, 0.0);
+    springs_j += held_j;
+    of_pair.held_j += held_j;
     if (!(p.lambda_n > 0.0)) continue;
+    of_pair.made_j = std::max(0.0, of_pair.made_j - p.stiffness_n_per_m * calming_s_[i] * way_m * way_m / h_s);
     feel(bodies_[i], to_wrench(-h_s * p.lambda_n * turned_[i].gradient), movers, standing_centres_w);
   }
   double bristles_j = 0.0;
@@ -438,14 +465,8 @@ status body_step::step(double h_s, std::span<mover> movers, std::span<mover_cont
                        std::span<const vec3> standing_centres_w, const hand_pull& hand) noexcept {
   constexpr int most_brakes = 4;
   left_out_ = !gather(h_s, movers, contacts);
+  calm(h_s, movers, contacts);
   order(movers);
-  double springs_j = 0.0;
-  for (const joint_plane& p : planes_) {
-    const double depth_m = std::max(0.0, p.depth_m);
-    springs_j += 0.5 * p.stiffness_n_per_m * depth_m * depth_m;
-  }
-  energy_.by_rendering_j += springs_j - energy_.springs_j;
-  energy_.springs_j = springs_j;
   if (at_place_.empty()) {
     energy_.kinetic_j = 0.0;
     return status::ok;
@@ -471,7 +492,7 @@ status body_step::step(double h_s, std::span<mover> movers, std::span<mover_cont
     }
   }
   for (std::size_t i = 0; i < planes_.size(); ++i) contacts[bodies_[i].a].lambda_n[told_[i]] = planes_[i].lambda_n;
-  settle(h_s, movers, standing_centres_w);
+  settle(h_s, movers, contacts, standing_centres_w);
   return left_out_ ? status::capacity_reached : status::ok;
 }
 

@@ -80,6 +80,12 @@ class body_step {
   // The planes of all pairs that move, where the bodies are now. @return false where there were too many
   [[nodiscard]] bool gather(double h_s, std::span<const mover> movers,
                             std::span<const mover_contacts> contacts) noexcept;
+  // Takes energy that came with planes which were told anew out of the motion.
+  void calm(double h_s, std::span<const mover> movers, std::span<mover_contacts> contacts) noexcept;
+  [[nodiscard]] pair_springs& springs_of(std::size_t plane, std::span<mover_contacts> contacts) const noexcept {
+    mover_contacts& of = contacts[bodies_[plane].a];
+    return of.springs[of.contact.planes[told_[plane]].body];
+  }
   void order(std::span<const mover> movers) noexcept;
   // A wrench on a about its centre for some time, and its opposite on b.
   void feel(const pair_of& of, const wrench& impulse_on_a, std::span<const mover> movers,
@@ -95,7 +101,8 @@ class body_step {
   [[nodiscard]] vec6 slide_of(const bristle& b, std::span<const vec6> v) const noexcept;
   // Bodies that would go further than is known get a brake. @return whether one did
   [[nodiscard]] bool brake(double h_s, std::span<const mover> movers) noexcept;
-  void settle(double h_s, std::span<mover> movers, std::span<const vec3> standing_centres_w) noexcept;
+  void settle(double h_s, std::span<mover> movers, std::span<mover_contacts> contacts,
+              std::span<const vec3> standing_centres_w) noexcept;
 
   free_bodies_settings settings_;
   virtual_coupling coupling_;
@@ -106,6 +113,7 @@ class body_step {
   std::vector<pair_of> bodies_;        // of each plane
   std::vector<support_plane> turned_;  // each plane where its bodies are now
   std::vector<std::uint32_t> told_;    // where each is among its mover's planes
+  std::vector<double> calming_s_;      // of each plane: by so much its horizon is longer
   std::vector<bristle> bristles_;
   std::vector<joint_spring> springs_;
   std::vector<std::uint32_t> place_, at_place_;  // of each mover, and back

@@ -331,6 +331,7 @@ result<free_bodies> free_bodies::make(const free_scene& scene, const free_bodies
       const bool feels_all = has_probe && a == 0;  // a hand feels the texture of both
       made->contacts[a].others.push_back({static_cast<std::uint32_t>(b), feels_all ? 0 : larger});
     }
+    made->contacts[a].springs.resize(made->contacts[a].others.size());
     made->contacts[a].T_wb.resize(bodies.fixed.size());
     made->contacts[a].laws = {settings.contact, surfaces_of(bodies)};
     plane_renderer_settings of_renderer;
@@ -437,7 +438,8 @@ std::size_t free_bodies::memory_bytes() const noexcept {
   std::size_t bytes = sizeof *this + sizeof p + p.step.heap_bytes() + p.choice.heap_bytes() +
                       heap_bytes(p.movers, p.standing_T_wb, p.standing_centres_w, p.now_T_wb);
   for (const detail::mover_contacts& c : p.contacts) {
-    bytes += sizeof c + heap_bytes(c.others, c.T_wb) + c.laws.pairs.capacity() * sizeof(std::optional<surface_pair>);
+    bytes += sizeof c + heap_bytes(c.others, c.springs, c.T_wb) +
+             c.laws.pairs.capacity() * sizeof(std::optional<surface_pair>);
   }
   for (const rendered& r : p.renderers) bytes += sizeof r + (r.renderer ? r.renderer->memory_bytes() : 0);
   return bytes;

@@ -47,10 +47,18 @@ struct other_body {
   std::uint32_t holds_back = 0;  ///< of_mover or of_other: those samples lie further back; 0: none
 };
 
+/// What the springs of all planes between two bodies hold, J.
+struct pair_springs {
+  double held_j = 0.0;  ///< at the end of the last step
+  double now_j = 0.0;   ///< at the beginning of this one
+  double made_j = 0.0;  ///< gained by planes that were told anew, and not yet taken out again
+};
+
 /// The contacts of one mover with bodies that come after it: other movers first to last, then what stands.
 struct mover_contacts {
   std::vector<other_body> others;                      ///< support_plane::body is an index into it
   contact_laws laws{};                                 ///< by the same index
+  std::vector<pair_springs> springs;                   ///< by the same index
   linear_contact contact{};                            ///< planes and poses as last told ...
   std::vector<pose> T_wb;                              ///< ... with the others here
   std::array<double, most_support_planes> lambda_n{};  ///< of its planes, in the last step
