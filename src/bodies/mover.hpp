@@ -43,8 +43,8 @@ inline constexpr std::uint32_t of_mover = 1, of_other = 2;
 
 /// A body that a mover may touch.
 struct other_body {
-  std::uint32_t number = 0;      ///< movers, then standing bodies
-  std::uint32_t holds_back = 0;  ///< of_mover or of_other: those samples lie further back; 0: none
+  std::uint32_t number = 0;     ///< movers, then standing bodies
+  std::uint32_t lies_back = 0;  ///< of_mover or of_other: those samples lie further back; 0: none
 };
 
 /// What the springs of all planes between two bodies hold, J.

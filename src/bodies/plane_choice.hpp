@@ -22,6 +22,8 @@ namespace asperity::detail {
 /// the plane that pressed is read again, and stays while it touches. A block that was pushed over a table lost one of two
 /// planes at its corner otherwise, and hopped. A plane that touches and that no motion meets first is given as well: left
 /// out until one does, it came with a depth of some micrometres at once, and blocks on each other rocked without end.
+/// Of those that touch, what pressed comes first: where more touch than there is room for, others in every telling let a
+/// heavy block tremble by a tenth of a micrometre.
 /// Between free bodies and what they lie on the samples of the larger body lie 10 um further back: a block that slides
 /// takes its own corners along, and loses the table's points behind it one by one.
 class plane_choice {
@@ -39,21 +41,21 @@ class plane_choice {
     const kept_planes pressed = pressed_of(set_back_, body, now_T_wb, reader, of);
     of.lambda_n.fill(0.0);
     of.contact.planes.clear();
-    const status out = select_planes(set_back_, selection, chosen_, most_support_planes - most_kept);
+    const status out = select_planes(set_back_, selection, chosen_, most_support_planes - most_first);
     if (out != status::ok && out != status::capacity_reached) return out;
-    for (const kept_plane& q : pressed) {
-      of.lambda_n[of.contact.planes.size()] = q.lambda_n;
-      static_cast<void>(of.contact.planes.push_back(q.plane));
-    }
-    const std::size_t kept = of.contact.planes.size();
-    for (const support_plane& p : chosen_) {
-      const bool is_kept = p.sample != 0 && find({of.contact.planes.data(), kept}, p) != nullptr;
-      if (!is_kept) static_cast<void>(of.contact.planes.push_back(p));
-    }
+    const auto give = [&](const support_plane& p, double lambda_n) noexcept {
+      support_planes& to = of.contact.planes;
+      if (to.size() == most_support_planes || (p.sample != 0 && find({to.data(), to.size()}, p) != nullptr)) return;
+      of.lambda_n[to.size()] = lambda_n;
+      static_cast<void>(to.push_back(p));
+    };
+    const std::span<const kept_plane> kept(pressed.data(), pressed.size());
+    const std::size_t first = std::min(kept.size(), most_first);
+    for (const kept_plane& q : kept.first(first)) give(q.plane, q.lambda_n);
+    for (const support_plane& p : chosen_) give(p, 0.0);
+    for (const kept_plane& q : kept.subspan(first)) give(q.plane, q.lambda_n);
     for (const support_plane& p : set_back_) {
-      if (of.contact.planes.size() == most_support_planes) break;
-      const bool is_new = p.depth_m > 0.0 && find({of.contact.planes.data(), of.contact.planes.size()}, p) == nullptr;
-      if (is_new) static_cast<void>(of.contact.planes.push_back(p));
+      if (p.depth_m > 0.0 && p.sample != 0) give(p, 0.0);
     }
     return out;
   }
@@ -61,7 +63,8 @@ class plane_choice {
   [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(set_back_); }
 
  private:
-  static constexpr std::size_t most_kept = most_support_planes / 2;
+  // So many of those that pressed come before what motions meet: room for these stays.
+  static constexpr std::size_t most_first = most_support_planes / 2;
   static constexpr double further_back_m = 1e-5, lets_go_m = 1e-5;
 
   // A plane that pressed, as it is now.
@@ -69,7 +72,7 @@ class plane_choice {
     support_plane plane{};
     double lambda_n = 0.0;  // what a body that sleeps goes on pressing with
   };
-  using kept_planes = fixed_vector<kept_plane, most_kept>;
+  using kept_planes = fixed_vector<kept_plane, most_support_planes>;
 
   [[nodiscard]] static const support_plane* find(std::span<const support_plane> in, const support_plane& p) noexcept {
     const auto found = std::find_if(in.begin(), in.end(),
@@ -79,14 +82,14 @@ class plane_choice {
 
   [[nodiscard]] static double set_back_m(const support_plane& p, const mover_contacts& of) noexcept {
     const other_body& o = of.others[p.body];
-    return o.holds_back != 0 && p.sample != 0 && p.sample % 2 == o.holds_back % 2 ? further_back_m : 0.0;
+    return o.lies_back != 0 && p.sample != 0 && p.sample % 2 == o.lies_back % 2 ? further_back_m : 0.0;
   }
 
   [[nodiscard]] static kept_planes pressed_of(std::span<const support_plane> told, const mover& body,
                                               std::span<const pose> now_T_wb, const plane_reader& reader,
                                               const mover_contacts& of) noexcept {
     kept_planes out;
-    for (std::size_t i = 0; i < of.contact.planes.size() && out.size() < most_kept; ++i) {
+    for (std::size_t i = 0; i < of.contact.planes.size(); ++i) {
       support_plane p = of.contact.planes[i];
       if (!(of.lambda_n[i] > 0.0) || p.sample == 0) continue;
       if (const support_plane* const now = find(told, p); now != nullptr) {
