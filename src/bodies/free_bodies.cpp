@@ -192,8 +192,8 @@ struct free_bodies::parts {
       for (std::size_t i = 0; i < of.others.size(); ++i) now_T_wb[i] = T_wb_of(of.others[i].number);
       const std::span<const pose> at(now_T_wb.data(), of.others.size());
       const status s = r.renderer->step({movers[a].T_wb(), at, gaps}, r.found);
-      const bool usable = s == status::ok || s == status::capacity_reached;  // planes that are told can be read again
-      const status told = usable ? choice.choose(r.found.planes, selection, movers[a], at, *r.found.reader, of) : s;
+      const bool usable = s == status::ok || s == status::capacity_reached;
+      const status told = usable ? choice.choose(r.found.planes, selection, of) : s;
       if (told != status::ok && told != status::capacity_reached) {
         answer = told;
         continue;
