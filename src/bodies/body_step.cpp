@@ -179,7 +179,8 @@ void body_step::calm(double h_s, std::span<const mover> movers, std::span<mover_
   calming_s_.clear();
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const pair_springs& s = springs_of(i, contacts);
-    calming_s_.push_back(s.made_j > 0.0 ? longest_s * std::min(1.0, s.made_j / s.now_j) : 0.0);
+    const bool is_felt = has_probe_ && bodies_[i].a == 0;  // a hand would feel the damping on each slope of the texture
+    calming_s_.push_back(!is_felt && s.made_j > 0.0 ? longest_s * std::min(1.0, s.made_j / s.now_j) : 0.0);
     planes_[i].horizon_s += calming_s_.back();
   }
 }
