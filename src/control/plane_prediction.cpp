@@ -29,7 +29,7 @@ double rest_prediction::depth_at(const support_plane& reported_at_0, const vec6&
 bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, place& out) noexcept {
   const status answer = planes_near(moved, -gap_m, out.planes);
   if (answer != status::ok && answer != status::capacity_reached) return false;
-  out.all = answer == status::ok;
+  out.complete_to_m = -gap_m;
   out.moved = moved;
   const vec6 f = to_vec6(pull_.on_probe_w);
   double energy_j = -dot(f, moved);
@@ -38,6 +38,11 @@ bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, p
   for (support_plane& p : out.planes) {
     if (!is_finite(p)) return false;
     energy_j += 0.5 * laws_.stiffness_n_per_m(p) * std::max(0.0, p.depth_m) * std::max(0.0, p.depth_m);
+  }
+  if (answer == status::capacity_reached && !out.planes.empty()) {
+    out.complete_to_m = std::min_element(out.planes.begin(), out.planes.end(), [](const auto& p, const auto& q) {
+                          return p.depth_m < q.depth_m;
+                        })->depth_m;
   }
   out.energy_j = energy_j;
   return std::isfinite(energy_j);
@@ -103,9 +108,13 @@ bool rest_prediction::add_cuts() noexcept {
   for (const support_plane& p : there_.planes) {
     const support_plane from_here = as_from_here(p, there_.moved);
     const support_plane* const now = same_in(here_, p);
-    const double most_m = now != nullptr ? now->depth_m + agrees_m : -gap_m;
+    const double most_m = now != nullptr ? now->depth_m + agrees_m : here_.complete_to_m;
     if (depth_at(from_here, here_.moved) > most_m) continue;
     if (now != nullptr && depth_at(as_from_here(*now, here_.moved), there_.moved) > p.depth_m - kink_m) continue;
+    const bool is_cut = std::any_of(cuts_.begin(), cuts_.end(), [&](const support_plane& q) {
+      return detail::same_point(p, q) && depth_at(q, there_.moved) > p.depth_m - kink_m;
+    });
+    if (is_cut) continue;
     added = keep(from_here) || added;
   }
   return added;
@@ -131,8 +140,8 @@ void rest_prediction::report(support_planes& planes) noexcept {
   for (const support_plane& p : all_) {
     const double said_m = depth_at(p, here_.moved);
     const support_plane* const now = same_in(here_, p);
-    const double most_m = now != nullptr ? std::min(0.0, now->depth_m - agrees_m) : -gap_m;
-    const bool replaced = said_m > most_m && (now != nullptr || (here_.all && p.sample != 0));
+    const double most_m = now != nullptr ? std::min(0.0, now->depth_m - agrees_m) : here_.complete_to_m;
+    const bool replaced = said_m > most_m && (now != nullptr || p.sample != 0);
     if (!replaced) static_cast<void>(planes.push_back(p));
   }
 }

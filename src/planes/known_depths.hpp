@@ -35,6 +35,7 @@ class known_depths {
     detail::reserve_resident(brought_m_, leaves);
     detail::reserve_resident(asked_m_, leaves * sample_tree::leaf_places);
     detail::reserve_resident(asked_, leaves);
+    detail::reserve_resident(near_, leaves);
     for (std::vector<float>* of : {&deepest_m_, &since_m_, &arm_m_}) detail::reserve_resident(*of, leaves);
   }
 
@@ -110,6 +111,7 @@ class known_depths {
     deepest_m_.resize(patches);
     since_m_.assign(patches, 0.0F);
     arm_m_.resize(patches);
+    near_.resize(patches);
   }
   /// @param middle_y of its ball in the other body's frame
   /// @param arm_m from the probe's centre of mass to its furthest sample. From several threads, for patches of their
@@ -129,15 +131,17 @@ class known_depths {
   [[nodiscard]] std::span<float> asked_of(std::size_t leaf) noexcept { return now_.range(leaf, std::span(asked_m_)); }
 
   /// The pose that is asked for has slid and turned so much further. Calls visit(patch) for each patch from begin to end
-  /// that can be deeper than above_m there. Most patches are too far away for any motion of this length, so they are
-  /// compared four at a time. From several threads, for patches of their own.   @rt safe
-  template <class Visit>
-  void move_on(std::size_t begin, std::size_t end, double slid_m, double turned_rad, double above_m,
+  /// that can be deeper than above_m() there, the one that may be the deepest first: what it tells may raise above_m(),
+  /// so that others need no look. Most patches are too far away for any motion of this length, so they are compared four
+  /// at a time. From several threads, for patches of their own.   @rt safe
+  template <class Above, class Visit>
+  void move_on(std::size_t begin, std::size_t end, double slid_m, double turned_rad, Above&& above_m,
                Visit&& visit) noexcept {
     using detail::lanes;
     const auto slid = static_cast<float>(steepest_depth * slid_m) + rounding_m;
     const auto turned = static_cast<float>(steepest_depth * turned_rad);
-    const auto above = static_cast<float>(above_m) - rounding_m;
+    const auto above = static_cast<float>(above_m()) - rounding_m;
+    std::size_t last = begin;  // the patches that may be that deep are near_[begin] to near_[last - 1]
     std::size_t p = begin;
     for (; p + 4 <= end; p += 4) {
       const lanes since = detail::load_lanes(&since_m_[p]) + turned * detail::load_lanes(&arm_m_[p]) + slid;
@@ -145,12 +149,22 @@ class known_depths {
       const auto is_near = detail::load_lanes(&deepest_m_[p]) + since > above;
       if ((is_near[0] | is_near[1] | is_near[2] | is_near[3]) == 0) continue;
       for (std::size_t i = 0; i < 4; ++i) {
-        if (is_near[i] != 0) visit(p + i);
+        if (is_near[i] != 0) near_[last++] = static_cast<std::uint32_t>(p + i);
       }
     }
     for (; p < end; ++p) {
       since_m_[p] += turned * arm_m_[p] + slid;
-      if (deepest_m_[p] + since_m_[p] > above) visit(p);
+      if (deepest_m_[p] + since_m_[p] > above) near_[last++] = static_cast<std::uint32_t>(p);
+    }
+    const auto first_near = near_.begin() + static_cast<std::ptrdiff_t>(begin);
+    auto last_near = near_.begin() + static_cast<std::ptrdiff_t>(last);
+    const auto is_less_deep = [this](std::uint32_t a, std::uint32_t b) noexcept {
+      return asked_most_m(a) < asked_most_m(b);
+    };
+    std::make_heap(first_near, last_near, is_less_deep);
+    while (first_near != last_near && asked_most_m(*first_near) > above_m()) {
+      std::pop_heap(first_near, last_near, is_less_deep);
+      visit(*--last_near);
     }
   }
   /// A patch's samples can have come deeper by this on the way to the pose that is asked for, by their own way.
@@ -169,7 +183,7 @@ class known_depths {
 
   [[nodiscard]] std::size_t heap_bytes() const noexcept {
     return asperity::heap_bytes(now_.leaves, now_.most_m, before_.leaves, before_.most_m, brought_m_, asked_m_, asked_,
-                                deepest_m_, since_m_, arm_m_);
+                                near_, deepest_m_, since_m_, arm_m_);
   }
 
  private:
@@ -220,6 +234,7 @@ class known_depths {
   std::vector<float> brought_m_;  // per patch
   std::vector<float> asked_m_;
   std::vector<asked_patch> asked_;
+  std::vector<std::uint32_t> near_;  // of move_on()
   // Per patch: none of its samples was deeper at the last pose of which more is known, how much deeper they can have come
   // on the poses since, and how far they are from the probe's centre of mass.
   std::vector<float> deepest_m_, since_m_, arm_m_;

@@ -134,17 +134,18 @@ class leaf_reader {
     return out;
   }
 
-  /// Calls visit(plane) for every sample that is deeper than above_m.
+  /// Calls visit(plane) for every sample that is deeper than above_m(), which visit may raise.
   /// @param known upper bounds of the samples' depths, m; made sharper by what is read
-  template <class Visit>
-  void each_deeper(const near_leaf& leaf, double above_m, std::span<float> known, Visit&& visit) const noexcept {
+  template <class Above, class Visit>
+  void each_deeper(const near_leaf& leaf, Above&& above_m, std::span<float> known, Visit&& visit) const noexcept {
     const std::span<const field_sample> samples = leaf.samples();
     for (std::size_t i = 0; i < samples.size(); ++i) {
-      if (i < known.size() && !(static_cast<double>(known[i]) > above_m)) continue;
+      const double least_m = above_m();
+      if (i < known.size() && !(static_cast<double>(known[i]) > least_m)) continue;
       const sample_depth now =
-          read(samples[i], in_field(vec3(samples[i].position_b)), above_m, in_y_->highest_relief_m);
+          read(samples[i], in_field(vec3(samples[i].position_b)), least_m, in_y_->highest_relief_m);
       if (i < known.size()) known[i] = rounded_up(now.most_m);
-      if (!(now.depth_m > above_m)) continue;
+      if (!(now.depth_m > least_m)) continue;
       near_plane out;
       report(now, out);
       visit(out.plane);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -15,12 +16,45 @@
 namespace asperity {
 namespace {
 
-void keep_deepest(const support_plane& p, plane_list& in) noexcept {
-  if (in.push_back(p)) return;
-  support_plane* const least =
-      std::min_element(in.begin(), in.end(), [](const auto& a, const auto& b) { return a.depth_m < b.depth_m; });
-  if (least->depth_m < p.depth_m) *least = p;
+// The order in which the planes of one pose are told: by body, the probe's samples first.
+bool is_told_before(const support_plane& p, const support_plane& q) noexcept {
+  if (p.body != q.body) return p.body < q.body;
+  const sample_number of_p = sample_number::from(p.sample), of_q = sample_number::from(q.sample);
+  return of_p.of_probe != of_q.of_probe ? of_p.of_probe : of_p.index < of_q.index;
 }
+
+// The deepest planes that a list has room for. Which they are does not depend on the order in which they are added.
+class deepest_planes {
+ public:
+  deepest_planes(double above_m, plane_list& in) noexcept : in_(&in), above_m_(above_m) {}
+
+  // No deeper than this, a plane changes nothing. A list that is full waits for one more plane, so that it is known
+  // whether there are more than it takes.
+  [[nodiscard]] double above_m() const noexcept { return above_m_; }
+
+  void add(const support_plane& p) noexcept {
+    if (!(p.depth_m > above_m_)) return;
+    if (!in_->push_back(p)) {
+      if (is_deeper(p, (*in_)[least_])) (*in_)[least_] = p;
+      find_least();
+      above_m_ = std::nextafter((*in_)[least_].depth_m, -std::numeric_limits<double>::infinity());
+    } else if (in_->full()) {
+      find_least();
+    }
+  }
+
+ private:
+  [[nodiscard]] static bool is_deeper(const support_plane& p, const support_plane& q) noexcept {
+    return p.depth_m != q.depth_m ? p.depth_m > q.depth_m : is_told_before(p, q);
+  }
+  void find_least() noexcept {
+    least_ = static_cast<std::size_t>(std::max_element(in_->begin(), in_->end(), is_deeper) - in_->begin());
+  }
+
+  plane_list* in_;
+  double above_m_;
+  std::size_t least_ = 0;
+};
 
 // Brings what is known of a patch to the pose that is asked for, turned by so much from the tick's. Returns how much
 // deeper its samples can be there than at the tick's pose.
@@ -52,14 +86,14 @@ double come_to(known_depths& known, std::size_t p, const near_patch& patch, cons
   const double slid_m = std::sqrt(glm::dot(step.linear, step.linear));
   const double turned_rad = std::sqrt(glm::dot(step.angular, step.angular));
   const std::span<const near_patch> patches = found.patches();
-  const auto look = [&](std::size_t p, unsigned thread, plane_list& to) noexcept {
+  const auto look = [&](std::size_t p, unsigned thread, deepest_planes& to) noexcept {
     const near_patch& patch = patches[p];
     const way& of = ways_[patch.body];
-    const double deeper_m = above_m + of.back_m;
-    if (of.away || !(known_->asked_most_m(p) > deeper_m)) return;
+    if (of.away || !(known_->asked_most_m(p) > to.above_m() + of.back_m)) return;
     const leaf_reader& reader = reading.of(thread).of(patch, of.sinking_m);
-    const double least_m = std::max(deeper_m, come_to(*known_, p, patch, reader, moved.angular) - told_m_ + of.back_m);
-    if (!(known_->asked_most_m(p) > least_m)) return;
+    const double beyond_m = come_to(*known_, p, patch, reader, moved.angular) - told_m_;
+    const auto least_m = [&]() noexcept { return std::max(to.above_m(), beyond_m) + of.back_m; };
+    if (!(known_->asked_most_m(p) > least_m())) return;
     known_->open(p, patch);
     const bool has_map = materials_->has_map(patch.body);
     for (std::size_t i = patch.first_leaf; i < patch.first_leaf + patch.leaf_count; ++i) {
@@ -71,35 +105,36 @@ double come_to(known_depths& known, std::size_t p, const near_patch& patch, cons
           plane.depth_m -= back_m;
           plane.back_m += back_m;
         }
-        if (plane.depth_m > above_m) keep_deepest(plane, to);
+        to.add(plane);
       });
     }
     known_->close(p, patch);
   };
-  const auto look_from = [&](std::size_t begin, std::size_t end, unsigned thread, plane_list& to) noexcept {
-    known_->move_on(begin, end, slid_m, turned_rad, above_m, [&](std::size_t p) noexcept { look(p, thread, to); });
+  const auto look_from = [&](std::size_t begin, std::size_t end, unsigned thread, plane_list& in) noexcept {
+    deepest_planes to(above_m, in);
+    known_->move_on(
+        begin, end, slid_m, turned_rad, [&]() noexcept { return to.above_m(); },
+        [&](std::size_t p) noexcept { look(p, thread, to); });
   };
   const std::size_t parts = parts_.size();
+  bool all = true;
   if (parts <= 1) {
     look_from(0, patches.size(), 0, out);
-    return out.dropped() > 0 ? status::capacity_reached : status::ok;
+  } else {
+    share(team_.get(), parts, [&](std::size_t part, unsigned thread) noexcept {
+      parts_[part].clear();
+      const std::size_t begin = detail::part_begin(patches.size(), parts, part);
+      const std::size_t end = detail::part_begin(patches.size(), parts, part + 1);
+      look_from(begin, end, thread, parts_[part]);
+    });
+    deepest_planes of_all(above_m, out);
+    for (const plane_list& part : parts_) {
+      all = all && part.dropped() == 0;
+      for (const support_plane& p : part) of_all.add(p);
+    }
   }
-  share(team_.get(), parts, [&](std::size_t part, unsigned thread) noexcept {
-    parts_[part].clear();
-    const std::size_t begin = detail::part_begin(patches.size(), parts, part);
-    const std::size_t end = detail::part_begin(patches.size(), parts, part + 1);
-    look_from(begin, end, thread, parts_[part]);
-  });
-  bool all = true;
-  for (const plane_list& part : parts_) {
-    all = all && part.dropped() == 0;
-    for (const support_plane& p : part) keep_deepest(p, out);
-  }
-  if (all && out.dropped() == 0) return status::ok;
-  // Which planes make room for deeper ones depends on their order: one thread takes them in that of the patches.
-  out.clear();
-  for (std::size_t p = 0; p < patches.size(); ++p) look(p, 0, out);
-  return out.dropped() > 0 ? status::capacity_reached : status::ok;
+  std::sort(out.begin(), out.end(), is_told_before);
+  return all && out.dropped() == 0 ? status::ok : status::capacity_reached;
 }
 
 }  // namespace asperity

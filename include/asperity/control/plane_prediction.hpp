@@ -63,7 +63,7 @@ class ASPERITY_API rest_prediction {
     vec6 moved{};
     plane_list planes{};  // reported there, their depths too
     double energy_j = 0.0;
-    bool all = true;  // of the planes above the gap
+    double complete_to_m = -gap_m;  // every sample that is deeper has its plane here
   };
 
   [[nodiscard]] static double depth_at(const support_plane& reported_at_0, const vec6& moved) noexcept;

@@ -12,6 +12,7 @@
 #include "law/presses/rest_session.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
+#include "unit/control/drawn.hpp"
 
 namespace asperity::presses {
 namespace {
@@ -75,6 +76,44 @@ TEST(rests, hardly_tremble) {
   EXPECT_LE(trembling, 2 + rests / 10);
   EXPECT_LE(far_over, 1 + rests / 30);
   EXPECT_GE(rests, 1);
+}
+
+// Two blocks face on face, their stripes in each other, where thousands of samples are nearer than 50 um: more points
+// touch than a question for planes is answered with.
+TEST(rests, a_textured_face_on_its_like_hardly_trembles) {
+  constexpr int sessions = 3;
+  const std::uint64_t seed = fresh_seed("rests, faces", "3 blocks on a block");
+  test_support::drawn d(seed);
+  press_shelf shelf(press_bake::simplified);
+  const auto block = shelf.get("block");
+  ASSERT_TRUE(block);
+  const textured_model& model = *(*block)->model;
+  const auto render = plane_renderer_law().render(**block, **block, session_rules{}.stiffness_n_per_m);
+  ASSERT_TRUE(render);
+  int trembling = 0;
+  for (int i = 0; i < sessions; ++i) {
+    press_touch touch;
+    touch.index = static_cast<std::uint64_t>(i);
+    touch.out_w = {0.0, 0.0, 1.0};
+    touch.way_w = -touch.out_w;
+    touch.touching_T_wa = {exp_rotation({0.0, 0.0, d.between(-1e-3, 1e-3)}),
+                           {d.between(-1e-3, 1e-3), d.between(-1e-3, 1e-3), model.box.high.z - model.box.low.z}};
+    touch.point_w = {0.0, 0.0, model.box.high.z};
+    rest_rules rules;
+    rules.way_m = d.between(4e-3, 0.012);
+    rules.ramp_s = 0.3;
+    rules.settle_s = 0.2;
+    rules.rest_s = 0.8;
+    const rest_result r = rest_session(*render, touch, model.mass.centre_of_mass, rules, seed);
+    const vibration_level &force = r.heard.force, &torque = r.heard.torque;
+    std::printf("  %.1f mm: %.1f mN of %.2f N, %.2f mN m of %.1f above 60 Hz\n", 1e3 * rules.way_m,
+                1e3 * force.worst_rms, force.worst_mean, 1e3 * torque.worst_rms, 1e3 * torque.worst_mean);
+    EXPECT_FALSE(r.ended_early);
+    EXPECT_GT(force.worst_mean, 0.1);
+    EXPECT_LE(force.worst_rms, 0.02 * force.worst_mean);
+    trembling += r.trembles() ? 1 : 0;
+  }
+  EXPECT_LE(trembling, 1);
 }
 
 // A hand that presses a file on a block with 10 N, contacts one period late and without the guard.
