@@ -17,16 +17,16 @@
 
 namespace {
 
+using namespace asperity;
+using namespace asperity::test_support;
+
+constexpr double mm = 1e-3, um = 1e-6;
+
 /// A search that knows no pose of rest yet.
 void predict_planes(const plane_source& planes_near, const coupling_pull& pull, support_planes& planes) {
   rest_prediction anew;
   anew.complete(planes_near, pull, {}, planes);
 }
-
-using namespace asperity;
-using namespace asperity::test_support;
-
-constexpr double mm = 1e-3, um = 1e-6;
 
 /// Points of a probe over waves: n_ab is -z, and a point is as deep as it lies below the height.
 struct points_on_waves {
