@@ -1,9 +1,13 @@
 #include "asperity/control/plane_prediction.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <numeric>
 
+#include "asperity/control/plane_selection.hpp"
 #include "control/rest_of.hpp"
 
 namespace asperity {
@@ -27,25 +31,46 @@ double rest_prediction::depth_at(const support_plane& reported_at_0, const vec6&
 }
 
 bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, place& out) noexcept {
-  const status answer = planes_near(moved, -gap_m, out.planes);
+  const status answer = planes_near(moved, -gap_m, answer_);
   if (answer != status::ok && answer != status::capacity_reached) return false;
-  out.complete_to_m = -gap_m;
+  if (!std::all_of(answer_.begin(), answer_.end(), [](const support_plane& p) { return is_finite(p); })) return false;
   out.moved = moved;
+  take_answer(out);
   const vec6 f = to_vec6(pull_.on_probe_w);
   double energy_j = -dot(f, moved);
   energy_j += 0.5 * pull_.stiffness_n_per_m * glm::dot(moved.linear, moved.linear) +
               0.5 * pull_.stiffness_n_m_per_rad * glm::dot(moved.angular, moved.angular);
-  for (support_plane& p : out.planes) {
-    if (!is_finite(p)) return false;
+  for (const support_plane& p : out.planes) {
     energy_j += 0.5 * laws_.stiffness_n_per_m(p) * std::max(0.0, p.depth_m) * std::max(0.0, p.depth_m);
-  }
-  if (answer == status::capacity_reached && !out.planes.empty()) {
-    out.complete_to_m = std::min_element(out.planes.begin(), out.planes.end(), [](const auto& p, const auto& q) {
-                          return p.depth_m < q.depth_m;
-                        })->depth_m;
   }
   out.energy_j = energy_j;
   return std::isfinite(energy_j);
+}
+
+void rest_prediction::take_answer(place& out) const noexcept {
+  constexpr plane_selection small_motions{.tilt_rad = 5e-4, .slide_m = 1e-5};
+  out.complete_to_m = -gap_m;
+  out.planes.clear();
+  if (answer_.size() <= most_of_a_place) {
+    for (const support_plane& p : answer_) static_cast<void>(out.planes.push_back(p));
+    return;
+  }
+  static_cast<void>(select_planes({answer_.data(), answer_.size()}, small_motions, out.planes, most_of_a_place));
+  std::array<std::uint16_t, plane_list::capacity()> order;
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(answer_.size());
+  std::iota(order.begin(), end, std::uint16_t{0});
+  std::sort(order.begin(), end, [this](std::uint16_t i, std::uint16_t j) {
+    return answer_[i].depth_m != answer_[j].depth_m ? answer_[i].depth_m > answer_[j].depth_m : i < j;
+  });
+  for (auto i = order.begin(); i != end; ++i) {
+    const support_plane& p = answer_[*i];
+    if (same_in(out, p) != nullptr) continue;
+    if (out.planes.size() == most_of_a_place) {
+      out.complete_to_m = p.depth_m;
+      return;
+    }
+    static_cast<void>(out.planes.push_back(p));
+  }
 }
 
 bool rest_prediction::begin(const plane_source& planes_near, bool known, const vec6& rest) noexcept {

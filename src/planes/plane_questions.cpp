@@ -34,26 +34,26 @@ class deepest_planes {
 
   void add(const support_plane& p) noexcept {
     if (!(p.depth_m > above_m_)) return;
-    if (!in_->push_back(p)) {
-      if (is_deeper(p, (*in_)[least_])) (*in_)[least_] = p;
-      find_least();
-      above_m_ = std::nextafter((*in_)[least_].depth_m, -std::numeric_limits<double>::infinity());
-    } else if (in_->full()) {
-      find_least();
+    if (in_->push_back(p)) {
+      if (in_->full()) std::make_heap(in_->begin(), in_->end(), is_deeper);
+      return;
     }
+    const support_plane& least = (*in_)[0];
+    if (is_deeper(p, least)) {
+      std::pop_heap(in_->begin(), in_->end(), is_deeper);
+      in_->back() = p;
+      std::push_heap(in_->begin(), in_->end(), is_deeper);
+    }
+    above_m_ = std::nextafter(least.depth_m, -std::numeric_limits<double>::infinity());
   }
 
  private:
   [[nodiscard]] static bool is_deeper(const support_plane& p, const support_plane& q) noexcept {
     return p.depth_m != q.depth_m ? p.depth_m > q.depth_m : is_told_before(p, q);
   }
-  void find_least() noexcept {
-    least_ = static_cast<std::size_t>(std::max_element(in_->begin(), in_->end(), is_deeper) - in_->begin());
-  }
 
-  plane_list* in_;
+  plane_list* in_;  // once it is full a heap, the least deep first
   double above_m_;
-  std::size_t least_ = 0;
 };
 
 // Brings what is known of a patch to the pose that is asked for, turned by so much from the tick's. Returns how much
@@ -90,7 +90,7 @@ double come_to(known_depths& known, std::size_t p, const near_patch& patch, cons
     const near_patch& patch = patches[p];
     const way& of = ways_[patch.body];
     if (of.away || !(known_->asked_most_m(p) > to.above_m() + of.back_m)) return;
-    const leaf_reader& reader = reading.of(thread).of(patch, of.sinking_m);
+    const leaf_reader& reader = reading.of(thread).of(patch, of.shallow_m);
     const double beyond_m = come_to(*known_, p, patch, reader, moved.angular) - told_m_;
     const auto least_m = [&]() noexcept { return std::max(to.above_m(), beyond_m) + of.back_m; };
     if (!(known_->asked_most_m(p) > least_m())) return;

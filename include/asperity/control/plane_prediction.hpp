@@ -61,7 +61,7 @@ class ASPERITY_API rest_prediction {
   /// A pose, as a motion from the probe's, and what is there.
   struct place {
     vec6 moved{};
-    plane_list planes{};  // reported there, their depths too
+    support_planes planes{};  // reported there, their depths too
     double energy_j = 0.0;
     double complete_to_m = -gap_m;  // every sample that is deeper has its plane here
   };
@@ -69,6 +69,9 @@ class ASPERITY_API rest_prediction {
   [[nodiscard]] static double depth_at(const support_plane& reported_at_0, const vec6& moved) noexcept;
 
   [[nodiscard]] bool look(const plane_source& planes_near, const vec6& moved, place& out) noexcept;
+  // Takes of what was answered as many planes as are balanced at a time: those that small motions meet first, and the
+  // deepest beside them. The deepest of a plain face alone may all lie on one side of it, and would tip the probe over.
+  void take_answer(place& out) const noexcept;
 
   // Chooses where the search begins: at the pose of rest of the contact before, where it is close to the probe or has
   // less energy than the probe's own pose; otherwise at the probe's own pose.
@@ -102,12 +105,13 @@ class ASPERITY_API rest_prediction {
   // would be a second spring on the same point.
   void report(support_planes& planes) noexcept;
 
-  static constexpr std::size_t most_cuts = 12;
+  static constexpr std::size_t most_of_a_place = 32, most_cuts = 12;
   contact_laws laws_;
   bool known_ = false;
   pose rest_T_wc_{};
   coupling_pull pull_{};
   place here_{}, there_{};
+  plane_list answer_{};
   support_planes cuts_{};  // reported where the probe is
   support_planes all_{};
 };

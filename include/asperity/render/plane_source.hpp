@@ -15,7 +15,7 @@
 namespace asperity {
 
 /// The support planes of one pose, as many as a plane_source tells.
-using plane_list = fixed_vector<support_plane, 32>;
+using plane_list = fixed_vector<support_plane, 256>;
 
 /// Tells the support planes of poses near that of a tick. A tick holds one where its renderer can tell them.
 /// It refers to the renderer and lives until the renderer's next step; it is for the thread that steps.
