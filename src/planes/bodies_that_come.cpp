@@ -38,7 +38,7 @@ void plane_depth::take(const plane_scene& next) noexcept {
     if (!(next.since[b] > before)) continue;
     way& w = ways_[b];
     const double share = placed_ != nullptr ? share_of_push(placed_->surfaces[b], next.surfaces[b]) : 0.0;
-    w = {.sinking_m = facing::sinking_m(next.of[b].smallest_m),
+    w = {.shallow_m = facing::shallow_m(next.of[b].smallest_m),
          .comes = true,
          .was_m = share * w.deepest_m,
          .half_m = next.of[b].half_m};

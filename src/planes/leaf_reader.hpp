@@ -40,10 +40,10 @@ struct sample_number {
 class leaf_reader {
  public:
   /// @param of_probe whether X is the probe; its motion takes Y's field along otherwise, and the slope's sign turns
-  /// @param sinking_m of a sample that looks away, see plane_depth   @param work counts what is read
+  /// @param shallow_m so far in a sample counts by its share, see plane_depth   @param work counts what is read
   /// @param of_x,of_y where which material is; null without a map
   leaf_reader(const field_body& x, const pose& T_wx, const field_body& y, const pose& T_wy, std::uint32_t body,
-              bool of_probe, const vec3& c_a_w, double sinking_m, const material_places* of_x,
+              bool of_probe, const vec3& c_a_w, double shallow_m, const material_places* of_x,
               const material_places* of_y, depth_work& work) noexcept
       : x_(&x),
         in_y_(&y.field),
@@ -54,18 +54,18 @@ class leaf_reader {
         body_(body),
         of_probe_(of_probe),
         c_a_w_(c_a_w),
-        sinking_m_(sinking_m),
+        shallow_m_(shallow_m),
         materials_x_(of_x),
         materials_y_(of_y),
         work_(&work) {}
 
   /// Of the probe A's samples in B's field, or of B's in A's; the rest as above.
   [[nodiscard]] static leaf_reader between(const field_body& a, const pose& T_wa, const field_body& b, const pose& T_wb,
-                                           std::uint32_t body, bool of_probe, const vec3& c_a_w, double sinking_m,
+                                           std::uint32_t body, bool of_probe, const vec3& c_a_w, double shallow_m,
                                            const material_places* of_a, const material_places* of_b,
                                            depth_work& work) noexcept {
-    return of_probe ? leaf_reader(a, T_wa, b, T_wb, body, true, c_a_w, sinking_m, of_a, of_b, work)
-                    : leaf_reader(b, T_wb, a, T_wa, body, false, c_a_w, sinking_m, of_b, of_a, work);
+    return of_probe ? leaf_reader(a, T_wa, b, T_wb, body, true, c_a_w, shallow_m, of_a, of_b, work)
+                    : leaf_reader(b, T_wb, a, T_wa, body, false, c_a_w, shallow_m, of_b, of_a, work);
   }
 
   [[nodiscard]] bool reads(const near_patch& patch) const noexcept {
@@ -156,7 +156,8 @@ class leaf_reader {
   [[nodiscard]] support_plane plane_of(std::uint32_t index) const noexcept {
     near_plane out;
     const field_sample& s = x_->samples.samples()[index];
-    const sample_depth now = read(s, in_field(vec3(s.position_b)), -depth_bound::unknown, in_y_->highest_relief_m);
+    const sample_depth now =
+        read(s, in_field(vec3(s.position_b)), -depth_bound::unknown, in_y_->highest_relief_m, -1.0);
     if (now.sample != nullptr) report(now, out);
     return out.plane;
   }
@@ -181,14 +182,16 @@ class leaf_reader {
     const field_sample* sample = nullptr;
     double depth_m = -std::numeric_limits<double>::infinity();
     vec3 slope_y{0.0};
-    double sunk_m = 0.0;
+    double share = 1.0;                    // of the slope that the depth has
+    double whole_m = 0.0;                  // the depth if all of it counted
     double most_m = depth_bound::unknown;  // it is no deeper, whatever it faces
   };
 
   // How deep a sample is. Where it cannot be deeper than above_m, no more is read than says so.
   // @param p_y its place in Y's frame   @param relief_m no relief at its foot is higher
-  [[nodiscard]] sample_depth read(const field_sample& s, const vec3& p_y, double above_m,
-                                  double relief_m) const noexcept {
+  // @param least_share one that has no larger share is not told where it is shallow
+  [[nodiscard]] sample_depth read(const field_sample& s, const vec3& p_y, double above_m, double relief_m,
+                                  double least_share = facing::least_share) const noexcept {
     ++work_->read;
     const detail::quick_reading q = detail::quick_read(in_y_->smooth, p_y);
     sample_depth out{.most_m = q.at.value_m + q.error_m + relief_m};
@@ -205,9 +208,13 @@ class leaf_reader {
     const double squared = glm::dot(out.slope_y, out.slope_y);
     if (!(squared > facing::least_slope * facing::least_slope)) return out;
     const double cosine = glm::dot(rotation_yx_ * vec3(s.axis_b), out.slope_y) / std::sqrt(squared);
+    const double share = facing_share(cosine, static_cast<double>(s.cone_rad));
+    const bool shallow = depth_m < shallow_m_;
+    if (shallow && !(share > least_share)) return out;
     out.sample = &s;
-    out.sunk_m = sinking_m_ * (1.0 - facing_share(cosine, static_cast<double>(s.cone_rad)));
-    out.depth_m = depth_m - out.sunk_m;
+    out.whole_m = depth_m;
+    out.share = shallow && depth_m > 0.0 ? share : 1.0;
+    out.depth_m = facing::counted_m(depth_m, share, shallow_m_);
     return out;
   }
 
@@ -224,7 +231,7 @@ class leaf_reader {
     const auto index = static_cast<std::uint32_t>(of.sample - x_->samples.samples().data());
     out.plane.sample = sample_number{of_probe_, index}.told();
     out.plane.r_w = out.point_w - c_a_w_;
-    out.plane.gradient = {slope_w, glm::cross(out.plane.r_w, slope_w)};
+    out.plane.gradient = {of.share * slope_w, of.share * glm::cross(out.plane.r_w, slope_w)};
     out.plane.n_ab_w = slope_w / std::sqrt(glm::dot(of.slope_y, of.slope_y));
     if (materials_x_ != nullptr) {
       (of_probe_ ? out.plane.of_probe : out.plane.of_body) = materials_x_->at(vec3(of.sample->position_b));
@@ -238,7 +245,7 @@ class leaf_reader {
   [[nodiscard]] vec3 foot_y(const sample_depth& of) const noexcept {
     const vec3 p_y = in_field(vec3(of.sample->position_b));
     const vec3 slope = in_y_->coarse(p_y).slope;
-    return p_y - (of.depth_m + of.sunk_m) / (glm::dot(slope, slope) + 1e-3) * slope;
+    return p_y - of.whole_m / (glm::dot(slope, slope) + 1e-3) * slope;
   }
 
   const field_body* x_;
@@ -249,7 +256,7 @@ class leaf_reader {
   std::uint32_t body_;
   bool of_probe_;
   vec3 c_a_w_;
-  double sinking_m_;
+  double shallow_m_;
   const material_places *materials_x_, *materials_y_;
   depth_work* work_;
 };

@@ -21,14 +21,14 @@ class patch_readers {
                 const plane_materials& materials) noexcept
       : bodies_(&bodies), at_(&at), c_a_w_(c_a_w), materials_(&materials) {}
 
-  [[nodiscard]] const leaf_reader& of(const near_patch& patch, double sinking_m) noexcept {
+  [[nodiscard]] const leaf_reader& of(const near_patch& patch, double shallow_m) noexcept {
     std::optional<leaf_reader>& out = patch.of_probe ? of_probe_ : of_fixed_;
     if (out && out->reads(patch)) return *out;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[patch.body];
     const pose &T_wa = at_->T_wa, &T_wb = at_->T_wb[patch.body];
     const material_places *of_a = materials_->of_probe(), *of_b = materials_->of_body(patch.body);
     return out.emplace(
-        leaf_reader::between(A, T_wa, B, T_wb, patch.body, patch.of_probe, c_a_w_, sinking_m, of_a, of_b, work_));
+        leaf_reader::between(A, T_wa, B, T_wb, patch.body, patch.of_probe, c_a_w_, shallow_m, of_a, of_b, work_));
   }
   [[nodiscard]] const depth_work& work() const noexcept { return work_; }
 

@@ -49,9 +49,9 @@ plane_depth::plane_depth(std::shared_ptr<const field_scene> bodies, const scene&
       team_(std::move(team)),
       materials_(std::make_unique<plane_materials>(of, most)),
       reader_(std::make_unique<surface_reader>(bodies_, centre_of_mass_a_,
-                                               std::vector<double>(of.fixed.size(), facing::sinking_m(of)))),
+                                               std::vector<double>(of.fixed.size(), facing::shallow_m(of)))),
       asked_at_(std::make_unique<vec6>()) {
-  for (way& w : ways_) w.sinking_m = facing::sinking_m(of);
+  for (way& w : ways_) w.shallow_m = facing::shallow_m(of);
   reserve(most);
 }
 
@@ -99,7 +99,7 @@ status plane_depth::measure(const scene_pose& at, const near_samples& found, std
   const vec3 c_a_w = at.T_wa * centre_of_mass_a_;
   readers_of_threads reading(*bodies_, at, c_a_w, *materials_);
   const auto reader_of = [&](const near_patch& patch, unsigned thread) noexcept -> const leaf_reader& {
-    return reading.of(thread).of(patch, ways_[patch.body].sinking_m);
+    return reading.of(thread).of(patch, ways_[patch.body].shallow_m);
   };
   const std::span<const near_patch> patches = found.patches();
   reported_.clear();

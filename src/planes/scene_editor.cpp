@@ -193,7 +193,7 @@ std::shared_ptr<const plane_scene> scene_editor::prepare() {
   fields->fixed.resize(n);
   std::vector<body_tree::sphere> spheres;
   spheres.reserve(n);
-  std::vector<double> sinking_m(n);
+  std::vector<double> shallow_m(n);
   for (std::uint32_t b = 0; b < n; ++b) {
     const slot& s = slots_[b];
     out->since[b] = s.since;
@@ -204,11 +204,11 @@ std::shared_ptr<const plane_scene> scene_editor::prepare() {
     out->of[b] = s.facts;
     out->materials[b + 1] = s.materials;
     fields->fixed[b] = s.field;
-    sinking_m[b] = facing::sinking_m(s.facts.smallest_m);
+    shallow_m[b] = facing::shallow_m(s.facts.smallest_m);
     spheres.push_back({b, s.T_wb * s.facts.centre_b, s.facts.radius_m});
   }
   out->fields = std::move(fields);
-  out->reader = std::make_shared<const surface_reader>(out->fields, probe_->mass.centre_of_mass, std::move(sinking_m));
+  out->reader = std::make_shared<const surface_reader>(out->fields, probe_->mass.centre_of_mass, std::move(shallow_m));
   out->tree = std::make_shared<const body_tree>(std::move(spheres));
   return out;
 }

@@ -26,10 +26,10 @@ namespace asperity {
 class surface_reader final : public plane_reader {
  public:
   /// @param centre_of_mass_a of the probe
-  /// @param sinking_m one per fixed body, of a sample that looks away; see plane_depth
+  /// @param shallow_m one per fixed body, so far in samples count by their share; see plane_depth
   surface_reader(std::shared_ptr<const field_scene> bodies, const vec3& centre_of_mass_a,
-                 std::vector<double> sinking_m) noexcept
-      : bodies_(std::move(bodies)), centre_of_mass_a_(centre_of_mass_a), sinking_m_(std::move(sinking_m)) {}
+                 std::vector<double> shallow_m) noexcept
+      : bodies_(std::move(bodies)), centre_of_mass_a_(centre_of_mass_a), shallow_m_(std::move(shallow_m)) {}
 
   void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
             std::span<support_plane> planes) const noexcept override {
@@ -57,7 +57,7 @@ class surface_reader final : public plane_reader {
     });
   }
 
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(sinking_m_); }
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(shallow_m_); }
 
  private:
   // Calls visit(reader, index, plane) for every plane of a body that stands for a sample.
@@ -74,7 +74,7 @@ class surface_reader final : public plane_reader {
       const sample_number number = sample_number::from(p.sample);
       std::optional<leaf_reader>& reader = number.of_probe ? of_probe : of_fixed;
       if (!reader) {
-        reader.emplace(leaf_reader::between(A, T_wa, B, T_wb, body, number.of_probe, T_wc.position, sinking_m_[body],
+        reader.emplace(leaf_reader::between(A, T_wa, B, T_wb, body, number.of_probe, T_wc.position, shallow_m_[body],
                                             nullptr, nullptr, unused));
       }
       visit(*reader, number.index, p);
@@ -83,7 +83,7 @@ class surface_reader final : public plane_reader {
 
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
-  std::vector<double> sinking_m_;
+  std::vector<double> shallow_m_;
 };
 
 }  // namespace asperity

@@ -23,7 +23,7 @@ void main() {
   int at = ((first_pose + here) * meetings + meeting) * PLACE_NUMBERS;
   rmat3 R_yx = rmat3(place_vector(at), place_vector(at + 3), place_vector(at + 6));
   rvec3 shift_y = place_vector(at + 9);
-  real above = bodies[SCENE_ABOVE], sinking = bodies[SCENE_SINKING];
+  real above = bodies[SCENE_ABOVE], shallow = bodies[SCENE_SHALLOW];
 
   int ball = table[m + MEETING_FIRST_BALL] + leaf * BALL_NUMBERS;
   rvec3 centre_y = R_yx * rvec3(nodes[ball], nodes[ball + 1], nodes[ball + 2]) + shift_y;
@@ -46,7 +46,11 @@ void main() {
     rvec3 axis_y = R_yx * rvec3(nodes[s + 3], nodes[s + 4], nodes[s + 5]);
     real cosine = dot(axis_y, slope) / sqrt(square);
     real share = full > none ? smooth_step((cosine - none) / (full - none)) : real(1.0);
-    depth -= sinking * (real(1.0) - share);
+    if (!(share > real(LEAST_SHARE)) && depth < shallow) continue;
+    if (depth > real(0.0)) {
+      if (depth < shallow) slope *= share;
+      depth = share * min(depth, shallow) + max(real(0.0), depth - shallow);
+    }
     if (!(depth > above)) continue;
     above = depth;
     best = i;

@@ -102,7 +102,7 @@ result<void> plane_batch::parts::upload(const scene& of) {
   result<packed_fields> packed = pack_fields(*made);
   if (!packed) return packed.error();
   packed->bodies[planes::above] = settings.above_m;
-  packed->bodies[planes::sinking] = facing::sinking_m(of);
+  packed->bodies[planes::shallow] = facing::shallow_m(of);
   packed->bodies[planes::same_direction] = settings.same_direction;
   most_leaves = packed->most_leaves;
   const auto take = [&](owned_name& to, const void* data, std::size_t bytes, const char* what) -> result<void> {

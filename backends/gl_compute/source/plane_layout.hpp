@@ -37,7 +37,7 @@ inline constexpr int body_integers = 9;
 
 // Numbers of the scene, which come first, and of a body.
 inline constexpr int above = 0;
-inline constexpr int sinking = 1;
+inline constexpr int shallow = 1;
 inline constexpr int same_direction = 2;
 inline constexpr int scene_numbers = 3;
 inline constexpr int low = 0;
@@ -82,7 +82,7 @@ inline constexpr int told_integers = told_planes + most_directions * plane_integ
            {"BODY_FIRST_INDEX", first_index},
            {"BODY_FIRST_BRICK", first_brick},
            {"SCENE_ABOVE", above},
-           {"SCENE_SINKING", sinking},
+           {"SCENE_SHALLOW", shallow},
            {"SCENE_SAME_DIRECTION", same_direction},
            {"BODY_LOW", low},
            {"BODY_PITCH", pitch},
@@ -103,7 +103,8 @@ inline constexpr int told_integers = told_planes + most_directions * plane_integ
   for (const auto& [name, value] : {std::pair{"FADE_FULL", body_field::fade_full},
                                     {"FADE_NONE", body_field::fade_none},
                                     {"DISTANCE_SLACK", body_field::distance_slack},
-                                    {"LEAST_SLOPE", facing::least_slope}}) {
+                                    {"LEAST_SLOPE", facing::least_slope},
+                                    {"LEAST_SHARE", facing::least_share}}) {
     text += std::string("#define ") + name + " " + std::to_string(value) + "\n";
   }
   return text;

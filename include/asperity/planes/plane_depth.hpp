@@ -34,8 +34,9 @@ struct plane_scene;
 /// across edge needs nothing of its own: the samples along one edge lie in the field of the other's body.
 ///
 /// The field's way out is the shortest one of the point, whatever body the point belongs to. Beside a sharp edge that
-/// can be sideways, where the bodies would not slide apart. A sample therefore sinks, by up to 3 % of the smallest
-/// body's diagonal, as the way turns from where its own surface looks: the plane leaves without a step.
+/// can be sideways, where the bodies would not slide apart. A sample therefore counts by a share that falls to nothing as
+/// the way turns from where its own surface looks: the plane becomes softer and leaves without a step. Further in than
+/// 3 % of the smallest body's diagonal every sample counts in full.
 ///
 /// Surface that lies no further than a ninth of the reach, and a fifth of the gaps that are asked for, is reported in
 /// full. Of what is further away, the planes are reported that a motion of up to five periods can meet first
@@ -148,7 +149,7 @@ class ASPERITY_API plane_depth {
   struct way {
     pose T_ba{}, before_ba{}, before_ab{};
     double chord = 0.0;
-    double sinking_m = 0.0;                 // of a sample that looks away
+    double shallow_m = 0.0;                 // so far in a sample counts by its share
     bool comes = false;                     // since the last tick ...
     double was_m = 0.0;                     // ... in the place of one that was so deep
     double back_m = 0.0;                    // its surface stands back by this

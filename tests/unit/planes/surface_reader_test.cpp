@@ -7,6 +7,7 @@
 
 #include "asperity/field/field_body.hpp"
 #include "asperity/planes/plane_renderer.hpp"
+#include "planes/facing.hpp"
 #include "support/extent.hpp"
 #include "support/fresh_seed.hpp"
 #include "unit/planes/ridged_scene.hpp"
@@ -81,6 +82,55 @@ TEST(SurfaceReader, TellsWhatATickThereWouldTell) {
   }
   EXPECT_GT(compared, extent(300, 3000));
   EXPECT_GT(far_off, compared / 4) << "planes that were not read again are as good: this proves nothing";
+}
+
+// A sample that turns about its own point keeps its depth and looks further and further away. What it counts of that
+// depth goes down without a step and with it the slope; of a sample that is far in, all but what is shallow stays.
+TEST(SurfaceReader, CountsByItsShareWhatLooksAway) {
+  draws draw{std::mt19937_64(fresh_seed("SurfaceReader.CountsByItsShareWhatLooksAway", "40 poses, 200 at length"))};
+  constexpr double read_within_m = 1e-7, step_rad = 2e-3;  // single precision; a step of 0.1 degrees
+  plane_renderer feel = make_ridged();
+  const std::span<const field_sample> samples = ridged().fields->probe->samples.samples();
+  const double shallow_m = facing::shallow_m(feel.scene());
+  int gone = 0, held = 0;
+  for (int n = 0; n < extent(40, 200); ++n) {
+    const auto [T_wb, T_wa, t] = touch(draw, feel, 3e-5);
+    for (const support_plane& told : kept(t.planes)) {
+      if (told.sample % 2 != 1 || !(told.depth_m > 1e-5)) continue;  // of the probe's samples, those that press
+      const vec3 point_a(samples[(told.sample - 1) / 2].position_b);
+      for (const double further_m : {0.0, 1.5 * shallow_m}) {
+        const vec3 point_w = T_wa * point_a + further_m * told.n_ab_w;
+        const field_reading whole = ridged().fields->fixed[told.body]->field.read(inverse(T_wb[told.body]) * point_w);
+        const double steep = glm::length(whole.slope);
+        if (!(whole.value_m > 0.0) || !(steep > 0.1)) continue;
+        support_plane p = told;
+        p.n_ab_w = T_wb[told.body].rotation * whole.slope / steep;
+        const vec3 axis = glm::normalize(glm::cross(p.n_ab_w, draw.vector()));
+        double before_m = 0.0;
+        for (int step = 0; step <= 600; ++step) {
+          const quat turned = glm::normalize(exp_rotation(step * step_rad * axis) * T_wa.rotation);
+          std::vector<support_plane> read{p};
+          t.reader->read(centre_frame({turned, point_w - turned * point_a}), T_wb[told.body], told.body, read);
+          const double now_m = read[0].depth_m, steep_now = glm::length(read[0].gradient.linear);
+          ASSERT_LE(now_m, whole.value_m + read_within_m) << n;
+          ASSERT_GE(now_m, std::max(0.0, whole.value_m - shallow_m) - read_within_m) << n;
+          if (step > 0) {
+            ASSERT_LE(std::fabs(now_m - before_m), 0.04 * std::min(whole.value_m, shallow_m) + read_within_m) << n;
+          }
+          if (whole.value_m < shallow_m) {
+            ASSERT_NEAR(steep_now, steep * now_m / whole.value_m, 0.02 * steep) << n;
+          } else {
+            ASSERT_NEAR(steep_now, steep, 0.02 * steep) << n;
+          }
+          before_m = now_m;
+        }
+        gone += before_m < 0.01 * whole.value_m ? 1 : 0;
+        held += whole.value_m > 1.01 * shallow_m ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(gone, 10);
+  EXPECT_GT(held, 10);
 }
 
 // What cannot be read, or is another wall, stays as it was told, and so does what belongs to others.
