@@ -259,6 +259,29 @@ struct face_on_waves : points_on_waves {
   }
 };
 
+// The probe goes where planes and springs balance, and is told the planes of there, until it is at rest. Returns its last
+// step.
+double last_step_m(face_on_waves& face, coupling_pull pull, double half_m) {
+  rest_prediction rest;
+  pose T_wc{{1, 0, 0, 0}, face.centre_w};
+  double step_m = 0.0;
+  for (int tick = 0; tick < 12; ++tick) {
+    plane_list here;
+    static_cast<void>(face.planes_at({}, -1e-5, here));
+    support_planes planes;
+    for (const support_plane& p : here) static_cast<void>(planes.push_back(p));
+    rest.complete(plane_source(face), pull, T_wc, planes);
+    const vec6 way = detail::rest_of(pull, planes);
+    step_m = glm::length(way.linear) + half_m * glm::length(way.angular);
+    face.centre_w += way.linear;
+    for (vec3& r : face.r_w) r = exp_rotation(way.angular) * r;
+    T_wc = {glm::normalize(exp_rotation(way.angular) * T_wc.rotation), face.centre_w};
+    pull.on_probe_w.force -= pull.stiffness_n_per_m * way.linear;
+    pull.on_probe_w.torque -= pull.stiffness_n_m_per_rad * way.angular;
+  }
+  return step_m;
+}
+
 // Where more points touch than a list holds, what a list leaves out may be what holds the probe after its next step.
 TEST(plane_prediction, a_face_of_many_points_rests_on_those_that_no_list_told) {
   drawn d(seed_of(fresh_seed("plane_prediction", "300 faces"), "faces"));
@@ -283,24 +306,7 @@ TEST(plane_prediction, a_face_of_many_points_rests_on_those_that_no_list_told) {
     const double lever_m = 0.6 * half_m;  // where the hand presses the face
     pull.on_probe_w.torque = {pull.on_probe_w.force.z * d.between(-lever_m, lever_m),
                               pull.on_probe_w.force.z * d.between(-lever_m, lever_m), 0.0};
-    // The probe goes where planes and springs balance, and is told the planes of there, until it is at rest.
-    rest_prediction rest;
-    pose T_wc{{1, 0, 0, 0}, face.centre_w};
-    double step_m = 0.0;
-    for (int tick = 0; tick < 12; ++tick) {
-      plane_list here;
-      static_cast<void>(face.planes_at({}, -1e-5, here));
-      support_planes planes;
-      for (const support_plane& p : here) static_cast<void>(planes.push_back(p));
-      rest.complete(plane_source(face), pull, T_wc, planes);
-      const vec6 way = detail::rest_of(pull, planes);
-      step_m = glm::length(way.linear) + half_m * glm::length(way.angular);
-      face.centre_w += way.linear;
-      for (vec3& r : face.r_w) r = exp_rotation(way.angular) * r;
-      T_wc = {glm::normalize(exp_rotation(way.angular) * T_wc.rotation), face.centre_w};
-      pull.on_probe_w.force -= pull.stiffness_n_per_m * way.linear;
-      pull.on_probe_w.torque -= pull.stiffness_n_m_per_rad * way.angular;
-    }
+    const double step_m = last_step_m(face, pull, half_m);
     truncated += face.truncated ? 1 : 0;
     wrong += step_m > 0.5 * um ? 1 : 0;
     worst_m = std::max(worst_m, step_m);
@@ -308,8 +314,43 @@ TEST(plane_prediction, a_face_of_many_points_rests_on_those_that_no_list_told) {
   std::printf("  %d of 300 faces had more points than a list; %d still moved by more than 0.5 um, at most by %.1f um\n",
               truncated, wrong, worst_m / um);
   EXPECT_GT(truncated, 150);
-  // Measured on five seeds: 3 to 9 of a hundred, and 12 to 21 where what a list leaves out counts as far away.
-  EXPECT_LE(wrong, 30);
+  // Measured on six seeds: 4 to 9, and 18 to 22 where an answer had 32 planes, which were balanced.
+  EXPECT_LE(wrong, 15);
+}
+
+// Hundreds of points of a plain face are equally deep. The first 32 of them lie along one side of it: balanced alone, they
+// would tip it over.
+TEST(plane_prediction, a_plain_face_of_many_points_is_not_tipped_over) {
+  drawn d(seed_of(fresh_seed("plane_prediction, plain", "100 faces"), "faces"));
+  int wrong = 0;
+  double worst_m = 0.0;
+  for (int trial = 0; trial < 100; ++trial) {
+    const drawn_rest drawn_pull = draw(d);
+    face_on_waves face{drawn_pull.body};
+    for (vec3& w : face.wave) w.z = 0.0;
+    face.r_w.clear();
+    const double half_m = d.between(8 * mm, 15 * mm);
+    constexpr int side = 16;
+    const quat leans = exp_rotation(d.inside(5e-4));
+    for (int i = 0; i < side * side; ++i) {
+      const int row = i / side, column = i % side;
+      const double x = half_m * (2.0 * column / (side - 1) - 1.0), y = half_m * (2.0 * row / (side - 1) - 1.0);
+      face.r_w.push_back(leans * vec3(x, y, -20 * mm));
+    }
+    double deepest_m = -1.0;
+    for (std::size_t i = 0; i < face.r_w.size(); ++i) deepest_m = std::max(deepest_m, face.depth(face.point(i, {})));
+    face.centre_w.z += deepest_m - 5 * um;
+    coupling_pull pull = drawn_pull.pull;
+    const double lever_m = 0.6 * half_m;  // where the hand presses the face
+    pull.on_probe_w.torque = {pull.on_probe_w.force.z * d.between(-lever_m, lever_m),
+                              pull.on_probe_w.force.z * d.between(-lever_m, lever_m), 0.0};
+    const double step_m = last_step_m(face, pull, half_m);
+    wrong += step_m > 0.5 * um ? 1 : 0;
+    worst_m = std::max(worst_m, step_m);
+  }
+  std::printf("  %d of 100 plain faces still moved by more than 0.5 um, at most by %.1f um\n", wrong, worst_m / um);
+  // Most of them still move by 0.5 to 3 um. Where the deepest alone were balanced, the worst tipped by 365 to 490 um.
+  EXPECT_LT(worst_m, 20.0 * um);
 }
 
 /// A point in a groove of 90 degrees along y: its planes are one wall's or the other's.
