@@ -51,24 +51,21 @@ class local_model {
   /// @return contact.planes where nobody can read them again   @warning until the next call
   [[nodiscard]] const support_planes& planes_of(const linear_contact& contact, std::span<const body_way> ways,
                                                 const pose& T_wc) noexcept {
-    if (!reads_ || contact.reader == nullptr || contact.planes.empty()) return contact.planes;
+    if (!reads(contact)) return contact.planes;
     if (std::exchange(is_new_, false)) begin(contact);
-    planes_ = contact.planes;
-    for (const body_place& then : contact.places) {
-      // A depth depends on the bodies' pose to each other: the body stays where it was, and the probe is moved.
-      const body_way* const way = find_way(ways, then);
-      const pose there_T_wc = way == nullptr ? T_wc : then.T_wb * inverse(way->after(0.0)) * T_wc;
-      const vec6 moved = pose_difference(there_T_wc, contact.T_wc);
-      for (support_plane& p : planes_) {
-        if (p.body == then.body) p.depth_m += dot(p.gradient, moved);
-      }
-      contact.reader->read(there_T_wc, then.T_wb, then.body, {planes_.data(), planes_.size()});
-      hold(then.body, contact.time_ns, moved);
-    }
+    read(contact, ways, T_wc, 0.0, -std::numeric_limits<double>::infinity());
     return planes_;
   }
 
+  /// Reads those planes again that may press on a probe that has come to T_wc since: what planes_of() returned follows.
+  /// @param part of the period that has passed: bodies that move have gone so far on their ways
+  /// @pre planes_of() with the same contact
+  void follow(const linear_contact& contact, std::span<const body_way> ways, const pose& T_wc, double part) noexcept {
+    if (reads(contact)) read(contact, ways, T_wc, part, -may_press_m);
+  }
+
  private:
+  static constexpr double may_press_m = 2e-5;  // a gap, which a hand of 0.15 m/s closes in an eighth of a millisecond
   static constexpr double near_m = 2.5e-4;
   static constexpr double least_give_m = 2e-4;
   static constexpr double holds_not_m = std::numeric_limits<double>::infinity();
@@ -79,7 +76,12 @@ class local_model {
     std::int64_t at_ns = 0;  // time of the last contact by which it was touched
   };
 
+  [[nodiscard]] bool reads(const linear_contact& contact) const noexcept {
+    return reads_ && contact.reader != nullptr && !contact.places.empty();
+  }
+
   void begin(const linear_contact& contact) noexcept {
+    planes_ = contact.planes;
     walls_ = contact.planes;
     for (const body_place& then : contact.places) {
       contact.reader->smooth_out(contact.T_wc, then.T_wb, then.body, {walls_.data(), walls_.size()});
@@ -90,32 +92,53 @@ class local_model {
         static_cast<std::size_t>(std::remove_if(touched_.begin(), touched_.end(), is_over) - touched_.begin()));
   }
 
-  // Planes that were read become linear about the contact's pose; where the body is touched, its walls hold.
-  // @param now_ns time of the contact   @param moved of the probe against the body since the contact
-  void hold(std::uint32_t body, std::int64_t now_ns, const vec6& moved) noexcept {
-    const bool touched = note_touch(body, now_ns);
-    for (std::size_t i = 0; i < planes_.size(); ++i) {
-      support_plane& p = planes_[i];
-      if (p.body != body) continue;
-      const double wall_m = walls_[i].depth_m + dot(walls_[i].gradient, moved);
-      if (touched && gives_m_[i] == holds_not_m) {
-        gives_m_[i] = std::max(least_give_m, wall_m - std::max(p.depth_m, 0.0));
+  // Reads the planes that are deeper than least_m, as far as is known.
+  void read(const linear_contact& contact, std::span<const body_way> ways, const pose& T_wc, double part,
+            double least_m) noexcept {
+    for (const body_place& then : contact.places) {
+      // A depth depends on the bodies' pose to each other: the body stays where it was, and the probe is moved.
+      const body_way* const way = find_way(ways, then);
+      const pose there_T_wc = way == nullptr ? T_wc : then.T_wb * inverse(way->after(part)) * T_wc;
+      const vec6 moved = pose_difference(there_T_wc, contact.T_wc);
+      read_.clear();
+      std::array<std::size_t, most_support_planes> of{};
+      for (std::size_t i = 0; i < planes_.size(); ++i) {
+        if (planes_[i].body != then.body || planes_[i].depth_m + dot(planes_[i].gradient, moved) < least_m) continue;
+        of[read_.size()] = i;
+        support_plane p = contact.planes[i];
+        p.depth_m += dot(p.gradient, moved);
+        static_cast<void>(read_.push_back(p));
       }
-      if (p.depth_m < wall_m - gives_m_[i]) {
-        p = walls_[i];
-        p.depth_m -= gives_m_[i];
-      } else {
-        p.depth_m -= dot(p.gradient, moved);
-      }
+      contact.reader->read(there_T_wc, then.T_wb, then.body, {read_.data(), read_.size()});
+      const bool touched = note_touch(then.body, contact.time_ns);
+      for (std::size_t r = 0; r < read_.size(); ++r) hold(of[r], read_[r], touched, moved);
+    }
+  }
+
+  // A plane that was read becomes linear about the contact's pose; where its body is touched, its wall holds.
+  // @param moved of the probe against the body since the contact
+  void hold(std::size_t i, const support_plane& now, bool touched, const vec6& moved) noexcept {
+    const double wall_m = walls_[i].depth_m + dot(walls_[i].gradient, moved);
+    if (touched && gives_m_[i] == holds_not_m) {
+      gives_m_[i] = std::max(least_give_m, wall_m - std::max(now.depth_m, 0.0));
+    }
+    support_plane& p = planes_[i];
+    if (now.depth_m < wall_m - gives_m_[i]) {
+      p = walls_[i];
+      p.depth_m -= gives_m_[i];
+    } else {
+      p = now;
+      p.depth_m -= dot(p.gradient, moved);
     }
   }
 
   // Notes whether a body is touched, by its planes as they were read. @return whether it is, or was a short time ago
+  // @param now_ns time of the contact
   [[nodiscard]] bool note_touch(std::uint32_t body, std::int64_t now_ns) noexcept {
     const auto known =
         std::find_if(touched_.begin(), touched_.end(), [&](const touched_body& t) { return t.body == body; });
-    const bool now = std::any_of(planes_.begin(), planes_.end(),
-                                 [&](const support_plane& p) { return p.body == body && p.depth_m > -near_m; });
+    const bool now =
+        std::any_of(read_.begin(), read_.end(), [](const support_plane& p) { return p.depth_m > -near_m; });
     if (!now) return known != touched_.end();
     if (known != touched_.end()) {
       known->at_ns = now_ns;
@@ -131,6 +154,7 @@ class local_model {
   support_planes walls_{};                             // the contact's planes without relief
   std::array<double, most_support_planes> gives_m_{};  // how far each reading may let go of its wall
   support_planes planes_{};
+  support_planes read_{};  // the planes of one body, as they are read
 };
 
 /// Velocity of the point of a body that is at c_A, and of the body: what the probe would have if it stuck to it.

@@ -44,7 +44,7 @@ struct control_settings {
   /// which looks 0.1 mm and 5 mrad around: with half of it a press with 10 N stepped by 0.4 N/ms at rest. What a hand
   /// begins to do in a period of a slow loop takes more.
   double least_gaps_m = 1e-3;
-  bool local_model = true;         ///< planes are read again in each device tick, see local_model
+  bool local_model = true;         ///< planes are read again in each substep, see local_model
   transient_settings transient{};  ///< of a first touch, see check(); none by default
   guard_settings guard{};
   weight_settings weight{};  ///< of the handle, see check(); none by default
@@ -64,7 +64,9 @@ struct control_settings {
   double low_pass_hz = output_gate::no_low_pass;     ///< cut-off of the gate's low-pass on the wrench; infinite: none
   /// Silence of the application after which the gate shuts (watchdog); 0: no watchdog. See exchange::application.
   std::int64_t watchdog_ns = 0;
-  int substeps = 8;                           ///< of the probe in one device period
+  /// Substeps of the probe in a device period of a millisecond or longer. A shorter one has so many fewer that none is
+  /// shorter than those of a millisecond; it has one at least.
+  int substeps = 8;
   std::int64_t longest_step_ns = 20'000'000;  ///< a later tick advances the probe by this much only
 };
 

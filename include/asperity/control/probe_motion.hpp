@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -30,15 +31,18 @@ namespace asperity {
 /// probe that runs at several times the device's rate, so the target goes evenly from its last pose to the newest one.
 /// The probe goes no further than the contact knows (linear_contact::known), planes or not: there it waits for the next
 /// contact, and the coupling pulls at the hand by what it lags behind.
-/// Planes are read again where the probe is, once in a period, as far as the contact's renderer can (local_model).
+/// Planes are read again where the probe is, as far as the contact's renderer can (local_model): all of them once in a
+/// period, and those that may press in every substep. A probe that takes several substeps on one reading goes to where
+/// the surface would be if it were flat, and the next reading throws it back: between the stripes of two blocks it
+/// trembled so without end.
 /// Planes of bodies that move go with them, evenly through the period. A linear wrench does not: it is the one of the
 /// contact's time.
 /// @rt safe: no allocation, lock, throw, print or clock
 class probe_motion {
  public:
-  /// @param substeps of the probe in one period; at least one is made
+  /// @param substeps of the probe in one period, see substeps_in(); at least one is made
   /// @param rubbing on support planes; a contact without planes has no friction
-  /// @param reads_again whether planes are read again in each period, see local_model
+  /// @param reads_again whether planes are read again where the probe is, see local_model
   /// @pre check(laws.usual), check(rubbing)
   probe_motion(const probe_settings& body, const coupling_settings& coupling, contact_laws laws, int substeps,
                const friction_settings& rubbing = {}, bool reads_again = true) noexcept
@@ -114,11 +118,14 @@ class probe_motion {
 
     target_velocity_w_ = velocity_over(way, dt_s);
     if (velocity_w && caught_up_) target_velocity_w_ = *velocity_w;
-    for (int i = 1; i <= substeps_; ++i) {
-      const double passed = static_cast<double>(i) / substeps_;
-      const double begun = static_cast<double>(i - 1) / substeps_;
+    const int substeps = substeps_in(dt_s);
+    const double h_s = dt_s / substeps;
+    for (int i = 1; i <= substeps; ++i) {
+      const double passed = static_cast<double>(i) / substeps;
+      const double begun = static_cast<double>(i - 1) / substeps;
+      if (i > 1) local_.follow(contact, ways, probe_.state().T_wc, begun);
       const pose target{exp_rotation(passed * way.angular) * from.rotation, from.position + passed * way.linear};
-      if (const status s = substep(dt_s, target, contact, planes, carried, begun); s != status::ok) return s;
+      if (const status s = substep(h_s, dt_s, target, contact, planes, carried, begun); s != status::ok) return s;
     }
     felt_.point_w = probe_.state().T_wc.position;
     body_share_ = carried.moves() ? carried.body_share(probe_.state().T_wc, 1.0) : 0.0;
@@ -203,9 +210,16 @@ class probe_motion {
     return to_twist((1.0 / time_s) * sum);
   }
 
-  [[nodiscard]] status substep(double dt_s, const pose& target, const linear_contact& contact,
+  // As many substeps as were asked for in a period of a millisecond or longer, and none shorter than these in a shorter
+  // period: they cost as much as a long one.
+  [[nodiscard]] int substeps_in(double dt_s) const noexcept {
+    constexpr double full_s = 1e-3;
+    return dt_s < full_s ? std::max(1, static_cast<int>(std::lround(substeps_ * (dt_s / full_s)))) : substeps_;
+  }
+
+  // One of the substeps of h_s that a period of dt_s has.
+  [[nodiscard]] status substep(double h_s, double dt_s, const pose& target, const linear_contact& contact,
                                const support_planes& read, const carried_contact& carried, double begun) noexcept {
-    const double h_s = dt_s / substeps_;
     if (contact.planes.empty()) {
       friction_.forget();
       const status s =
@@ -223,13 +237,12 @@ class probe_motion {
     const status s = probe_.step_on_planes(h_s, coupling_, target, target_velocity_w_, *planes, within, laws_,
                                            friction_, pressed_, {}, velocities_);
     touched_ = {pressed_.on_probe_w + friction_.on_probe_w(), {}, false};
-    feel(*planes);
+    feel(*planes, h_s / dt_s);
     return s;
   }
 
-  // Adds a substep's share of what bodies feel.
-  void feel(const support_planes& planes) noexcept {
-    const double share = 1.0 / substeps_;
+  // Adds what bodies feel in a substep. @param share of the period that it takes
+  void feel(const support_planes& planes, double share) noexcept {
     for (std::size_t i = 0; i < planes.size(); ++i) {
       if (pressed_.lambda_n[i] > 0.0) {
         felt_.add(planes[i].body, to_wrench(share * pressed_.lambda_n[i] * planes[i].gradient));

@@ -20,11 +20,11 @@ struct virtual_tool_settings {
   coupling_settings coupling{};
   contact_law contact{};
   friction_settings friction{};
-  surface_pairs surfaces{};      ///< as control_settings::surfaces
-  plane_selection selection{};   ///< selection_for() the period in which ticks are rendered
-  pose T_ha{};                   ///< the probe's body frame on the handle
-  vec3 centre_of_mass_a{0.0};    ///< c_A in the probe's body frame, m (textured_model::mass)
-  int substeps = 8;              ///< of the probe in one call
+  surface_pairs surfaces{};     ///< as control_settings::surfaces
+  plane_selection selection{};  ///< selection_for() the period in which ticks are rendered
+  pose T_ha{};                  ///< the probe's body frame on the handle
+  vec3 centre_of_mass_a{0.0};   ///< c_A in the probe's body frame, m (textured_model::mass)
+  int substeps = 8;             ///< of the probe in one call of a millisecond or longer; see control_settings::substeps
   double longest_step_s = 0.02;  ///< a longer pause advances the probe by this much only
 };
 

@@ -56,7 +56,7 @@ concept reports_planes_nearby = requires(const D& depth, const scene_pose& at, c
   noexcept->std::same_as<status>;
 };
 
-/// Reads the points again that support planes stand for. A device loop asks it in each of its ticks, so that what is felt
+/// Reads the points again that support planes stand for. A device loop asks it in each of its substeps, so that what is felt
 /// between two contacts is the surface and not the plane that the older contact had of it.
 ///
 /// It refers to the bodies of the renderer that has it, and to nothing that a tick changes: any thread may ask, while

@@ -79,8 +79,8 @@ TEST(rests, hardly_tremble) {
 }
 
 // Two blocks face on face, their stripes in each other, where thousands of samples are nearer than 50 um: more points
-// touch than a question for planes is answered with. Of nine that were drawn seven had 3 mN, one 12, and one 71 of 2.1 N, 131
-// where what an answer leaves out counted as far away: a row of samples comes into sight within a few micrometres.
+// touch than a question for planes is answered with. Of 15 that were drawn the worst had 3.3 mN. Where the probe takes
+// eight substeps on one reading of the planes, one in three of these sessions has 30 to 60.
 TEST(rests, a_textured_face_on_its_like_hardly_trembles) {
   constexpr int sessions = 3;
   const std::uint64_t seed = fresh_seed("rests, faces", "3 blocks on a block");
@@ -91,7 +91,6 @@ TEST(rests, a_textured_face_on_its_like_hardly_trembles) {
   const textured_model& model = *(*block)->model;
   const auto render = plane_renderer_law().render(**block, **block, session_rules{}.stiffness_n_per_m);
   ASSERT_TRUE(render);
-  int trembling = 0;
   for (int i = 0; i < sessions; ++i) {
     press_touch touch;
     touch.index = static_cast<std::uint64_t>(i);
@@ -111,10 +110,8 @@ TEST(rests, a_textured_face_on_its_like_hardly_trembles) {
                 1e3 * force.worst_rms, force.worst_mean, 1e3 * torque.worst_rms, 1e3 * torque.worst_mean);
     EXPECT_FALSE(r.ended_early);
     EXPECT_GT(force.worst_mean, 0.1);
-    EXPECT_LE(force.worst_rms, 0.05 * force.worst_mean);
-    trembling += r.trembles() ? 1 : 0;
+    EXPECT_FALSE(r.trembles());
   }
-  EXPECT_LE(trembling, 1);
 }
 
 // A hand that presses a file on a block with 10 N, contacts one period late and without the guard.

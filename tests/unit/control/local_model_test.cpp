@@ -19,54 +19,14 @@
 #include "unit/control/drawn.hpp"
 #include "unit/control/plane_bodies.hpp"
 #include "unit/control/plane_session.hpp"
+#include "unit/control/wavy_reader.hpp"
 
 namespace asperity {
 namespace {
 
 using namespace test_support;
 
-// A wavy wall that goes with its body, and one point of the probe.
-struct wavy_reader final : plane_reader {
-  wall of{};  // at its body's origin
-  vec3 point_c{0.0};
-
-  [[nodiscard]] support_plane plane(const pose& T_wc, const pose& T_wb) const noexcept {
-    const vec3 p_b = inverse(T_wb) * (T_wc * point_c), slope_w = T_wb.rotation * of.slope(p_b);
-    const vec3 r_w = T_wc * point_c - T_wc.position;
-    return {.depth_m = of.depth_m(p_b),
-            .gradient = {slope_w, glm::cross(r_w, slope_w)},
-            .n_ab_w = slope_w / glm::length(slope_w),
-            .r_w = r_w,
-            .body = of.body,
-            .sample = 1};
-  }
-  void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
-            std::span<support_plane> planes) const noexcept override {
-    for (support_plane& p : planes) {
-      if (p.body == body && p.sample != 0) p = plane(T_wc, T_wb);
-    }
-  }
-  void smooth_out(const pose&, const pose& T_wb, std::uint32_t body,
-                  std::span<support_plane> planes) const noexcept override {
-    for (support_plane& p : planes) {
-      if (p.body != body || p.sample == 0) continue;
-      p.n_ab_w = T_wb.rotation * -of.outward_w;
-      p.gradient = {p.n_ab_w, glm::cross(p.r_w, p.n_ab_w)};
-    }
-  }
-};
-
 wall wavy(std::uint32_t body) { return {.amplitude_m = 1e-4, .wave_m = 1.5e-3, .body = body}; }
-
-/// A contact of one plane, of a body at the world's origin that can be read again.
-linear_contact contact_at(const wavy_reader& reader, const pose& T_wc) {
-  linear_contact out;
-  out.T_wc = T_wc;
-  static_cast<void>(out.planes.push_back(reader.plane(T_wc, {})));
-  out.reader = &reader;
-  static_cast<void>(out.places.push_back({0, {}, 0}));
-  return out;
-}
 
 // A probe and a body that moved since the contact: at the probe's pose, with the body carried to the end of its way, the
 // plane says what the pair has there. The way of a plane that nobody read is off by the wave.
@@ -80,7 +40,7 @@ TEST(local_model, is_exact_where_the_probe_is) {
     };
     wavy_reader reader;
     reader.of = wavy(3);
-    reader.point_c = d.inside(0.01);
+    reader.points_c = {d.inside(0.01)};
     const pose then_T_wb = any_pose();
     linear_contact contact;
     contact.T_wc = {exp_rotation(d.inside(2.0)), then_T_wb * d.inside(2e-3)};
@@ -111,6 +71,54 @@ TEST(local_model, is_exact_where_the_probe_is) {
     unread_off_m = std::max(unread_off_m, std::fabs(depth_of(contact.planes) - truth_m));
   }
   EXPECT_GT(unread_off_m, 2e-5);
+}
+
+// A probe that goes on after a reading: planes that may press say what is true where it has come to, with their body where
+// it is then; those with a gap stay as they were read.
+TEST(local_model, follows_a_probe_with_the_planes_that_may_press) {
+  drawn d(
+      seed_of(fresh_seed("local_model.follows_a_probe_with_the_planes_that_may_press", "500 contacts"), "contacts"));
+  constexpr double may_press_m = 2e-5;
+  int followed = 0, stayed = 0;
+  for (int i = 0; i < 500; ++i) {
+    wavy_reader reader;
+    reader.of = wavy(0);
+    for (int p = 1; p < 8; ++p) reader.points_c.push_back(d.inside(1e-3));
+    reader.points_c.front() = d.inside(1e-3);
+    linear_contact contact = contact_at(reader, {exp_rotation(d.inside(0.02)), {0.0, 0.0, d.between(0.0, 4e-4)}});
+    const bool moves = i % 2 == 0;
+    if (moves) {
+      contact.places[0].generation = 7;
+      static_cast<void>(contact.bodies.push_back({0, {}, 7}));
+    }
+    const pose first_T_wb = moves ? pose{exp_rotation(d.inside(1e-3)), d.inside(1e-4)} : pose{};
+    const std::array<body_way, 1> ways{body_way{0, first_T_wb, {d.inside(1e-4), d.inside(1e-3)}, 7}};
+    const std::span<const body_way> gone = moves ? std::span<const body_way>(ways) : std::span<const body_way>();
+    const double part = d.between(0.0, 1.0);
+    const pose first_T_wc{contact.T_wc.rotation, contact.T_wc.position + d.inside(1e-4)};
+    const pose then_T_wc{first_T_wc.rotation, first_T_wc.position + d.inside(3e-5)};
+    const pose then_T_wb = moves ? ways[0].after(part) : pose{};
+
+    local_model model(true);
+    model.take_contact();
+    const support_planes& planes = model.planes_of(contact, gone, first_T_wc);
+    const support_planes before = planes;
+    model.follow(contact, gone, then_T_wc, part);
+    const pose about_body = inverse(then_T_wb) * then_T_wc;
+    const vec6 moved = pose_difference(about_body, contact.T_wc);
+    for (std::size_t p = 0; p < planes.size(); ++p) {
+      const auto said_m = [&](const support_plane& of) { return of.depth_m + dot(of.gradient, moved); };
+      if (said_m(before[p]) >= -may_press_m) {
+        ++followed;
+        EXPECT_NEAR(said_m(planes[p]), reader.plane(then_T_wc, then_T_wb, p).depth_m, 1e-12) << i << ": " << p;
+      } else {
+        ++stayed;
+        EXPECT_EQ(planes[p].depth_m, before[p].depth_m) << i << ": " << p;
+      }
+    }
+  }
+  EXPECT_GT(followed, 500);
+  EXPECT_GT(stayed, 500);
 }
 
 // How deep the point of a probe at the end of a way is: by the plane that the model uses there, by the contact's plane
@@ -273,7 +281,11 @@ TEST(local_model, leaves_a_contact_alone_that_nobody_can_read) {
   local_model model(true);
   EXPECT_EQ(&model.planes_of(contact, {}, {}), &contact.planes);
   wavy_reader reader;
-  contact.reader = &reader;
+  contact.reader = &reader;  // and nobody says where the body was
+  EXPECT_EQ(&model.planes_of(contact, {}, {}), &contact.planes);
+  static_cast<void>(contact.places.push_back({}));
+  EXPECT_NE(&model.planes_of(contact, {}, {}), &contact.planes);
+  contact.places.clear();
   contact.planes.clear();
   EXPECT_EQ(&model.planes_of(contact, {}, {}), &contact.planes);
 }
@@ -351,21 +363,6 @@ TEST(local_model, keeps_a_scene_that_is_still_read) {
   ticks_with_the_device_at(timed_pose{}.version);  // one is freed at a time
   EXPECT_TRUE(seventh.expired());
 }
-
-// A renderer of one point of the probe over the wavy wall.
-struct wavy_renderer {
-  wavy_reader reader{};
-  support_plane plane{};
-
-  [[nodiscard]] status step(const scene_pose& at, tick& out) noexcept {
-    out = {};
-    out.centre_of_mass_w = at.T_wa.position;
-    plane = reader.plane(at.T_wa, at.T_wb[0]);
-    out.planes = {&plane, 1};
-    out.reader = &reader;
-    return status::ok;
-  }
-};
 
 struct forces {
   std::vector<vec3>* out;

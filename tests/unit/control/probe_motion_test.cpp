@@ -1,14 +1,18 @@
-// The probe's way through one device period: what an encoder's steps become in the coupling's damper.
+// The probe's way through one device period: what an encoder's steps become in the coupling's damper, and what becomes of
+// planes on the way.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <gtest/gtest.h>
+#include <span>
 #include <vector>
 
 #include <asperity/control/probe_motion.hpp>
 
 #include "support/fresh_seed.hpp"
 #include "unit/control/drawn.hpp"
+#include "unit/control/wavy_reader.hpp"
 
 namespace {
 
@@ -81,6 +85,70 @@ TEST(probe_motion, a_placed_probe_is_at_rest) {
   m.place(there);
   ASSERT_EQ(m.move(2.5e-4, there, 1.0, {}), status::ok);
   EXPECT_EQ(glm::length(m.on_hand_w().force), 0.0);
+}
+
+// Points of a probe between fine waves, and a hand that stands still: whatever the way there, the probe comes to rest. On
+// planes that are read once in a period one probe in thirty goes to and fro for ever, by up to 0.1 mm.
+TEST(probe_motion, a_probe_comes_to_rest_between_waves) {
+  drawn d(seed_of(fresh_seed("probe_motion.a_probe_comes_to_rest_between_waves", "400 probes"), "waves"));
+  constexpr int probes = 400, periods = 400, settled = 300;
+  double worst_m = 0.0;
+  for (int i = 0; i < probes; ++i) {
+    wavy_reader reader;
+    reader.of = {.amplitude_m = d.between(1e-5, 3e-5), .wave_m = d.between(1e-4, 2.5e-4)};
+    reader.points_c = lower_face(0.02, 0.02, 0.01, 6);
+    for (vec3& p : reader.points_c) p += d.inside(reader.of.amplitude_m);
+    const pose begin_T_wc{exp_rotation({0.0, 0.0, d.between(-0.3, 0.3)}),
+                          {d.between(-1e-3, 1e-3), 0.0, 0.01 + reader.of.amplitude_m}};
+    const linear_contact contact = contact_at(reader, begin_T_wc);
+    const coupling_settings coupling{.stiffness_n_per_m = 1500.0, .stiffness_n_m_per_rad = 5.0};
+    const double press_m = d.between(0.2, 3.0) / coupling.stiffness_n_per_m;
+    const pose wanted_T_wc{exp_rotation(d.inside(0.01)) * begin_T_wc.rotation,
+                           begin_T_wc.position + vec3(d.between(-3e-4, 3e-4), d.between(-3e-4, 3e-4), -press_m)};
+    probe_motion motion({}, coupling, contact_laws{}, 8);
+    motion.place(begin_T_wc);
+    motion.take_contact();
+    for (int k = 0; k < periods; ++k) {
+      const pose before_T_wc = motion.probe().state().T_wc;
+      ASSERT_EQ(motion.move(1e-3, wanted_T_wc, 1.0, contact), status::ok);
+      const vec6 way = pose_difference(motion.probe().state().T_wc, before_T_wc);
+      if (k >= settled) worst_m = std::max(worst_m, glm::length(way.linear) + 0.02 * glm::length(way.angular));
+    }
+  }
+  std::printf("  the probe that is least at rest moves by %.3f um in a period\n", worst_m / um);
+  EXPECT_LT(worst_m, 0.3 * um);
+}
+
+// Each substep costs a reading. One of a short period is no shorter than those of a millisecond.
+TEST(probe_motion, reads_planes_once_in_a_substep) {
+  struct counting final : plane_reader {
+    mutable int readings = 0;
+    void read(const pose&, const pose&, std::uint32_t, std::span<support_plane>) const noexcept override { ++readings; }
+    void smooth_out(const pose&, const pose&, std::uint32_t, std::span<support_plane>) const noexcept override {}
+  };
+  struct expected {
+    double period_s;
+    int substeps, readings;
+  };
+  for (const expected& e : {expected{1e-2, 8, 8},
+                            {1e-3, 8, 8},
+                            {5e-4, 8, 4},
+                            {2.5e-4, 8, 2},
+                            {1e-4, 8, 1},
+                            {1e-3, 1, 1},
+                            {2.5e-4, 20, 5}}) {
+    counting reader;
+    linear_contact contact;
+    static_cast<void>(
+        contact.planes.push_back({.gradient = {{0, 0, -1}, {0, 0, 0}}, .n_ab_w = {0, 0, -1}, .sample = 1}));
+    contact.reader = &reader;
+    static_cast<void>(contact.places.push_back({}));
+    probe_motion motion({}, {}, contact_laws{}, e.substeps);
+    motion.place({});
+    motion.take_contact();
+    ASSERT_EQ(motion.move(e.period_s, {}, 1.0, contact), status::ok);
+    EXPECT_EQ(reader.readings, e.readings) << e.period_s << " s, " << e.substeps;
+  }
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ typedef struct asperity_tool asperity_tool;
 /* In brackets what 0 stands for. */
 typedef struct asperity_tool_settings {
   uint32_t size;           /* sizeof this */
-  uint32_t substeps;       /* of the probe in one call (8) */
+  uint32_t substeps;       /* of the probe in one call of 1 ms or longer, fewer in a shorter one (8) */
   double period_s;         /* usual time between two calls, 0.0001 to 0.1 (1 ms): how far ahead planes are looked for */
   double mass_kg;          /* of the probe (0.01) */
   double coupling_n_per_m; /* spring from the hand to the probe (500) */
