@@ -2,10 +2,8 @@
 // planes on the way.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <gtest/gtest.h>
-#include <span>
 #include <vector>
 
 #include <asperity/control/probe_motion.hpp>
@@ -121,11 +119,6 @@ TEST(probe_motion, a_probe_comes_to_rest_between_waves) {
 
 // Each substep costs a reading. One of a short period is no shorter than those of a millisecond.
 TEST(probe_motion, reads_planes_once_in_a_substep) {
-  struct counting final : plane_reader {
-    mutable int readings = 0;
-    void read(const pose&, const pose&, std::uint32_t, std::span<support_plane>) const noexcept override { ++readings; }
-    void smooth_out(const pose&, const pose&, std::uint32_t, std::span<support_plane>) const noexcept override {}
-  };
   struct expected {
     double period_s;
     int substeps, readings;
@@ -137,12 +130,8 @@ TEST(probe_motion, reads_planes_once_in_a_substep) {
                             {1e-4, 8, 1},
                             {1e-3, 1, 1},
                             {2.5e-4, 20, 5}}) {
-    counting reader;
-    linear_contact contact;
-    static_cast<void>(
-        contact.planes.push_back({.gradient = {{0, 0, -1}, {0, 0, 0}}, .n_ab_w = {0, 0, -1}, .sample = 1}));
-    contact.reader = &reader;
-    static_cast<void>(contact.places.push_back({}));
+    const wavy_reader reader;
+    const linear_contact contact = contact_at(reader, {});
     probe_motion motion({}, {}, contact_laws{}, e.substeps);
     motion.place({});
     motion.take_contact();

@@ -16,6 +16,7 @@ namespace asperity::test_support {
 struct wavy_reader final : plane_reader {
   wall of{};  // at its body's origin
   std::vector<vec3> points_c{vec3(0.0)};
+  mutable int readings = 0;
 
   [[nodiscard]] support_plane plane(const pose& T_wc, const pose& T_wb, std::size_t i = 0) const noexcept {
     const vec3 p_b = inverse(T_wb) * (T_wc * points_c[i]), slope_w = T_wb.rotation * of.slope(p_b);
@@ -29,6 +30,7 @@ struct wavy_reader final : plane_reader {
   }
   void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
             std::span<support_plane> planes) const noexcept override {
+    ++readings;
     for (support_plane& p : planes) {
       if (p.body == body && p.sample != 0) p = plane(T_wc, T_wb, p.sample - 1);
     }
