@@ -86,7 +86,7 @@ TEST(probe_motion, a_placed_probe_is_at_rest) {
 }
 
 // Points of a probe between fine waves, and a hand that stands still: whatever the way there, the probe comes to rest. On
-// planes that are read once in a period one probe in thirty goes to and fro for ever, by up to 0.1 mm.
+// planes that are read once in a period one probe in forty goes to and fro for ever, by up to 0.07 mm.
 TEST(probe_motion, a_probe_comes_to_rest_between_waves) {
   drawn d(seed_of(fresh_seed("probe_motion.a_probe_comes_to_rest_between_waves", "400 probes"), "waves"));
   constexpr int probes = 400, periods = 400, settled = 300;
