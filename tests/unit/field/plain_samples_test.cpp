@@ -48,9 +48,12 @@ double pitch_of(const textured_model& model) { return 0.003 * model.box.diagonal
 
 TEST(PlainSamples, LieInTheMiddleOfPlainFaces) {
   std::mt19937_64 random(fresh_seed("PlainSamples.LieInTheMiddleOfPlainFaces", "4 boxes"));
-  std::uniform_real_distribution<double> size(0.004, 0.02);
+  std::uniform_real_distribution<double> size(0.004, 0.01), times(1.0, 2.0);
   for (int i = 0; i < 4; ++i) {
-    const vec3 half(size(random), size(random), size(random));
+    // Charts are squares. A face that is longer by more has samples so far apart along it that none of them is within two
+    // pitches of the next face, whose samples then lie in one plane up to the edge.
+    const double least_m = size(random);
+    const vec3 half = least_m * vec3(times(random), times(random), times(random));
     const textured_model box = make_flat_box(half, 512);
     const double pitch_m = pitch_of(box);
     const placed_samples all = all_of(box, pitch_m);
