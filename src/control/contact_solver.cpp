@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include "core/cholesky.hpp"
 
@@ -14,17 +16,19 @@ namespace {
 
 /// The planes as one step sees them: x_i = d_i + h_i (g_i . v + c_i) is the depth that plane i answers to at the
 /// velocity v, c_i the approach of its body.
+template <std::size_t Most>
 struct plane_rows {
   std::size_t count = 0;
-  std::array<double, most_support_planes> stiffness_n_per_m{};  // k_i
-  std::array<double, most_support_planes> horizon_s{};          // h_i
-  std::array<double, most_support_planes> depth_m{};            // x_i
-  std::array<double, most_support_planes> change_m{};           // of x_i by the step that is tried
+  std::array<double, Most> stiffness_n_per_m{};  // k_i
+  std::array<double, Most> horizon_s{};          // h_i
+  std::array<double, Most> depth_m{};            // x_i
+  std::array<double, Most> change_m{};           // of x_i by the step that is tried
 };
 
 /// Where along a step the potential is least: its slope there is the sum of p0 + p1 t and of each pressed plane's part,
 /// which is linear between the places where a plane begins or ceases to be pressed.
-[[nodiscard]] double least_along(const plane_rows& rows, double p0, double p1) noexcept {
+template <std::size_t Most>
+[[nodiscard]] double least_along(const plane_rows<Most>& rows, double p0, double p1) noexcept {
   double from = 0.0;
   for (std::size_t piece = 0; piece <= rows.count; ++piece) {
     double at_zero = p0;
@@ -48,14 +52,14 @@ struct plane_rows {
   return from;
 }
 
-[[nodiscard]] contact_solution solve_planes(const mat6& a, const vec6& load, const vec6& v0, double h_s,
-                                            const support_planes& planes, const vec6& moved, const contact_laws& laws,
-                                            bool moves) noexcept {
+// The velocity, and with which depths the planes answer to it. @param out what is known of the solution without forces
+template <std::size_t Most>
+[[nodiscard]] bool solve_rows(const mat6& a, const vec6& load, const vec6& v0, double h_s,
+                              std::span<const support_plane> planes, const vec6& moved, const contact_laws& laws,
+                              bool moves, plane_rows<Most>& rows, contact_solution& out) noexcept {
   constexpr double tolerance_n = 1e-9;
-  contact_solution out;
   vec6 v = v0;
-  plane_rows rows;
-  rows.count = planes.size();
+  rows.count = std::min(planes.size(), Most);
   for (std::size_t i = 0; i < rows.count; ++i) {
     const double d = planes[i].depth_m + dot(planes[i].gradient, moved);
     const double alpha = moves ? laws.dissipation_s_per_m(planes[i]) : 0.0;
@@ -77,7 +81,7 @@ struct plane_rows {
       slope += (k * rows.depth_m[i]) * planes[i].gradient;
     }
     const cholesky6 factors(curvature);
-    if (!factors.positive()) return out;
+    if (!factors.positive()) return false;
     const vec6 step = -1.0 * factors.solve(slope);
     // A full step is exact where no plane changes between pressed and free.
     out.residual_n = 0.0;
@@ -94,15 +98,24 @@ struct plane_rows {
     for (std::size_t i = 0; i < rows.count; ++i) rows.depth_m[i] += part * rows.change_m[i];
     if (done) break;
   }
+  out.velocity = v;
+  return true;
+}
+
+[[nodiscard]] contact_solution solve_planes(const mat6& a, const vec6& load, const vec6& v0, double h_s,
+                                            const support_planes& planes, const vec6& moved, const contact_laws& laws,
+                                            bool moves) noexcept {
+  contact_solution out;
+  plane_rows<most_support_planes> rows;
+  out.solved = solve_rows(a, load, v0, h_s, {planes.data(), planes.size()}, moved, laws, moves, rows, out);
+  if (!out.solved) return out;
   vec6 pushed;
   for (std::size_t i = 0; i < rows.count; ++i) {
     out.lambda_n[i] = rows.stiffness_n_per_m[i] * std::max(0.0, rows.depth_m[i]);
     pushed = pushed - out.lambda_n[i] * planes[i].gradient;
     out.from_bodies_w += out.lambda_n[i] * planes[i].closing_m_per_s;
   }
-  out.velocity = v;
   out.on_probe_w = to_wrench(pushed);
-  out.solved = true;
   return out;
 }
 
@@ -117,6 +130,14 @@ contact_solution balance_of(const mat6& springs, const vec6& pull, const support
                             const contact_laws& laws) noexcept {
   // A step of one second with the springs in the place of the mass.
   return solve_planes(springs, pull, {}, 1.0, planes, moved, laws, false);
+}
+
+std::optional<vec6> way_to_balance(const mat6& springs, const vec6& pull, std::span<const support_plane> planes,
+                                   const contact_laws& laws) noexcept {
+  contact_solution out;
+  plane_rows<most_balanced_planes> rows;
+  const bool solved = solve_rows(springs, pull, {}, 1.0, planes, {}, laws, false, rows, out);
+  return solved && is_finite(out.velocity) ? std::optional(out.velocity) : std::nullopt;
 }
 
 }  // namespace asperity

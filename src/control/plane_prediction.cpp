@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <span>
 
 #include "asperity/control/plane_selection.hpp"
 #include "control/rest_of.hpp"
@@ -31,11 +32,17 @@ double rest_prediction::depth_at(const support_plane& reported_at_0, const vec6&
 }
 
 bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, place& out) noexcept {
-  const status answer = planes_near(moved, -gap_m, answer_);
+  const status answer = planes_near(moved, -gap_m, out.planes);
   if (answer != status::ok && answer != status::capacity_reached) return false;
-  if (!std::all_of(answer_.begin(), answer_.end(), [](const support_plane& p) { return is_finite(p); })) return false;
+  if (!std::all_of(out.planes.begin(), out.planes.end(), [](const support_plane& p) { return is_finite(p); })) {
+    return false;
+  }
   out.moved = moved;
-  take_answer(out);
+  out.complete_to_m = -gap_m;
+  if (out.planes.full()) {
+    const auto by_depth = [](const support_plane& p, const support_plane& q) { return p.depth_m < q.depth_m; };
+    out.complete_to_m = std::min_element(out.planes.begin(), out.planes.end(), by_depth)->depth_m;
+  }
   const vec6 f = to_vec6(pull_.on_probe_w);
   double energy_j = -dot(f, moved);
   energy_j += 0.5 * pull_.stiffness_n_per_m * glm::dot(moved.linear, moved.linear) +
@@ -45,32 +52,6 @@ bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, p
   }
   out.energy_j = energy_j;
   return std::isfinite(energy_j);
-}
-
-void rest_prediction::take_answer(place& out) const noexcept {
-  constexpr plane_selection small_motions{.tilt_rad = 5e-4, .slide_m = 1e-5};
-  out.complete_to_m = -gap_m;
-  out.planes.clear();
-  if (answer_.size() <= most_of_a_place) {
-    for (const support_plane& p : answer_) static_cast<void>(out.planes.push_back(p));
-    return;
-  }
-  static_cast<void>(select_planes({answer_.data(), answer_.size()}, small_motions, out.planes, most_of_a_place));
-  std::array<std::uint16_t, plane_list::capacity()> order;
-  const auto end = order.begin() + static_cast<std::ptrdiff_t>(answer_.size());
-  std::iota(order.begin(), end, std::uint16_t{0});
-  std::sort(order.begin(), end, [this](std::uint16_t i, std::uint16_t j) {
-    return answer_[i].depth_m != answer_[j].depth_m ? answer_[i].depth_m > answer_[j].depth_m : i < j;
-  });
-  for (auto i = order.begin(); i != end; ++i) {
-    const support_plane& p = answer_[*i];
-    if (same_in(out, p) != nullptr) continue;
-    if (out.planes.size() == most_of_a_place) {
-      out.complete_to_m = p.depth_m;
-      return;
-    }
-    static_cast<void>(out.planes.push_back(p));
-  }
 }
 
 bool rest_prediction::begin(const plane_source& planes_near, bool known, const vec6& rest) noexcept {
@@ -84,10 +65,10 @@ bool rest_prediction::begin(const plane_source& planes_near, bool known, const v
   return true;
 }
 
-const support_plane* rest_prediction::same_in(const place& at, const support_plane& p) noexcept {
-  const support_plane* const found = std::find_if(at.planes.begin(), at.planes.end(),
-                                                  [&](const support_plane& q) { return detail::same_point(p, q); });
-  return found == at.planes.end() ? nullptr : found;
+const support_plane* rest_prediction::same_in(std::span<const support_plane> planes, const support_plane& p) noexcept {
+  const auto found =
+      std::find_if(planes.begin(), planes.end(), [&](const support_plane& q) { return detail::same_point(p, q); });
+  return found == planes.end() ? nullptr : &*found;
 }
 
 support_plane rest_prediction::as_from_here(const support_plane& p, const vec6& from) noexcept {
@@ -105,7 +86,7 @@ void rest_prediction::search(const plane_source& planes_near) noexcept {
     all_.clear();
     for (const support_plane& p : here_.planes) static_cast<void>(all_.push_back(as_from_here(p, here_.moved)));
     for (const support_plane& p : cuts_) static_cast<void>(all_.push_back(p));
-    const vec6 way = detail::rest_of(pull_, all_, laws_) - here_.moved;
+    const vec6 way = detail::rest_of(pull_, {all_.data(), all_.size()}, laws_) - here_.moved;
     const double share = detail::share_of_furthest(way);
     if (share * detail::furthest_rest_m < still_m && share * detail::furthest_rest_rad < still_rad) return;
     const vec6 step = share > reach ? (reach / share) * way : way;
@@ -121,7 +102,7 @@ void rest_prediction::search(const plane_source& planes_near) noexcept {
 void rest_prediction::go_there() noexcept {
   cuts_.clear();
   for (const support_plane& p : all_) {
-    const support_plane* const now = same_in(there_, p);
+    const support_plane* const now = same_in({there_.planes.data(), there_.planes.size()}, p);
     const double said_m = depth_at(p, there_.moved);
     if (now != nullptr && said_m > -gap_m && said_m < now->depth_m - kink_m) keep(p);
   }
@@ -132,7 +113,7 @@ bool rest_prediction::add_cuts() noexcept {
   bool added = false;
   for (const support_plane& p : there_.planes) {
     const support_plane from_here = as_from_here(p, there_.moved);
-    const support_plane* const now = same_in(here_, p);
+    const support_plane* const now = same_in({here_.planes.data(), here_.planes.size()}, p);
     const double most_m = now != nullptr ? now->depth_m + agrees_m : here_.complete_to_m;
     if (depth_at(from_here, here_.moved) > most_m) continue;
     if (now != nullptr && depth_at(as_from_here(*now, here_.moved), there_.moved) > p.depth_m - kink_m) continue;
@@ -157,15 +138,40 @@ bool rest_prediction::come_near(const plane_source& planes_near) noexcept {
   return look(planes_near, (1.0 / ways) * here_.moved, here_);
 }
 
+double rest_prediction::choose(support_planes& out) const noexcept {
+  constexpr plane_selection small_motions{.tilt_rad = 5e-4, .slide_m = 1e-5};
+  const plane_list& planes = here_.planes;
+  out.clear();
+  if (planes.size() <= most_of_a_contact) {
+    for (const support_plane& p : planes) static_cast<void>(out.push_back(p));
+    return here_.complete_to_m;
+  }
+  static_cast<void>(select_planes({planes.data(), planes.size()}, small_motions, out, most_of_a_contact));
+  std::array<std::uint16_t, plane_list::capacity()> order;
+  const auto end = order.begin() + static_cast<std::ptrdiff_t>(planes.size());
+  std::iota(order.begin(), end, std::uint16_t{0});
+  std::sort(order.begin(), end, [&](std::uint16_t i, std::uint16_t j) {
+    return planes[i].depth_m != planes[j].depth_m ? planes[i].depth_m > planes[j].depth_m : i < j;
+  });
+  for (auto i = order.begin(); i != end; ++i) {
+    const support_plane& p = planes[*i];
+    if (same_in({out.data(), out.size()}, p) != nullptr) continue;
+    if (out.size() == most_of_a_contact) return p.depth_m;
+    static_cast<void>(out.push_back(p));
+  }
+  return here_.complete_to_m;
+}
+
 void rest_prediction::report(support_planes& planes) noexcept {
-  all_.clear();
-  std::swap(all_, planes);  // the planes of the probe's pose
-  for (const support_plane& p : here_.planes) static_cast<void>(planes.push_back(as_from_here(p, here_.moved)));
+  const support_planes own = planes;
+  const double complete_to_m = choose(planes);
+  const std::size_t chosen = planes.size();
+  for (support_plane& p : planes) p = as_from_here(p, here_.moved);
   for (const support_plane& p : cuts_) static_cast<void>(planes.push_back(p));
-  for (const support_plane& p : all_) {
+  for (const support_plane& p : own) {
     const double said_m = depth_at(p, here_.moved);
-    const support_plane* const now = same_in(here_, p);
-    const double most_m = now != nullptr ? std::min(0.0, now->depth_m - agrees_m) : here_.complete_to_m;
+    const support_plane* const now = same_in({planes.data(), chosen}, p);
+    const double most_m = now != nullptr ? std::min(0.0, depth_at(*now, here_.moved) - agrees_m) : complete_to_m;
     const bool replaced = said_m > most_m && (now != nullptr || p.sample != 0);
     if (!replaced) static_cast<void>(planes.push_back(p));
   }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "asperity/control/contact_solver.hpp"
-#include "asperity/control/linear_contact.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/spatial.hpp"
 
@@ -28,14 +28,13 @@ inline constexpr double most_ways = 5.0;
 
 /// Where springs and planes balance, as a motion from the pose where both were reported, of at most half a millimetre
 /// and 25 mrad.
-[[nodiscard]] inline vec6 rest_of(const coupling_pull& pull, const support_planes& planes,
+[[nodiscard]] inline vec6 rest_of(const coupling_pull& pull, std::span<const support_plane> planes,
                                   const contact_laws& laws = {}) noexcept {
   mat6 springs;
   for (std::size_t i = 0; i < 6; ++i) springs(i, i) = i < 3 ? pull.stiffness_n_per_m : pull.stiffness_n_m_per_rad;
-  const contact_solution s = balance_of(springs, to_vec6(pull.on_probe_w), planes, {}, laws);
-  if (!s.solved || !is_finite(s.velocity)) return {};
-  const double ways = share_of_furthest(s.velocity);
-  return ways > most_ways ? (most_ways / ways) * s.velocity : s.velocity;
+  const vec6 way = way_to_balance(springs, to_vec6(pull.on_probe_w), planes, laws).value_or(vec6{});
+  const double ways = share_of_furthest(way);
+  return ways > most_ways ? (most_ways / ways) * way : way;
 }
 
 /// Whether two planes stand for one point of a surface.

@@ -144,4 +144,14 @@ struct contact_solution {
                                                        const support_planes& planes, const vec6& moved,
                                                        const contact_laws& laws) noexcept;
 
+/// Most planes that way_to_balance() looks at.
+inline constexpr std::size_t most_balanced_planes = 320;
+
+/// The way of balance_of() alone, from where the planes were reported, for more planes than a contact carries.
+/// @pre planes.size() <= most_balanced_planes
+/// @return null where the springs are not positive definite or the way is not finite   @rt safe, as solve_contact()
+[[nodiscard]] ASPERITY_API std::optional<vec6> way_to_balance(const mat6& springs, const vec6& pull,
+                                                              std::span<const support_plane> planes,
+                                                              const contact_laws& laws) noexcept;
+
 }  // namespace asperity

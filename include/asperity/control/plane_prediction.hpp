@@ -1,14 +1,17 @@
 // The support planes of the pose where the probe will come to rest: what planes of its present pose cannot know.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "asperity/control/contact_solver.hpp"
 #include "asperity/control/linear_contact.hpp"
 #include "asperity/control/virtual_coupling.hpp"
 #include "asperity/core/export.hpp"
+#include "asperity/core/fixed_vector.hpp"
 #include "asperity/core/pose.hpp"
 #include "asperity/core/spatial.hpp"
 #include "asperity/render/plane_source.hpp"
@@ -61,7 +64,7 @@ class ASPERITY_API rest_prediction {
   /// A pose, as a motion from the probe's, and what is there.
   struct place {
     vec6 moved{};
-    support_planes planes{};  // reported there, their depths too
+    plane_list planes{};  // reported there, their depths too
     double energy_j = 0.0;
     double complete_to_m = -gap_m;  // every sample that is deeper has its plane here
   };
@@ -69,16 +72,18 @@ class ASPERITY_API rest_prediction {
   [[nodiscard]] static double depth_at(const support_plane& reported_at_0, const vec6& moved) noexcept;
 
   [[nodiscard]] bool look(const plane_source& planes_near, const vec6& moved, place& out) noexcept;
-  // Takes of what was answered as many planes as are balanced at a time: those that small motions meet first, and the
-  // deepest beside them. The deepest of a plain face alone may all lie on one side of it, and would tip the probe over.
-  void take_answer(place& out) const noexcept;
+  // Of the planes of the pose of rest as many as a contact is given: those that small motions meet first, and the deepest
+  // beside them. The deepest of a plain face alone may all lie on one side of it, and would tip the probe over.
+  // @return every sample that is deeper has its plane in `out`
+  [[nodiscard]] double choose(support_planes& out) const noexcept;
 
   // Chooses where the search begins: at the pose of rest of the contact before, where it is close to the probe or has
   // less energy than the probe's own pose; otherwise at the probe's own pose.
   [[nodiscard]] bool begin(const plane_source& planes_near, bool known, const vec6& rest) noexcept;
 
-  // The plane that `at` has for the point of p; null where it has none.
-  [[nodiscard]] static const support_plane* same_in(const place& at, const support_plane& p) noexcept;
+  // The one of the planes that is of the point of p; null where none is.
+  [[nodiscard]] static const support_plane* same_in(std::span<const support_plane> planes,
+                                                    const support_plane& p) noexcept;
 
   // A plane that was reported at `from`, with the depth that it says for the probe's own pose.
   [[nodiscard]] static support_plane as_from_here(const support_plane& p, const vec6& from) noexcept;
@@ -105,15 +110,15 @@ class ASPERITY_API rest_prediction {
   // would be a second spring on the same point.
   void report(support_planes& planes) noexcept;
 
-  static constexpr std::size_t most_of_a_place = 32, most_cuts = 12;
+  static constexpr std::size_t most_of_a_contact = 32, most_cuts = 12;
+  static_assert(plane_list::capacity() + most_cuts <= most_balanced_planes);
   contact_laws laws_;
   bool known_ = false;
   pose rest_T_wc_{};
   coupling_pull pull_{};
   place here_{}, there_{};
-  plane_list answer_{};
   support_planes cuts_{};  // reported where the probe is
-  support_planes all_{};
+  fixed_vector<support_plane, most_balanced_planes> all_{};
 };
 
 }  // namespace asperity
