@@ -71,7 +71,7 @@ TEST(PlainFaces, RubWithTheirFrictionAlone) {
     EXPECT_LT(sway_n, 2.0 * most_n);
     swayed += sway_n < most_n ? 0 : 1;
   }
-  // One of 216 that were drawn does, by one and a half times as much: 9.8 N at a friction of 0.59 (seed 4).
+  // One of 192 that were drawn does, by one and a half times as much: 9.8 N at a friction of 0.59 (seed 4).
   EXPECT_LE(swayed, extent(0, 1));
 }
 
