@@ -47,7 +47,7 @@ rest_row rest_on(const std::string& name, const press_choice& which, Change&& ch
 
 render_function as_it_is(const render_function& whole) { return whole; }
 
-// A hundredth of the force, or 5 mN and 0.5 mN m, is what is wanted, and all of 240 rests that were drawn keep to it. A
+// A hundredth of the force, or 5 mN and 0.5 mN m, is what is wanted, and all of 150 rests that were drawn keep to it. A
 // day draws others: of the thirty at length one may have more, up to twice as much.
 TEST(rests, hardly_tremble) {
   const int touches = 1;
