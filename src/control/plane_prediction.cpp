@@ -22,7 +22,8 @@ void rest_prediction::complete(const plane_source& planes_near, const coupling_p
   pull_ = pull;
   if (!begin(planes_near, known, known ? pose_difference(rest_T_wc_, T_wc) : vec6{})) return;
   search(planes_near);
-  rest_T_wc_ = {glm::normalize(exp_rotation(here_.moved.angular) * T_wc.rotation), T_wc.position + here_.moved.linear};
+  rest_T_wc_ = {glm::normalize(exp_rotation(here().moved.angular) * T_wc.rotation),
+                T_wc.position + here().moved.linear};
   known_ = true;
   if (come_near(planes_near)) report(planes);
 }
@@ -57,11 +58,11 @@ bool rest_prediction::look(const plane_source& planes_near, const vec6& moved, p
 bool rest_prediction::begin(const plane_source& planes_near, bool known, const vec6& rest) noexcept {
   constexpr double here_share = 0.02;
   const double share = detail::share_of_furthest(rest);
-  if (known && share < here_share) return look(planes_near, rest, here_);
-  if (!look(planes_near, {}, here_)) return false;
+  if (known && share < here_share) return look(planes_near, rest, here());
+  if (!look(planes_near, {}, here())) return false;
   if (!known || share > detail::most_ways) return true;
-  if (!look(planes_near, rest, there_)) return false;
-  if (there_.energy_j < here_.energy_j) std::swap(here_, there_);
+  if (!look(planes_near, rest, there())) return false;
+  if (there().energy_j < here().energy_j) here_ = 1 - here_;
   return true;
 }
 
@@ -84,14 +85,14 @@ void rest_prediction::search(const plane_source& planes_near) noexcept {
   cuts_.clear();
   for (int trial = 0; trial < most_trials; ++trial) {
     all_.clear();
-    for (const support_plane& p : here_.planes) static_cast<void>(all_.push_back(as_from_here(p, here_.moved)));
+    for (const support_plane& p : here().planes) static_cast<void>(all_.push_back(as_from_here(p, here().moved)));
     for (const support_plane& p : cuts_) static_cast<void>(all_.push_back(p));
-    const vec6 way = detail::rest_of(pull_, {all_.data(), all_.size()}, laws_) - here_.moved;
+    const vec6 way = detail::rest_of(pull_, {all_.data(), all_.size()}, laws_) - here().moved;
     const double share = detail::share_of_furthest(way);
     if (share * detail::furthest_rest_m < still_m && share * detail::furthest_rest_rad < still_rad) return;
     const vec6 step = share > reach ? (reach / share) * way : way;
-    if (!look(planes_near, here_.moved + step, there_)) return;
-    if (there_.energy_j < here_.energy_j) {
+    if (!look(planes_near, here().moved + step, there())) return;
+    if (there().energy_j < here().energy_j) {
       go_there();
     } else if (!add_cuts()) {
       reach = 0.25 * std::min(reach, share);
@@ -102,23 +103,23 @@ void rest_prediction::search(const plane_source& planes_near) noexcept {
 void rest_prediction::go_there() noexcept {
   cuts_.clear();
   for (const support_plane& p : all_) {
-    const support_plane* const now = same_in({there_.planes.data(), there_.planes.size()}, p);
-    const double said_m = depth_at(p, there_.moved);
+    const support_plane* const now = same_in({there().planes.data(), there().planes.size()}, p);
+    const double said_m = depth_at(p, there().moved);
     if (now != nullptr && said_m > -gap_m && said_m < now->depth_m - kink_m) keep(p);
   }
-  std::swap(here_, there_);
+  here_ = 1 - here_;
 }
 
 bool rest_prediction::add_cuts() noexcept {
   bool added = false;
-  for (const support_plane& p : there_.planes) {
-    const support_plane from_here = as_from_here(p, there_.moved);
-    const support_plane* const now = same_in({here_.planes.data(), here_.planes.size()}, p);
-    const double most_m = now != nullptr ? now->depth_m + agrees_m : here_.complete_to_m;
-    if (depth_at(from_here, here_.moved) > most_m) continue;
-    if (now != nullptr && depth_at(as_from_here(*now, here_.moved), there_.moved) > p.depth_m - kink_m) continue;
+  for (const support_plane& p : there().planes) {
+    const support_plane from_here = as_from_here(p, there().moved);
+    const support_plane* const now = same_in({here().planes.data(), here().planes.size()}, p);
+    const double most_m = now != nullptr ? now->depth_m + agrees_m : here().complete_to_m;
+    if (depth_at(from_here, here().moved) > most_m) continue;
+    if (now != nullptr && depth_at(as_from_here(*now, here().moved), there().moved) > p.depth_m - kink_m) continue;
     const bool is_cut = std::any_of(cuts_.begin(), cuts_.end(), [&](const support_plane& q) {
-      return detail::same_point(p, q) && depth_at(q, there_.moved) > p.depth_m - kink_m;
+      return detail::same_point(p, q) && depth_at(q, there().moved) > p.depth_m - kink_m;
     });
     if (is_cut) continue;
     added = keep(from_here) || added;
@@ -132,19 +133,19 @@ bool rest_prediction::keep(const support_plane& p) noexcept {
 }
 
 bool rest_prediction::come_near(const plane_source& planes_near) noexcept {
-  const double ways = detail::share_of_furthest(here_.moved);
+  const double ways = detail::share_of_furthest(here().moved);
   if (!(ways > 1.0)) return true;
   cuts_.clear();
-  return look(planes_near, (1.0 / ways) * here_.moved, here_);
+  return look(planes_near, (1.0 / ways) * here().moved, here());
 }
 
 double rest_prediction::choose(support_planes& out) const noexcept {
   constexpr plane_selection small_motions{.tilt_rad = 5e-4, .slide_m = 1e-5};
-  const plane_list& planes = here_.planes;
+  const plane_list& planes = here().planes;
   out.clear();
   if (planes.size() <= most_of_a_contact) {
     for (const support_plane& p : planes) static_cast<void>(out.push_back(p));
-    return here_.complete_to_m;
+    return here().complete_to_m;
   }
   static_cast<void>(select_planes({planes.data(), planes.size()}, small_motions, out, most_of_a_contact));
   std::array<std::uint16_t, plane_list::capacity()> order;
@@ -159,19 +160,19 @@ double rest_prediction::choose(support_planes& out) const noexcept {
     if (out.size() == most_of_a_contact) return p.depth_m;
     static_cast<void>(out.push_back(p));
   }
-  return here_.complete_to_m;
+  return here().complete_to_m;
 }
 
 void rest_prediction::report(support_planes& planes) noexcept {
   const support_planes own = planes;
   const double complete_to_m = choose(planes);
   const std::size_t chosen = planes.size();
-  for (support_plane& p : planes) p = as_from_here(p, here_.moved);
+  for (support_plane& p : planes) p = as_from_here(p, here().moved);
   for (const support_plane& p : cuts_) static_cast<void>(planes.push_back(p));
   for (const support_plane& p : own) {
-    const double said_m = depth_at(p, here_.moved);
+    const double said_m = depth_at(p, here().moved);
     const support_plane* const now = same_in({planes.data(), chosen}, p);
-    const double most_m = now != nullptr ? std::min(0.0, depth_at(*now, here_.moved) - agrees_m) : complete_to_m;
+    const double most_m = now != nullptr ? std::min(0.0, depth_at(*now, here().moved) - agrees_m) : complete_to_m;
     const bool replaced = said_m > most_m && (now != nullptr || p.sample != 0);
     if (!replaced) static_cast<void>(planes.push_back(p));
   }

@@ -162,11 +162,6 @@ class leaf_reader {
     return out.plane;
   }
 
-  /// The slope that a sample's depth has without Y's relief, as the derivative by the probe's position.
-  [[nodiscard]] vec3 smooth_slope_w(std::uint32_t index) const noexcept {
-    return by_probe_w(in_y_->coarse(in_field(vec3(x_->samples.samples()[index].position_b))).slope);
-  }
-
   /// A bound as it is kept.
   [[nodiscard]] static float rounded_up(double most_m) noexcept {
     constexpr float rounding_m = 1e-9F;

@@ -33,37 +33,6 @@ class surface_reader final : public plane_reader {
 
   void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
             std::span<support_plane> planes) const noexcept override {
-    each_sample(T_wc, T_wb, body, planes, [](const leaf_reader& reader, std::uint32_t index, support_plane& p) {
-      const support_plane now = reader.plane_of(index);
-      if (!(now.depth_m > -std::numeric_limits<double>::infinity()) ||
-          (now.depth_m > 0.0 && !(glm::dot(now.n_ab_w, p.n_ab_w) > 0.0))) {
-        return;
-      }
-      p.depth_m = now.depth_m - p.back_m;
-      p.gradient = now.gradient;
-      p.n_ab_w = now.n_ab_w;
-      p.r_w = now.r_w;
-    });
-  }
-
-  void smooth_out(const pose& T_wc, const pose& T_wb, std::uint32_t body,
-                  std::span<support_plane> planes) const noexcept override {
-    each_sample(T_wc, T_wb, body, planes, [](const leaf_reader& reader, std::uint32_t index, support_plane& p) {
-      const vec3 slope_w = reader.smooth_slope_w(index);
-      const double squared = glm::dot(slope_w, slope_w);
-      if (!(squared > facing::least_slope * facing::least_slope)) return;
-      p.gradient = {slope_w, glm::cross(p.r_w, slope_w)};
-      p.n_ab_w = slope_w / std::sqrt(squared);
-    });
-  }
-
-  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(shallow_m_); }
-
- private:
-  // Calls visit(reader, index, plane) for every plane of a body that stands for a sample.
-  template <class Visit>
-  void each_sample(const pose& T_wc, const pose& T_wb, std::uint32_t body, std::span<support_plane> planes,
-                   Visit&& visit) const noexcept {
     if (body >= bodies_->fixed.size() || !bodies_->fixed[body]) return;
     const field_body &A = *bodies_->probe, &B = *bodies_->fixed[body];
     const pose T_wa = T_wc * pose{quat(1.0, 0.0, 0.0, 0.0), -centre_of_mass_a_};
@@ -77,10 +46,19 @@ class surface_reader final : public plane_reader {
         reader.emplace(leaf_reader::between(A, T_wa, B, T_wb, body, number.of_probe, T_wc.position, shallow_m_[body],
                                             nullptr, nullptr, unused));
       }
-      visit(*reader, number.index, p);
+      const support_plane now = reader->plane_of(number.index);
+      const bool is_there = now.depth_m > -std::numeric_limits<double>::infinity();
+      if (!is_there || (now.depth_m > 0.0 && !(glm::dot(now.n_ab_w, p.n_ab_w) > 0.0))) continue;
+      p.depth_m = now.depth_m - p.back_m;
+      p.gradient = now.gradient;
+      p.n_ab_w = now.n_ab_w;
+      p.r_w = now.r_w;
     }
   }
 
+  [[nodiscard]] std::size_t heap_bytes() const noexcept { return asperity::heap_bytes(shallow_m_); }
+
+ private:
   std::shared_ptr<const field_scene> bodies_;
   vec3 centre_of_mass_a_;
   std::vector<double> shallow_m_;

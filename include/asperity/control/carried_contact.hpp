@@ -26,12 +26,14 @@ namespace asperity {
 /// for are few, and to read them is a small part of a contact tick; to find them is the rest. So the contact thread finds
 /// them, and the device thread reads them.
 ///
-/// What lies beside a point is not known here. Where a probe slides off an edge the surface falls away from the points
-/// that were told, and the edge comes to ride on others. So the planes of a body that is touched stand for what is beside
-/// their points as well. Such a plane is a wall without relief: the smooth shape at the point, to first order. The reading
-/// may let go of the probe by a fifth of a millimetre against the wall, and from there on the wall holds, that much
-/// further out. Where a point had let go before its body was touched, or before its contact came, as an older contact's
-/// may have, its wall is kept as far out as it takes to press on nothing: it holds the probe and does not push it.
+/// What lies beside a point is not known here. Where a probe slides over an edge or a ridge the surface falls away from
+/// the point that was told, and another one comes to press that was not: the contact left it out because the plane of
+/// the first one stood for it. So where a body is touched, the contact's own plane is a wall. A reading may let go of the
+/// probe by 20 um against the wall, and there the wall holds. Where the point has gone 0.2 mm, which with contacts of
+/// 1 kHz is a quick hand, a reading may let go by as much more as it goes on, up to 0.2 mm: on slow contacts a texture
+/// would not be felt otherwise. Where a point had let go before its body was touched, or
+/// before its contact came, as an older contact's may have, its wall is kept as far out as it takes to press on nothing:
+/// it holds the probe and does not push it.
 ///
 /// A body is touched where a point is a quarter of a millimetre from it or closer, and for a tenth of a second after, since
 /// a probe that slides off hops. The planes of a body that the probe only sweeps by do not hold: a wall that is level with
@@ -67,7 +69,9 @@ class local_model {
  private:
   static constexpr double may_press_m = 2e-5;  // a gap, which a hand of 0.15 m/s closes in an eighth of a millisecond
   static constexpr double near_m = 2.5e-4;
-  static constexpr double least_give_m = 2e-4;
+  static constexpr double least_give_m = 2e-5;
+  static constexpr double most_give_m = 2e-4;
+  static constexpr double firm_way_m = 1.8e-4;  // what a point goes beyond it, a reading may let go by
   static constexpr double holds_not_m = std::numeric_limits<double>::infinity();
   static constexpr std::int64_t hop_ns = 100'000'000;
 
@@ -82,10 +86,6 @@ class local_model {
 
   void begin(const linear_contact& contact) noexcept {
     planes_ = contact.planes;
-    walls_ = contact.planes;
-    for (const body_place& then : contact.places) {
-      contact.reader->smooth_out(contact.T_wc, then.T_wb, then.body, {walls_.data(), walls_.size()});
-    }
     gives_m_.fill(holds_not_m);
     const auto is_over = [&](const touched_body& t) { return contact.time_ns - t.at_ns > hop_ns; };
     touched_.truncate(
@@ -111,21 +111,25 @@ class local_model {
       }
       contact.reader->read(there_T_wc, then.T_wb, then.body, {read_.data(), read_.size()});
       const bool touched = note_touch(then.body, contact.time_ns);
-      for (std::size_t r = 0; r < read_.size(); ++r) hold(of[r], read_[r], touched, moved);
+      for (std::size_t r = 0; r < read_.size(); ++r) hold(of[r], contact.planes[of[r]], read_[r], touched, moved);
     }
   }
 
-  // A plane that was read becomes linear about the contact's pose; where its body is touched, its wall holds.
+  // A plane that was read becomes linear about the contact's pose; where its body is touched, the plane that was told
+  // holds.
   // @param moved of the probe against the body since the contact
-  void hold(std::size_t i, const support_plane& now, bool touched, const vec6& moved) noexcept {
-    const double wall_m = walls_[i].depth_m + dot(walls_[i].gradient, moved);
+  void hold(std::size_t i, const support_plane& told, const support_plane& now, bool touched,
+            const vec6& moved) noexcept {
+    const double wall_m = told.depth_m + dot(told.gradient, moved);
     if (touched && gives_m_[i] == holds_not_m) {
       gives_m_[i] = std::max(least_give_m, wall_m - std::max(now.depth_m, 0.0));
     }
+    const double way_m = glm::length(moved.linear + glm::cross(moved.angular, told.r_w));
+    const double give_m = std::max(gives_m_[i], std::clamp(way_m - firm_way_m, least_give_m, most_give_m));
     support_plane& p = planes_[i];
-    if (now.depth_m < wall_m - gives_m_[i]) {
-      p = walls_[i];
-      p.depth_m -= gives_m_[i];
+    if (now.depth_m < wall_m - give_m) {
+      p = told;
+      p.depth_m -= give_m;
     } else {
       p = now;
       p.depth_m -= dot(p.gradient, moved);
@@ -151,8 +155,7 @@ class local_model {
   bool reads_;
   bool is_new_ = true;
   fixed_vector<touched_body, most_read_bodies> touched_{};
-  support_planes walls_{};                             // the contact's planes without relief
-  std::array<double, most_support_planes> gives_m_{};  // how far each reading may let go of its wall
+  std::array<double, most_support_planes> gives_m_{};  // how far each reading may let go of what was told
   support_planes planes_{};
   support_planes read_{};  // the planes of one body, as they are read
 };

@@ -1,6 +1,7 @@
 // The support planes of the pose where the probe will come to rest: what planes of its present pose cannot know.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -69,6 +70,11 @@ class ASPERITY_API rest_prediction {
     double complete_to_m = -gap_m;  // every sample that is deeper has its plane here
   };
 
+  // The known pose, and the one that is tried.
+  [[nodiscard]] place& here() noexcept { return places_[here_]; }
+  [[nodiscard]] const place& here() const noexcept { return places_[here_]; }
+  [[nodiscard]] place& there() noexcept { return places_[1 - here_]; }
+
   [[nodiscard]] static double depth_at(const support_plane& reported_at_0, const vec6& moved) noexcept;
 
   [[nodiscard]] bool look(const plane_source& planes_near, const vec6& moved, place& out) noexcept;
@@ -116,7 +122,8 @@ class ASPERITY_API rest_prediction {
   bool known_ = false;
   pose rest_T_wc_{};
   coupling_pull pull_{};
-  place here_{}, there_{};
+  std::array<place, 2> places_{};
+  std::size_t here_ = 0;   // the known one
   support_planes cuts_{};  // reported where the probe is
   fixed_vector<support_plane, most_balanced_planes> all_{};
 };

@@ -72,14 +72,6 @@ class plane_reader {
   virtual void read(const pose& T_wc, const pose& T_wb, std::uint32_t body,
                     std::span<support_plane> planes) const noexcept = 0;
 
-  /// Gives the planes of one body the gradient and direction that they have without the relief of the surface they lie
-  /// on. Depths and points stay, and so does a plane whose number is 0.
-  /// @param T_wc   the probe's centre-of-mass frame at which the planes were told   @param T_wb the body's
-  /// @param planes of any bodies; those of others are left alone
-  /// @rt safe: one reading of the smooth part of a depth field for each plane
-  virtual void smooth_out(const pose& T_wc, const pose& T_wb, std::uint32_t body,
-                          std::span<support_plane> planes) const noexcept = 0;
-
  protected:
   plane_reader() = default;
   plane_reader(const plane_reader&) = default;

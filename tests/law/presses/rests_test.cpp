@@ -113,9 +113,10 @@ TEST(rests, a_textured_face_on_its_like_hardly_trembles) {
   }
 }
 
-// A hand that presses a file on a block with 10 N, contacts one period late and without the guard.
+// A hand that presses a file on a block with 10 N, contacts one period late and without the guard. Nothing rubs, and the
+// file slides and swings on its way.
 TEST(rests, a_file_is_held_on_a_block_with_10_n) {
-  const int touches = extent(1, 3);
+  const int touches = extent(1, 10);
   const std::uint64_t seed = fresh_seed("rests, 10 N", std::to_string(touches) + " touch(es)");
   const auto without_planes = [](const render_function& whole) -> render_function {
     return [whole](const scene_pose& at, tick& out) {
@@ -129,7 +130,7 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
   const auto probe = shelf.get("file"), fixed = shelf.get("block");
   ASSERT_TRUE(probe && fixed);
   touch_finder finder("file on block", (*probe)->full, (*fixed)->full, {});
-  int trembling = 0, pressed = 0, worse = 0;
+  int deep = 0, trembling = 0, pressed = 0, worse = 0;
   for (int i = 0; i < touches; ++i) {
     const auto touch = finder.next(seed);
     ASSERT_TRUE(touch);
@@ -143,28 +144,29 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
       rules.contact_period_ns = static_cast<std::int64_t>(1e9 / hz);
       rules.guard = false;
       const vec3 c_a = (*probe)->model->mass.centre_of_mass;
-      const rest_result held = rest_session(*render, *touch, c_a, rules, seed);
-      const rest_result line = rest_session(without_planes(*render), *touch, c_a, rules, seed);
-      for (const auto& [name, r] : {std::pair{"planes", &held}, std::pair{"a line", &line}}) {
+      const auto session = [&](const char* name, const render_function& by) {
+        const rest_result r = rest_session(by, *touch, c_a, rules, seed);
         std::printf("  touch %llu, %.0f Hz, %s: %.2f N, deepest %.3f mm, %.2f N/ms at rest, %.4f mJ%s\n",
-                    static_cast<unsigned long long>(touch->index), hz, name, r->largest_n, 1e3 * r->deepest_m,
-                    r->step_n_per_ms, 1e3 * r->surplus_j, r->ended_early ? ", shut" : "");
-      }
+                    static_cast<unsigned long long>(touch->index), hz, name, r.largest_n, 1e3 * r.deepest_m,
+                    r.step_n_per_ms, 1e3 * r.surplus_j, r.ended_early ? ", shut" : "");
+        return r;
+      };
+      const rest_result held = session("planes", *render);
       const bool fast = hz > 500.0;
       EXPECT_FALSE(held.ended_early);
-      // 0.1 mm is wanted at 1 kHz: 0.07 to 0.10 mm measured. A touch that slides off an edge, and ends with less force
-      // than it was pressed with, is deeper on its way where contacts are 5 ms apart: 0.74 mm measured.
-      const bool slid = held.largest_n < 8.0;
-      EXPECT_LE(held.deepest_m, slid ? 1.2e-3 : (fast ? 2e-4 : 3e-4)) << hz;
-      trembling += held.step_n_per_ms > (fast ? 0.3 : 1.0) ? 1 : 0;
+      EXPECT_LE(held.deepest_m, fast ? 4e-4 : 6e-4) << hz;
       EXPECT_LE(held.surplus_j, 1e-5) << hz;
-      if (!(held.largest_n > 3.0)) continue;  // it slid off
+      deep += held.deepest_m > (fast ? 1e-4 : 3e-4) ? 1 : 0;
+      trembling += held.step_n_per_ms > (fast ? 0.3 : 1.0) ? 1 : 0;
+      if (i >= 3 || !(held.largest_n > 3.0)) continue;  // the control takes a few; some slid off
+      const rest_result line = session("a line", without_planes(*render));
       ++pressed;
       worse += line.deepest_m > 2.0 * held.deepest_m || line.step_n_per_ms > 1.0 || line.surplus_j > 1e-3 ? 1 : 0;
     }
   }
-  // As of other rests, few tremble: 1.6 N/ms was seen once in 6 on one day's seed.
-  EXPECT_LE(trembling, 1);
+  // 0.1 mm and 0.3 N/ms are wanted at 1 kHz, 0.3 mm and 1 N/ms at 200 Hz.
+  EXPECT_LE(deep, 1 + touches / 4);
+  EXPECT_LE(trembling, 1 + touches / 10);
   EXPECT_TRUE(pressed == 0 || worse > 0) << "the control: a line instead of planes holds as well";
 }
 

@@ -35,14 +35,6 @@ struct wavy_reader final : plane_reader {
       if (p.body == body && p.sample != 0) p = plane(T_wc, T_wb, p.sample - 1);
     }
   }
-  void smooth_out(const pose&, const pose& T_wb, std::uint32_t body,
-                  std::span<support_plane> planes) const noexcept override {
-    for (support_plane& p : planes) {
-      if (p.body != body || p.sample == 0) continue;
-      p.n_ab_w = T_wb.rotation * -of.outward_w;
-      p.gradient = {p.n_ab_w, glm::cross(p.r_w, p.n_ab_w)};
-    }
-  }
 };
 
 /// A contact of all points, of a body at the world's origin that can be read again.

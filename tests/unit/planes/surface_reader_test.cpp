@@ -194,42 +194,5 @@ TEST(SurfaceReader, KeepsHowFarASurfaceStandsBack) {
   }
 }
 
-// Without relief a plane leans as the smooth part of the field does in which its point lies; its depth and point stay.
-TEST(SurfaceReader, SmoothsOutTheRelief) {
-  draws draw{std::mt19937_64(fresh_seed("SurfaceReader.SmoothsOutTheRelief", "20 poses"))};
-  plane_renderer feel = make_ridged();
-  int smoothed = 0, leant = 0;
-  for (int n = 0; n < 20; ++n) {
-    const auto [T_wb, T_wa, t] = touch(draw, feel, 1e-4);
-    const std::vector<support_plane> told = kept(t.planes);
-    std::vector<support_plane> walls = told, unknown = told;
-    for (support_plane& p : unknown) p.sample = 0;
-    const std::uint32_t body = n % 2 == 0 ? 0 : 1;
-    t.reader->smooth_out(centre_frame(T_wa), T_wb[body], body, walls);
-    t.reader->smooth_out(centre_frame(T_wa), T_wb[body], body, unknown);
-    for (std::size_t i = 0; i < told.size(); ++i) {
-      EXPECT_EQ(walls[i].depth_m, told[i].depth_m);
-      EXPECT_EQ(walls[i].r_w, told[i].r_w);
-      EXPECT_EQ(unknown[i].gradient.linear, told[i].gradient.linear);
-      if (told[i].body != body) {
-        EXPECT_EQ(walls[i].gradient.linear, told[i].gradient.linear);
-        continue;
-      }
-      const bool of_probe = told[i].sample % 2 == 1;
-      const pose& T_wy = of_probe ? T_wb[body] : T_wa;
-      const field_body& y = of_probe ? *ridged().fields->fixed[body] : *ridged().fields->probe;
-      const vec3 slope_y = y.field.coarse(inverse(T_wy) * (t.centre_of_mass_w + told[i].r_w)).slope;
-      const vec3 slope_w = (of_probe ? 1.0 : -1.0) * (T_wy.rotation * slope_y);
-      EXPECT_LT(glm::length(walls[i].gradient.linear - slope_w), 1e-9) << n;
-      EXPECT_LT(glm::length(walls[i].gradient.angular - glm::cross(told[i].r_w, slope_w)), 1e-10) << n;
-      EXPECT_LT(glm::length(walls[i].n_ab_w - glm::normalize(slope_w)), 1e-9) << n;
-      ++smoothed;
-      leant += glm::length(told[i].gradient.linear - slope_w) > 1e-3 ? 1 : 0;
-    }
-  }
-  EXPECT_GT(smoothed, 50);
-  EXPECT_GT(leant, smoothed / 10);
-}
-
 }  // namespace
 }  // namespace asperity
