@@ -138,11 +138,11 @@ depths depths_at(local_model& model, const wavy_reader& reader, const linear_con
 // By how much a reading may let go of a probe that has gone this way since its contact.
 double give_after(double way_m) { return std::clamp(way_m - 1.8e-4, 2e-5, 2e-4); }
 
-// A contact of one point with high waves, from whose slopes a reading soon lets go.
+// A contact of one point with waves, from whose slopes a reading soon lets go.
 struct contact_with_waves {
   /// @param depth_m of the point at the contact's pose
-  contact_with_waves(drawn& d, double depth_m) {
-    reader.of = {.amplitude_m = 1e-3, .wave_m = 6e-3};
+  contact_with_waves(drawn& d, double depth_m, const wall& of = {.amplitude_m = 1e-3, .wave_m = 6e-3}) {
+    reader.of = of;
     vec3 at_w = d.inside(3e-3);
     at_w.z += reader.of.depth_m(at_w) - depth_m;
     contact = contact_at(reader, {exp_rotation(d.inside(1.0)), at_w});
@@ -157,14 +157,15 @@ struct contact_with_waves {
   local_model model{true};
 };
 
-// A high wave, from whose slopes a plane soon lets go. The depth that is used is the true one as far as it lets go by no
+// High waves, and sharp ones, from whose slopes a plane soon lets go. The depth that is used is the true one as far as it lets go by no
 // more than 20 um and, once it has gone 0.2 mm, by as much more as it goes on, up to 0.2 mm; then that of the contact's
 // plane less that. It steps nowhere on the way.
 TEST(local_model, lets_go_of_a_probe_by_so_much_and_then_holds_it) {
   drawn d(seed_of(fresh_seed("local_model.lets_go_of_a_probe_by_so_much_and_then_holds_it", "100 ways"), "ways"));
-  int held = 0, read = 0;
+  int held = 0, held_soon = 0, read = 0;
   for (int i = 0; i < 100; ++i) {
-    contact_with_waves waves(d, d.between(-2e-4, 2e-3));
+    const wall high{.amplitude_m = 1e-3, .wave_m = 6e-3}, sharp{.amplitude_m = 3e-4, .wave_m = 1e-3};
+    contact_with_waves waves(d, d.between(-2e-4, 2e-3), i % 2 == 0 ? high : sharp);
     const vec3 along = glm::normalize(d.inside(1.0));
     constexpr double step_m = 1e-5, steepest = 3.0;
     double before_m = waves.after(vec3(0.0)).used_m;
@@ -173,12 +174,14 @@ TEST(local_model, lets_go_of_a_probe_by_so_much_and_then_holds_it) {
       const double give_m = give_after(way_m);
       const bool holds = now.true_m < now.wall_m - give_m;
       (holds ? held : read) += 1;
+      held_soon += holds && way_m < 2e-4 ? 1 : 0;
       ASSERT_NEAR(now.used_m, holds ? now.wall_m - give_m : now.true_m, 1e-12) << i << ": " << way_m;
       ASSERT_LT(std::fabs(now.used_m - before_m), steepest * step_m) << i << ": " << way_m;
       before_m = now.used_m;
     }
   }
   EXPECT_GT(held, 2000);
+  EXPECT_GT(held_soon, 50);
   EXPECT_GT(read, 2000);
 }
 
@@ -245,7 +248,8 @@ TEST(local_model, holds_a_probe_that_hops) {
         const depths valley = waves.after(beside_w);
         EXPECT_LT(valley.true_m, -1e-3) << i;
         const bool holds = touched && hop_ns <= 100'000'000;
-        EXPECT_NEAR(valley.used_m, holds ? valley.wall_m - give_after(0.5 * of.wave_m) : valley.true_m, 1e-12) << i << ": " << hop_ns;
+        EXPECT_NEAR(valley.used_m, holds ? valley.wall_m - give_after(0.5 * of.wave_m) : valley.true_m, 1e-12)
+            << i << ": " << hop_ns;
       }
     }
   }
