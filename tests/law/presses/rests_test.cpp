@@ -154,7 +154,8 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
       const rest_result held = session("planes", *render);
       const bool fast = hz > 500.0;
       EXPECT_FALSE(held.ended_early);
-      EXPECT_LE(held.deepest_m, fast ? 4e-4 : 6e-4) << hz;
+      EXPECT_LE(held.deepest_m, fast ? 3.5e-4 : 5e-4) << hz;
+      EXPECT_LE(held.step_n_per_ms, fast ? 1.0 : 2.0) << hz;
       EXPECT_LE(held.surplus_j, 1e-5) << hz;
       deep += held.deepest_m > (fast ? 1e-4 : 3e-4) ? 1 : 0;
       trembling += held.step_n_per_ms > (fast ? 0.3 : 1.0) ? 1 : 0;
@@ -164,9 +165,10 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
       worse += line.deepest_m > 2.0 * held.deepest_m || line.step_n_per_ms > 1.0 || line.surplus_j > 1e-3 ? 1 : 0;
     }
   }
-  // 0.1 mm and 0.3 N/ms are wanted at 1 kHz, 0.3 mm and 1 N/ms at 200 Hz.
-  EXPECT_LE(deep, 1 + touches / 4);
-  EXPECT_LE(trembling, 1 + touches / 10);
+  // 0.1 mm and 0.3 N/ms are wanted at 1 kHz, 0.3 mm and 1 N/ms at 200 Hz. Of 80 touches that were drawn 10 are deeper at
+  // 1 kHz, by 0.25 mm at most, and none at 200 Hz; five of the 160 sessions change by more, up to 0.57 N/ms.
+  EXPECT_LE(deep, 1 + (2 * touches) / 5);
+  EXPECT_LE(trembling, 1 + touches / 4);
   EXPECT_TRUE(pressed == 0 || worse > 0) << "the control: a line instead of planes holds as well";
 }
 
