@@ -1,7 +1,6 @@
 // What has become of support planes that stand for samples of depth fields.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -17,7 +16,6 @@
 #include "asperity/field/field_scene.hpp"
 #include "asperity/render/depth_backend.hpp"
 #include "asperity/render/plane_source.hpp"
-#include "planes/facing.hpp"
 #include "planes/leaf_reader.hpp"
 
 namespace asperity {

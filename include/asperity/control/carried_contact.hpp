@@ -29,11 +29,12 @@ namespace asperity {
 /// What lies beside a point is not known here. Where a probe slides over an edge or a ridge the surface falls away from
 /// the point that was told, and another one comes to press that was not: the contact left it out because the plane of
 /// the first one stood for it. So where a body is touched, the contact's own plane is a wall. A reading may let go of the
-/// probe by 20 um against the wall, and there the wall holds. Where the point has gone 0.2 mm, which with contacts of
-/// 1 kHz is a quick hand, a reading may let go by as much more as it goes on, up to 0.2 mm: on slow contacts a texture
-/// would not be felt otherwise. Where a point had let go before its body was touched, or
-/// before its contact came, as an older contact's may have, its wall is kept as far out as it takes to press on nothing:
-/// it holds the probe and does not push it.
+/// probe by 5 um against the wall, and there the wall holds. Contacts that are slow would not let a texture be felt like
+/// that. So where the point has gone 0.1 mm since its contact, a reading may let go by as much more as it goes on, up to
+/// 0.2 mm, but by no more than 0.1 m/s since the contact came: with contacts of 1 kHz the 5 um stay.
+///
+/// Where a point had let go before its body was touched, or before its contact came, as an older contact's may have, its
+/// wall is kept as far out as it takes to press on nothing: it holds the probe and does not push it.
 ///
 /// A body is touched where a point is a quarter of a millimetre from it or closer, and for a tenth of a second after, since
 /// a probe that slides off hops. The planes of a body that the probe only sweeps by do not hold: a wall that is level with
@@ -59,6 +60,9 @@ class local_model {
     return planes_;
   }
 
+  /// A period of dt_s seconds has gone by with the contact of the last planes_of().
+  void pass(double dt_s) noexcept { age_s_ += dt_s; }
+
   /// Reads those planes again that may press on a probe that has come to T_wc since: what planes_of() returned follows.
   /// @param part of the period that has passed: bodies that move have gone so far on their ways
   /// @pre planes_of() with the same contact
@@ -69,9 +73,11 @@ class local_model {
  private:
   static constexpr double may_press_m = 2e-5;  // a gap, which a hand of 0.15 m/s closes in an eighth of a millisecond
   static constexpr double near_m = 2.5e-4;
-  static constexpr double least_give_m = 2e-5;
+  static constexpr double least_give_m = 5e-6;
   static constexpr double most_give_m = 2e-4;
-  static constexpr double firm_way_m = 1.8e-4;  // what a point goes beyond it, a reading may let go by
+  static constexpr double firm_way_m = 1e-4;  // what a point goes beyond it, a reading may let go by
+  static constexpr double lets_go_m_per_s = 0.1;
+  static constexpr double slack_m = 1e-6;  // a point that stays as deep is read, and its wall does not press
   static constexpr double holds_not_m = std::numeric_limits<double>::infinity();
   static constexpr std::int64_t hop_ns = 100'000'000;
 
@@ -86,6 +92,7 @@ class local_model {
 
   void begin(const linear_contact& contact) noexcept {
     planes_ = contact.planes;
+    age_s_ = 0.0;
     gives_m_.fill(holds_not_m);
     const auto is_over = [&](const touched_body& t) { return contact.time_ns - t.at_ns > hop_ns; };
     touched_.truncate(
@@ -122,10 +129,10 @@ class local_model {
             const vec6& moved) noexcept {
     const double wall_m = told.depth_m + dot(told.gradient, moved);
     if (touched && gives_m_[i] == holds_not_m) {
-      gives_m_[i] = std::max(least_give_m, wall_m - std::max(now.depth_m, 0.0));
+      gives_m_[i] = std::max(least_give_m, wall_m - std::max(now.depth_m, 0.0) + slack_m);
     }
-    const double way_m = glm::length(moved.linear + glm::cross(moved.angular, told.r_w));
-    const double give_m = std::max(gives_m_[i], std::clamp(way_m - firm_way_m, least_give_m, most_give_m));
+    double give_m = gives_m_[i];
+    if (now.depth_m < wall_m - give_m) give_m = std::max(give_m, slow_give_m(told, moved));
     support_plane& p = planes_[i];
     if (now.depth_m < wall_m - give_m) {
       p = told;
@@ -134,6 +141,12 @@ class local_model {
       p = now;
       p.depth_m -= dot(p.gradient, moved);
     }
+  }
+
+  // By how much a reading may let go of a point that has moved since its contact came.
+  [[nodiscard]] double slow_give_m(const support_plane& told, const vec6& moved) const noexcept {
+    const double way_m = glm::length(moved.linear + glm::cross(moved.angular, told.r_w));
+    return std::min({way_m - firm_way_m, lets_go_m_per_s * age_s_, most_give_m});
   }
 
   // Notes whether a body is touched, by its planes as they were read. @return whether it is, or was a short time ago
@@ -154,6 +167,7 @@ class local_model {
 
   bool reads_;
   bool is_new_ = true;
+  double age_s_ = 0.0;  // since the contact came
   fixed_vector<touched_body, most_read_bodies> touched_{};
   std::array<double, most_support_planes> gives_m_{};  // how far each reading may let go of what was told
   support_planes planes_{};

@@ -127,6 +127,7 @@ class probe_motion {
       const pose target{exp_rotation(passed * way.angular) * from.rotation, from.position + passed * way.linear};
       if (const status s = substep(h_s, dt_s, target, contact, planes, carried, begun); s != status::ok) return s;
     }
+    local_.pass(dt_s);
     felt_.point_w = probe_.state().T_wc.position;
     body_share_ = carried.moves() ? carried.body_share(probe_.state().T_wc, 1.0) : 0.0;
     return status::ok;

@@ -27,8 +27,9 @@ hand_settings hand_of(std::size_t grip) {
 struct listen {
   std::int64_t from_ns;
   vibration_monitor monitor;
-  double largest_n = 0.0, deepest_m = 0.0, step_n_per_ms = 0.0;
-  bool shut = false;
+  double largest_n = 0.0, deepest_m = 0.0, step_n_per_ms = 0.0, rest_m = 0.0, slides_m = 0.0;
+  bool shut = false, rests = false;
+  vec3 rests_at_w{0.0};
   vec3 before_n{0.0};
   std::int64_t before_ns = 0;
   void operator()(const session_record& r) noexcept {
@@ -41,7 +42,11 @@ struct listen {
     before_ns = r.time_ns;
     shut = shut || r.fault != gate_fault::none;
     largest_n = std::max(largest_n, glm::length(r.on_hand_d.force));
-    if (r.time_ns >= from_ns) monitor.observe(r.time_ns, r.T_dh, r.on_hand_d);
+    if (r.time_ns < from_ns) return;
+    if (!std::exchange(rests, true)) rests_at_w = r.T_wa.position;
+    slides_m = std::max(slides_m, glm::distance(r.T_wa.position, rests_at_w));
+    rest_m = std::max(rest_m, r.max_depth_m);
+    monitor.observe(r.time_ns, r.T_dh, r.on_hand_d);
   }
 };
 
@@ -87,6 +92,8 @@ rest_result rest_session(render_function render, const press_touch& touch, const
   }
   out.deepest_m = heard.deepest_m;
   out.step_n_per_ms = heard.step_n_per_ms;
+  out.rest_m = heard.rest_m;
+  out.slides_m = heard.slides_m;
   out.heard = heard.monitor.report();
   out.largest_n = heard.largest_n;
   return out;

