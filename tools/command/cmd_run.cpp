@@ -73,6 +73,10 @@ result<void> check_options(const run_command& options) {
     return error{error_code::invalid_argument,
                  "--friction is of support planes: leave it out, or use --contacts planes"};
   }
+  if (options.no_local_model && formulation_name(options.render) != "planes") {
+    return error{error_code::invalid_argument,
+                 "--no-local-model is of support planes: leave it out, or use --contacts planes"};
+  }
   if (!options.moves.empty() && formulation_name(options.render) != "planes") {
     return error{error_code::invalid_argument,
                  "--move is for support planes, which go with their bodies: leave it out, or use --contacts planes"};
@@ -303,6 +307,7 @@ result<answer> run_session(const run_command& options, const common_options& com
     }
     for (mapped_pair& m : control.surfaces.mapped) override_friction(m.pair);
   }
+  control.local_model = !options.no_local_model;
   found.surfaces = control.surfaces;
   found.rate = look_at_rate(chosen, *feel, {poses->T_wb, shape.centre_of_mass}, touch_T_wa, control);
   if (found.rate && !common.quiet && !common.json) complain("note: " + to_text(*found.rate));
@@ -439,6 +444,8 @@ void add_run(command_line& line) {
          "Coefficients of friction on support planes, STATIC or STATIC,DYNAMIC: 0.6,0.4; by default those of the "
          "models' materials, or none")
       ->check(friction_error, "MU[,MU]");
+  sub.add_flag("--no-local-model", o->no_local_model,
+               "Support planes stay between two contacts; by default they are read again where the probe is");
   sub.add_option("--move", o->moves,
                  "How a fixed body moves: conveyor=SPEED[,WAY] (m/s, m), pendulum=DEGREES,SECONDS, turntable=RPM, or "
                  "FILE.csv of poses; N: in front for the N-th body; may be given several times")

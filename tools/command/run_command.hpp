@@ -34,6 +34,7 @@ struct run_command {
   std::string transient;                                         // see transient_of(); empty: none
   std::string velocity = "poses";                                // see velocity_source
   std::string friction;                                          // see friction_of(); empty: none
+  bool no_local_model = false;                                   // planes stay between two contacts
   std::vector<std::string> moves;                                // see body_script::read()
   std::string clock;                                             // empty: what fits the device
   std::string firmware;

@@ -189,6 +189,11 @@ json friction_json(const run_command& options) {
   return {{"static", mu->static_coefficient}, {"dynamic", mu->dynamic_coefficient}};
 }
 
+json local_model_json(const run_command& options) {
+  if (formulation_name(options.render) != "planes") return {};
+  return !options.no_local_model;
+}
+
 json surfaces_json(const surface_pairs& pairs) {
   json out = json::array();
   for (const std::optional<surface_pair>& p : pairs) out.push_back(p ? to_json(*p) : json());
@@ -246,6 +251,7 @@ answer report(const run_command& options, const session_findings& found) {
                   {"transient", transient_json(options, summary)},
                   {"velocity", velocity_json(options, summary)},
                   {"friction", friction_json(options)},
+                  {"local_model", local_model_json(options)},
                   {"surfaces", surfaces_json(surfaces)},
                   {"moves", options.moves}};
   out.document.update(summary.to_json());
@@ -289,6 +295,7 @@ answer report(const run_command& options, const session_findings& found) {
     out.text +=
         row("friction", brief(mu->static_coefficient) + " at rest, " + brief(mu->dynamic_coefficient) + " slipping");
   }
+  if (options.no_local_model) out.text += row("local model", "none: planes stay between two contacts");
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (!surfaces[i]) continue;
     const std::string name = printable(file_stem(options.fixed[i]));

@@ -31,7 +31,8 @@ namespace asperity {
 /// the first one stood for it. So where a body is touched, the contact's own plane is a wall. A reading may let go of the
 /// probe by 5 um against the wall, and there the wall holds. Contacts that are slow would not let a texture be felt like
 /// that. So where the point has gone 0.1 mm since its contact, a reading may let go by as much more as it goes on, up to
-/// 0.2 mm, but by no more than 0.1 m/s since the contact came: with contacts of 1 kHz the 5 um stay.
+/// 0.2 mm, but by no more than 0.1 m/s since the contact came. So the 5 um stay where every device tick has a contact of
+/// its own; a faster device loop, or a contact that is late, comes to 0.1 mm within a millisecond.
 ///
 /// Where a point had let go before its body was touched, or before its contact came, as an older contact's may have, its
 /// wall is kept as far out as it takes to press on nothing: it holds the probe and does not push it.

@@ -124,4 +124,34 @@ struct exchange {
   heartbeat application;                   ///< beaten by the application, never by a loop; see watchdog_ns
 };
 
+/// What an application tells a session while it runs, and hears from it.
+class session_application {
+ public:
+  /// Tells where the bodies are that move; see moving_bodies. Their poses are those of told.time_ns, on the session's
+  /// clock. From one thread. @rt safe
+  void move_bodies(const moving_bodies& told) noexcept {
+    shared_.bodies.back() = told;
+    shared_.bodies.publish();
+  }
+  /// What the bodies felt in the newest device tick. From one thread; lives until its next call. @rt safe
+  [[nodiscard]] const felt_bodies& felt() noexcept {
+    shared_.felt.refresh();
+    return shared_.felt.front();
+  }
+  /// Has the handle let go of the probe, or take it up again; needs clutch_settings::by_application. From any thread.
+  /// @rt safe
+  void let_go(bool wanted) noexcept { shared_.let_go.store(wanted, std::memory_order_relaxed); }
+
+  /// Which version of the scene the hand feels. From the thread that edits the scene. @rt safe
+  [[nodiscard]] scene_use scene_in_use() noexcept {
+    shared_.scene.refresh();
+    return shared_.scene.front();
+  }
+  /// A sign of life, from any thread. Only these feed control_settings::watchdog_ns.
+  void beat() noexcept { shared_.application.beat(); }
+
+ protected:
+  exchange shared_{};
+};
+
 }  // namespace asperity

@@ -45,7 +45,7 @@ struct tick_timing {
 /// A thread that is more than a period behind leaves out the periods that it missed, and counts them.
 /// The destructor stops. @pre the device is open; it is used by the device thread only while the session runs
 template <contact_renderer Renderer, haptic_device Device, session_observer Observer = no_observer>
-class real_session {
+class real_session : public session_application {
  public:
   real_session(Renderer feel, scene_placement placement, Device& dev, const control_settings& settings,
                const real_schedule& schedule = {}, Observer observer = {})
@@ -102,31 +102,9 @@ class real_session {
   /// Timing so far. @pre the session does not run: the threads write without a lock
   [[nodiscard]] const tick_timing& device_timing() const noexcept { return device_timing_; }
   [[nodiscard]] const tick_timing& contact_timing() const noexcept { return contact_timing_; }
-  /// Tells where the bodies are that move; see moving_bodies. Their poses are those of told.time_ns, on the session's
-  /// clock. From one thread. @rt safe
-  void move_bodies(const moving_bodies& told) noexcept {
-    shared_.bodies.back() = told;
-    shared_.bodies.publish();
-  }
-  /// What the bodies felt in the newest device tick. From one thread; lives until its next call. @rt safe
-  [[nodiscard]] const felt_bodies& felt() noexcept {
-    shared_.felt.refresh();
-    return shared_.felt.front();
-  }
-  /// Has the handle let go of the probe, or take it up again; needs clutch_settings::by_application. From any thread.
-  /// @rt safe
-  void let_go(bool wanted) noexcept { shared_.let_go.store(wanted, std::memory_order_relaxed); }
-
   /// The way by which versions of a scene that changes come into the session; see scene_editor::commit(). From one
   /// thread, while the session runs.
   [[nodiscard]] auto& scenes() noexcept requires scene_taker<Renderer> { return contact_.scenes(); }
-  /// Which version of the scene the hand feels. From the thread that edits the scene. @rt safe
-  [[nodiscard]] scene_use scene_in_use() noexcept {
-    shared_.scene.refresh();
-    return shared_.scene.front();
-  }
-  /// A sign of life of the application, from any of its threads. Only these feed control_settings::watchdog_ns.
-  void beat() noexcept { shared_.application.beat(); }
   /// The loops. @pre the session does not run
   [[nodiscard]] contact_loop<Renderer>& contact() noexcept { return contact_; }
   [[nodiscard]] device_loop<Device, Observer>& device() noexcept { return device_; }
@@ -185,7 +163,6 @@ class real_session {
   }
 
   real_schedule schedule_;
-  exchange shared_{};
   contact_loop<Renderer> contact_;
   device_loop<Device, Observer> device_;
   std::atomic<bool> contact_running_{false};

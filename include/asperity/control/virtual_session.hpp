@@ -25,7 +25,7 @@ struct virtual_schedule {
 /// the contact loop runs first, on the pose of the device tick before.
 /// The device must not read a clock either: the simulated device does not.
 template <contact_renderer Renderer, haptic_device Device, session_observer Observer = no_observer>
-class virtual_session {
+class virtual_session : public session_application {
  public:
   /// @param dev open and, to be felt, armed; outlives the session
   /// @pre both periods > 0
@@ -77,31 +77,9 @@ class virtual_session {
   /// @pre not before the last one
   void next_device_at(std::int64_t at_ns) noexcept { next_device_ns_ = at_ns; }
 
-  /// Tells where the bodies are that move; see moving_bodies. Their poses are those of told.time_ns, on the session's
-  /// clock. From one thread. @rt safe
-  void move_bodies(const moving_bodies& told) noexcept {
-    shared_.bodies.back() = told;
-    shared_.bodies.publish();
-  }
-  /// What the bodies felt in the newest device tick. From one thread; lives until its next call. @rt safe
-  [[nodiscard]] const felt_bodies& felt() noexcept {
-    shared_.felt.refresh();
-    return shared_.felt.front();
-  }
-  /// Has the handle let go of the probe, or take it up again; needs clutch_settings::by_application. From any thread.
-  /// @rt safe
-  void let_go(bool wanted) noexcept { shared_.let_go.store(wanted, std::memory_order_relaxed); }
-
   /// The way by which versions of a scene that changes come into the session; see scene_editor::commit(). From one
   /// thread, while the session runs.
   [[nodiscard]] auto& scenes() noexcept requires scene_taker<Renderer> { return contact_.scenes(); }
-  /// Which version of the scene the hand feels. From the thread that edits the scene. @rt safe
-  [[nodiscard]] scene_use scene_in_use() noexcept {
-    shared_.scene.refresh();
-    return shared_.scene.front();
-  }
-  /// A sign of life of the application. Only these feed control_settings::watchdog_ns.
-  void beat() noexcept { shared_.application.beat(); }
   /// Time of the next device tick.
   [[nodiscard]] std::int64_t now_ns() const noexcept { return next_device_ns_; }
   [[nodiscard]] std::uint64_t device_ticks() const noexcept { return device_ticks_; }
@@ -113,7 +91,6 @@ class virtual_session {
 
  private:
   virtual_schedule schedule_;
-  exchange shared_{};
   contact_loop<Renderer> contact_;
   device_loop<Device, Observer> device_;
   std::int64_t next_contact_ns_;

@@ -18,9 +18,19 @@ namespace {
 
 using row = std::vector<std::string>;
 
-const row header{
-    "pair",           "motion",      "formulation",        "r 1 kHz median",   "r 1 kHz worst", "r 10 kHz median",
-    "r 10 kHz worst", "ratio worst", "torque ratio worst", "jumps at 100 kHz", "over limit",    "pose"};
+const row header{"pair",
+                 "motion",
+                 "formulation",
+                 "r 1 kHz median",
+                 "r 1 kHz worst",
+                 "r 10 kHz median",
+                 "r 10 kHz worst",
+                 "ratio worst",
+                 "torque ratio worst",
+                 "with steps",
+                 "largest step mN",
+                 "over limit",
+                 "pose"};
 
 row motion_row(const std::string& pair, motion m, const char* formulation, const std::vector<pose_result>& poses) {
   const motion_summary s = summarise(poses, m);
@@ -33,7 +43,8 @@ row motion_row(const std::string& pair, motion m, const char* formulation, const
           formatted("%.2f", s.force_10khz.worst),
           formatted("%.2f", s.force_ratio.worst),
           formatted("%.2f", s.torque_ratio.worst),
-          s.resolved ? formatted("%zu", s.discontinuous) : "-",
+          s.resolved ? formatted("%zu", s.with_steps) : "-",
+          s.resolved ? formatted("%.2f", 1e3 * s.largest_step_n) : "-",
           formatted("%zu of %zu%s", s.over_limit, poses.size(), s.ok ? "" : " (a tick failed)"),
           formatted("%llu", static_cast<unsigned long long>(s.worst_pose))};
 }
@@ -108,12 +119,16 @@ std::string broken_limits(const std::vector<pair_result>& pairs) {
       const auto index = static_cast<unsigned long long>(r.index);
       for (const motion m : all_motions) {
         const jumps& j = r.moved[static_cast<std::size_t>(m)];
-        if (!j.over_limit() && j.at_1khz.ok && j.at_10khz.ok) continue;
+        const bool has_step = j.left && j.left->count > 0;
+        if (!j.over_limit() && !has_step && j.at_1khz.ok && j.at_10khz.ok) continue;
         out += formatted("%s, pose %llu, %s: force %.2f, %.2f, torque %.2f, %.2f", p.pair.c_str(), index,
                          to_string(m).data(), j.at_1khz.force, j.at_10khz.force, j.at_1khz.torque, j.at_10khz.torque);
-        if (j.at_100khz) out += formatted("; at 100 kHz %.2f and %.2f", j.at_100khz->force, j.at_100khz->torque);
-        out += formatted(", at %.3f mm%s\n", 1e3 * j.at_10khz.at_m,
-                         j.at_1khz.ok && j.at_10khz.ok ? "" : ", a tick failed");
+        out += formatted(", at %.3f mm", 1e3 * j.at_10khz.at_m);
+        if (has_step) {
+          out += formatted("; %zu step(s), of %.2f mN at %.6f mm", j.left->count, 1e3 * j.left->largest_n,
+                           1e3 * j.left->at_m);
+        }
+        out += formatted("%s\n", j.at_1khz.ok && j.at_10khz.ok ? "" : ", a tick failed");
       }
       if (r.loop > loop_limit) out += formatted("%s, pose %llu, loop: %.2e\n", p.pair.c_str(), index, r.loop);
     }

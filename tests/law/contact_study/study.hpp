@@ -112,11 +112,12 @@ struct spread {
 /// One line of the table: one motion of one pair in one formulation.
 struct motion_summary {
   spread force_1khz, force_10khz, force_ratio, torque_ratio;
-  std::size_t over_limit = 0;     ///< motions with a ratio, of force or torque, above ratio_limit
-  std::size_t discontinuous = 0;  ///< of them, those that grow on at 100 kHz
-  bool resolved = true;           ///< all of them were looked at that closely
-  std::uint64_t worst_pose = 0;   ///< where the ratio, of force or torque, is largest
-  bool ok = true;                 ///< every tick was
+  std::size_t over_limit = 0;  ///< motions with a ratio, of force or torque, above ratio_limit
+  std::size_t with_steps = 0;  ///< motions that have a step
+  double largest_step_n = 0.0;
+  bool resolved = true;          ///< it was looked for steps in all of them
+  std::uint64_t worst_pose = 0;  ///< where the ratio, of force or torque, is largest
+  bool ok = true;                ///< every tick was
 };
 
 [[nodiscard]] inline motion_summary summarise(const std::vector<pose_result>& poses, motion m) {
@@ -131,8 +132,9 @@ struct motion_summary {
     torque_ratio.push_back(j.torque_ratio());
     const double ratio = std::max(j.force_ratio(), j.torque_ratio());
     if (j.over_limit()) ++out.over_limit;
-    if (j.discontinuous()) ++out.discontinuous;
-    out.resolved = out.resolved && (!j.over_limit() || j.at_100khz);
+    out.resolved = out.resolved && j.left;
+    if (j.left && j.left->count > 0) ++out.with_steps;
+    if (j.left) out.largest_step_n = std::max(out.largest_step_n, j.left->largest_n);
     if (ratio > worst) worst = ratio, out.worst_pose = p.index;
     out.ok = out.ok && j.at_1khz.ok && j.at_10khz.ok;
   }

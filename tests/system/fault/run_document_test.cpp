@@ -64,6 +64,7 @@ TEST_F(documents, run) {
                   "weight",
                   "clutch",
                   "friction",
+                  "local_model",
                   "surfaces"});
   for (const char* loop : {"contact_loop", "device_loop"}) {
     expect_keys(d[loop], {"rate", "ticks", "idle", "late", "skipped", "over_period", "kept", "tick_time"});
@@ -89,8 +90,20 @@ TEST_F(documents, run_without_support_planes) {
         {"run", "--probe", pin(), "--fixed", pin(), "--seconds", "0.1", "--contacts", contacts}, "asperity.run/1");
     EXPECT_EQ(d["formulation"], contacts);
     EXPECT_TRUE(d["wall"].is_null());
+    EXPECT_TRUE(d["local_model"].is_null());
     EXPECT_EQ(d["coupling"]["translation"]["stiffness"], 500.0);
     EXPECT_EQ(d["coupling"]["rotation"]["from"], "default");
+  }
+}
+
+TEST_F(documents, what_is_of_support_planes_is_refused_with_other_contacts) {
+  for (const arguments& option :
+       {arguments{"--no-local-model"}, arguments{"--friction", "0.5"}, arguments{"--move", "conveyor=0.1"}}) {
+    arguments session{"run", "--probe", pin(), "--fixed", pin(), "--contacts", "window"};
+    session.insert(session.end(), option.begin(), option.end());
+    const std::string message = expect_failure(session, 1, "invalid_argument");
+    EXPECT_NE(message.find(option.front() + " is "), std::string::npos) << message;
+    EXPECT_NE(message.find("--contacts planes"), std::string::npos) << message;
   }
 }
 
@@ -173,6 +186,13 @@ TEST_F(documents, run_with_support_planes) {
   EXPECT_EQ(rubbed["friction"]["static"], 0.6);
   EXPECT_EQ(rubbed["friction"]["dynamic"], 0.4);
   EXPECT_LE(rubbed["energy"]["largest_surplus"], 1e-5);
+  // Planes that stay between two contacts feel otherwise.
+  EXPECT_EQ(d["local_model"], true);
+  arguments stay = above;
+  stay.insert(stay.end(), {"--no-local-model"});
+  const json stayed = expect_document(stay, "asperity.run/1");
+  EXPECT_EQ(stayed["local_model"], false);
+  EXPECT_NE(stayed["hand_force"]["max"], d["hand_force"]["max"]);
 }
 
 }  // namespace

@@ -171,6 +171,13 @@ class Pages(unittest.TestCase):
         with folder_with_models():
             self.run_page("how-to/change-the-scene.md", 1)
 
+    def test_materials(self):
+        with folder_with_models():
+            self.run_page("how-to/materials.md", 0)
+            self.assertIsNone(asperity.load("pebble.glb").material)
+            for name in ("steel", "wood", "rubber"):
+                self.assertEqual(asperity.load(name + ".glb").material.name, name)
+
     @unittest.skipUnless("asperity.mujoco" in MODULES, "asperity was built without MuJoCo")
     def test_texture_in_mujoco(self):
         with folder_with_models():
