@@ -152,16 +152,23 @@ class way_finder {
   void find_others() noexcept {
     constexpr int most_rounds = 60;
     constexpr double beyond = 1.3;       // a ray comes out beside a way out, further away; with 1.1 some are missed
-    constexpr double useful = 1.06;      // a turn makes a way out cheaper by an eighth at most
+    constexpr double useful = 1.1;       // a turn and the bed make a way out cheaper by up to a sixth
     constexpr double clear_of_m = 2e-6;  // outside: not deeper than the bed gives way, and this
+    constexpr int whole_steps = 6, half_steps = 18;
     vec3 y = mix(ways_, springs_);
     bool at_rest = true;  // a single way out was settled as it is
+    int settling = 0;
     for (int round = 0; round < most_rounds; ++round) {
       if (!at_rest) {
         at_rest = settle_again(y);
-        y = mix(ways_, springs_);
+        const vec3 next = mix(ways_, springs_);
+        ++settling;
+        // Near a crest a way out goes several times as far as the place it is seen from, and that goes a quarter as far
+        // the other way: whole steps swing to and fro without end.
+        y += (at_rest || settling <= whole_steps ? 1.0 : settling <= half_steps ? 0.5 : 0.25) * (next - y);
         continue;
       }
+      settling = 0;
       double least_j = ways_[0].cost_j(springs_, y), sunk_m = 0.0;
       for (const way_out& w : ways_) {
         least_j = std::min(least_j, w.cost_j(springs_, y));

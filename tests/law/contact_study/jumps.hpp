@@ -14,7 +14,7 @@ namespace asperity::contact_study {
 
 /// What the default keeps to, and the paper's does not.
 inline constexpr double ratio_limit = 2.0;
-inline constexpr double loop_limit = 3e-5;
+inline constexpr double loop_limit = 1e-5;
 
 /// What a probe feels somewhere.
 struct felt {
@@ -90,45 +90,59 @@ struct steps {
 };
 inline constexpr double least_step_n = 5e-3;
 
-/// All of them on a motion. Ways of 5 um are halved for as long as the wrench differs between their ends, so a steep
-/// place beside a step hides nothing; two steps within 5 um that cancel are not seen.
-[[nodiscard]] inline steps find_steps(const feel_function& feel, const touching_pose& start, motion m) {
-  constexpr double longest_m = 5e-6, shortest_m = 1e-10;
-  struct place {
-    double way_m = 0.0;
-    felt here;
-    vec3 point_w{0.0};
-  };
+/// One of the places of a path, and what the probe feels there.
+struct path_place {
+  double way = 0.0;
+  pose T_wa;
+  felt here;
+};
+
+/// Goes along a path in equal parts, each halved for as long as the wrench differs between its ends by more than
+/// least_step_n (the torque about the point of the contact, over L) and it is longer than shortest. So a steep place
+/// beside a step hides nothing; two steps within one part that cancel are not seen.
+/// @param at   the pose at a way    @param visit called with both ends of each part and the change, N
+template <class Path, class Visit>
+void walk(const feel_function& feel, const touching_pose& start, double length, std::size_t parts, double shortest,
+          Path&& at, Visit&& visit) {
   const vec3 point_a = inverse(start.T_wa) * start.point_w;
-  const auto at = [&](double way_m) {
-    const pose T = along(start, m, way_m);
-    return place{way_m, feel(T), T * point_a};
+  const auto stop_at = [&](double way) {
+    const pose T = at(way);
+    return path_place{way, T, feel(T)};
   };
-  const auto change_n = [](const place& p, const place& q) {
+  const auto change_n = [&](const path_place& p, const path_place& q) {
     const double force = glm::length(q.here.on_probe_w.force - p.here.on_probe_w.force);
-    const double torque = glm::length(q.here.torque_about(q.point_w) - p.here.torque_about(p.point_w));
+    const double torque = glm::length(q.here.torque_about(q.T_wa * point_a) - p.here.torque_about(p.T_wa * point_a));
     return std::max(force, torque / lever_m);
   };
-  steps out;
-  const auto ways = static_cast<std::size_t>(std::lround(length_m(m) / longest_m));
-  std::vector<place> ahead;  // the next is the last
-  place from = at(0.0);
-  for (std::size_t i = 1; i <= ways; ++i) {
-    ahead.push_back(at(longest_m * static_cast<double>(i)));
+  std::vector<path_place> ahead;  // the next is the last
+  path_place from = stop_at(0.0);
+  for (std::size_t i = 1; i <= parts; ++i) {
+    ahead.push_back(stop_at(length * static_cast<double>(i) / static_cast<double>(parts)));
     while (!ahead.empty()) {
-      const double change = change_n(from, ahead.back()), width_m = ahead.back().way_m - from.way_m;
-      if (change > least_step_n && width_m > shortest_m) {
-        ahead.push_back(at(from.way_m + 0.5 * width_m));
+      const double change = change_n(from, ahead.back()), width = ahead.back().way - from.way;
+      if (change > least_step_n && width > shortest) {
+        ahead.push_back(stop_at(from.way + 0.5 * width));
         continue;
       }
-      if (change > least_step_n) {
-        ++out.count;
-        if (change > out.largest_n) out.largest_n = change, out.at_m = from.way_m;
-      }
+      visit(from, ahead.back(), change);
       from = ahead.back();
       ahead.pop_back();
     }
   }
+}
+
+/// All steps of a motion.
+[[nodiscard]] inline steps find_steps(const feel_function& feel, const touching_pose& start, motion m) {
+  constexpr double longest_m = 5e-6, shortest_m = 1e-10;
+  const auto parts = static_cast<std::size_t>(std::lround(length_m(m) / longest_m));
+  steps out;
+  walk(
+      feel, start, length_m(m), parts, shortest_m, [&](double way_m) { return along(start, m, way_m); },
+      [&](const path_place& from, const path_place&, double change) {
+        if (!(change > least_step_n)) return;
+        ++out.count;
+        if (change > out.largest_n) out.largest_n = change, out.at_m = from.way;
+      });
   return out;
 }
 
@@ -163,22 +177,19 @@ struct jumps {
 
 /// Work once around the loop over the work of all its steps, both without sign: 0 for a force that has a potential, up
 /// to the error of the trapezoidal rule.
-[[nodiscard]] inline double loop_work(const feel_function& feel, const touching_pose& start, std::size_t steps = 1000) {
+[[nodiscard]] inline double loop_work(const feel_function& feel, const touching_pose& start, std::size_t parts = 1000) {
+  constexpr double shortest = 1e-7;  // of the loop: a fraction of a nanometre
   double work = 0.0, turnover = 0.0;
-  pose T_before = around(start, 0.0);
-  felt before = feel(T_before);
-  for (std::size_t i = 1; i <= steps; ++i) {
-    const pose T = around(start, static_cast<double>(i) / static_cast<double>(steps));
-    const felt now = feel(T);
-    const vec3 moved_m = now.centre_of_mass_w - before.centre_of_mass_w;
-    const vec3 turned_rad = log_rotation(T.rotation * glm::conjugate(T_before.rotation));
-    const double step_work = 0.5 * (glm::dot(before.on_probe_w.force + now.on_probe_w.force, moved_m) +
-                                    glm::dot(before.on_probe_w.torque + now.on_probe_w.torque, turned_rad));
-    work += step_work;
-    turnover += std::fabs(step_work);
-    T_before = T;
-    before = now;
-  }
+  walk(
+      feel, start, 1.0, parts, shortest, [&](double turn) { return around(start, turn); },
+      [&](const path_place& from, const path_place& to, double) {
+        const vec3 moved_m = to.here.centre_of_mass_w - from.here.centre_of_mass_w;
+        const vec3 turned_rad = log_rotation(to.T_wa.rotation * glm::conjugate(from.T_wa.rotation));
+        const double part = 0.5 * (glm::dot(from.here.on_probe_w.force + to.here.on_probe_w.force, moved_m) +
+                                   glm::dot(from.here.on_probe_w.torque + to.here.on_probe_w.torque, turned_rad));
+        work += part;
+        turnover += std::fabs(part);
+      });
   return turnover > 0.0 ? std::fabs(work) / turnover : 0.0;
 }
 
