@@ -177,7 +177,7 @@ struct jumps {
 
 /// Work once around the loop over the work of all its steps, both without sign: 0 for a force that has a potential, up
 /// to the error of the trapezoidal rule.
-[[nodiscard]] inline double loop_work(const feel_function& feel, const touching_pose& start, std::size_t parts = 1000) {
+[[nodiscard]] inline double loop_work(const feel_function& feel, const touching_pose& start, std::size_t parts = 2000) {
   constexpr double shortest = 1e-7;  // of the loop: a fraction of a nanometre
   double work = 0.0, turnover = 0.0;
   walk(
